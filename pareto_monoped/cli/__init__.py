@@ -1,0 +1,82 @@
+"""The command line: parse, call, print.
+
+Numbers go to stdout, messages and progress to stderr. Bad input ends with one line and exit code 2, a failure while
+running with 1, an interrupt with 130.
+"""
+
+import os
+import sys
+
+import click
+
+from pareto_monoped import __version__
+from pareto_monoped.errors import ParetoMonopedError
+
+_COMMANDS = {
+    "actuators": "actuators",
+    "simulate": "jumps",
+    "table1": "jumps",
+    "run": "studies",
+    "resume": "studies",
+    "status": "studies",
+    "front": "fronts",
+    "pick": "fronts",
+    "export": "exports",
+    "report": "reports",
+}
+"""Command -> module of this package that holds it, in the order of the work."""
+
+
+class _Commands(click.Group):
+    """Commands in the order of the work, each module imported when its command is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        module_name = _COMMANDS.get(cmd_name)
+        if module_name is None:
+            return None
+        from importlib import import_module
+
+        command: click.Command = getattr(import_module(f"pareto_monoped.cli.{module_name}"), cmd_name)
+        return command
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
+@click.version_option(__version__, prog_name="pareto-monoped")
+def cli() -> None:
+    """Design a jumping one-legged robot: gearboxes, links and controller on one height-energy Pareto front, down to CAD."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line and exit with its code: 0, 1 (failure), 2 (bad input) or 130 (interrupt)."""
+    sys.exit(_run(arguments))
+
+
+def _run(arguments: list[str] | None) -> int:
+    try:
+        code = cli.main(args=arguments, prog_name="pareto-monoped", standalone_mode=False)
+        return code if isinstance(code, int) else 0
+    except click.exceptions.Abort:
+        click.echo("interrupted", err=True)
+        return 130
+    except KeyboardInterrupt:
+        click.echo("interrupted", err=True)
+        return 130
+    except click.ClickException as error:
+        # One line, as for our own errors; click's default adds the usage text.
+        hint = (
+            f" (see 'pareto-monoped {error.ctx.info_name} --help')"
+            if isinstance(error, click.UsageError) and error.ctx and error.ctx.parent
+            else ""
+        )
+        click.echo(f"error: {error.format_message()}{hint}", err=True)
+        return error.exit_code
+    except ParetoMonopedError as error:
+        click.echo(f"error: {error}", err=True)
+        return error.exit_code
+    except BrokenPipeError:
+        # The reader (head, less) has closed: not an error; keep the interpreter's exit from flushing into it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0

@@ -1,0 +1,215 @@
+"""Prismatic parts: stacks of extruded shapes with a material, and the mass properties that follow from them.
+
+Every part of the robot is described this way once; the simulation takes its mass and inertia from the description, the
+CAD builds its solid from the same description. Lengths in millimetres, results in SI.
+
+Local frame: x and y in the plane of the shapes, z along the extrusion, which is a joint or gearbox axis.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Material:
+    """A material: density and how it looks in CAD and report (red, green, blue from 0 to 1)."""
+
+    name: str
+    density_kg_per_m3: float
+    colour: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prism:
+    """A shape with holes, extruded from z0_mm to z1_mm; the prisms of one part touch but do not overlap."""
+
+    outline: Shape
+    z0_mm: Numbers
+    z1_mm: Numbers
+    holes: tuple[Shape, ...] = ()
+
+    def moments(self) -> Moments:
+        """Area integrals of the cross-section."""
+        total = self.outline.moments()
+        for hole in self.holes:
+            total = total - hole.moments()
+        return total
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MassProperties:
+    """Mass and its first and second moments about the frame's origin; they add up over parts.
+
+    Attributes:
+        mass_kg: shape (...).
+        first_kg_m: integral of r dm, shape (..., 3).
+        second_kg_m2: integral of r r^T dm, shape (..., 3, 3).
+    """
+
+    mass_kg: NDArray[np.float64]
+    first_kg_m: NDArray[np.float64]
+    second_kg_m2: NDArray[np.float64]
+
+    @classmethod
+    def zero(cls) -> "MassProperties":
+        """Nothing: the neutral element of addition."""
+        return cls(mass_kg=np.zeros(()), first_kg_m=np.zeros(3), second_kg_m2=np.zeros((3, 3)))
+
+    def __add__(self, other: "MassProperties") -> "MassProperties":
+        return MassProperties(
+            mass_kg=self.mass_kg + other.mass_kg,
+            first_kg_m=self.first_kg_m + other.first_kg_m,
+            second_kg_m2=self.second_kg_m2 + other.second_kg_m2,
+        )
+
+    def scaled(self, factor: Numbers) -> "MassProperties":
+        """The same distribution with its density times ``factor``."""
+        scale = np.asarray(factor, dtype=np.float64)
+        return MassProperties(
+            mass_kg=self.mass_kg * scale,
+            first_kg_m=self.first_kg_m * scale[..., None],
+            second_kg_m2=self.second_kg_m2 * scale[..., None, None],
+        )
+
+    def placed(
+        self, rotation: NDArray[np.float64] | None = None, translation_m: NDArray[np.float64] | None = None
+    ) -> "MassProperties":
+        """The same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
+        turn = np.eye(3) if rotation is None else rotation
+        move = np.zeros(3) if translation_m is None else np.asarray(translation_m, dtype=np.float64)
+        first = self.first_kg_m @ turn.T
+        second = turn @ self.second_kg_m2 @ turn.T
+        cross = first[..., :, None] * move[..., None, :]
+        mass = self.mass_kg
+        return MassProperties(
+            mass_kg=mass + np.zeros(move.shape[:-1]),
+            first_kg_m=first + mass[..., None] * move,
+            second_kg_m2=second
+            + cross
+            + np.swapaxes(cross, -1, -2)
+            + mass[..., None, None] * (move[..., :, None] * move[..., None, :]),
+        )
+
+    @property
+    def com_m(self) -> NDArray[np.float64]:
+        """Centre of mass, shape (..., 3); the origin for a massless body."""
+        return self.first_kg_m / np.where(self.mass_kg > 0.0, self.mass_kg, 1.0)[..., None]
+
+    @property
+    def inertia_kg_m2(self) -> NDArray[np.float64]:
+        """Inertia tensor about the centre of mass, axes of the frame, shape (..., 3, 3)."""
+        com = self.com_m
+        central = self.second_kg_m2 - self.mass_kg[..., None, None] * (com[..., :, None] * com[..., None, :])
+        trace = np.trace(central, axis1=-2, axis2=-1)
+        return trace[..., None, None] * np.eye(3) - central
+
+
+def total(parts: Iterable[MassProperties]) -> MassProperties:
+    """The sum of many mass properties."""
+    result = MassProperties.zero()
+    for part in parts:
+        result = result + part
+    return result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """One kind of part of a unit (an actuator, a link, the base), in the unit's frame.
+
+    Attributes:
+        name: unique in the unit, lower case with underscores, such as ``planet``.
+        material: what it is made of.
+        prisms: its geometry; drawn around the part's own centre if ``pitch_radius_mm`` is not zero.
+        process: how it comes to be: ``machined``, ``laser cut``, ``3D printed`` or ``bought``.
+        count: how many of it the unit has.
+        pitch_radius_mm: its instances sit evenly on a circle of this radius about the unit's z axis; 0: at the origin.
+        phase_rad: angle of the first instance on that circle.
+        group: what it moves with, such as ``housing``, ``output``, ``rotor``, ``planet``; ``fixed`` in a link.
+        catalogue_mass_kg: mass of one, if it is bought and its solid is only an envelope; the density follows.
+        note: what the maker should know (standard, fit, catalogue number).
+    """
+
+    name: str
+    material: Material
+    prisms: tuple[Prism, ...]
+    process: str
+    count: Numbers = 1
+    pitch_radius_mm: Numbers = 0.0
+    phase_rad: float = 0.0
+    group: str = "fixed"
+    catalogue_mass_kg: Numbers | None = None
+    note: str = field(default="", compare=False)
+
+    def volume_mm3(self) -> Numbers:
+        """Volume of one instance."""
+        volume: Numbers = 0.0
+        for prism in self.prisms:
+            volume = volume + prism.moments().area * (prism.z1_mm - prism.z0_mm)
+        return volume
+
+    def unit_mass_kg(self) -> Numbers:
+        """Mass of one instance."""
+        if self.catalogue_mass_kg is not None:
+            return self.catalogue_mass_kg
+        return self.volume_mm3() * 1e-9 * self.material.density_kg_per_m3
+
+    def mass_kg(self) -> Numbers:
+        """Mass of all instances."""
+        return self.count * self.unit_mass_kg()
+
+    def mass_properties(self) -> MassProperties:
+        """All instances together, about the origin of the unit's frame.
+
+        Instances on a circle are taken as evenly spread, exact for three and more (for two, about the z axis).
+        """
+        one = _uniform(self.prisms, self.material.density_kg_per_m3)
+        if self.catalogue_mass_kg is not None:
+            one = one.scaled(np.asarray(self.catalogue_mass_kg, dtype=np.float64) / one.mass_kg)
+        everything = one.scaled(self.count)
+        if np.all(np.asarray(self.pitch_radius_mm) == 0.0):
+            return everything
+        half = 0.5 * everything.mass_kg * np.square(np.asarray(self.pitch_radius_mm) * 1e-3)
+        around = np.zeros((*half.shape, 3, 3))
+        around[..., 0, 0] = around[..., 1, 1] = half
+        # The part's own x-y moments, turned through all angles, average to a round body centred on the axis.
+        second = everything.second_kg_m2.copy()
+        mean = 0.5 * (second[..., 0, 0] + second[..., 1, 1])
+        second[..., 0, 0] = second[..., 1, 1] = mean
+        second[..., 0, 1] = second[..., 1, 0] = 0.0
+        first = everything.first_kg_m.copy()
+        first[..., :2] = 0.0
+        return MassProperties(mass_kg=everything.mass_kg, first_kg_m=first, second_kg_m2=second + around)
+
+
+def _uniform(prisms: tuple[Prism, ...], density_kg_per_m3: float) -> MassProperties:
+    """Mass properties of prisms of one density about the origin, in SI."""
+    result = MassProperties.zero()
+    for prism in prisms:
+        area = prism.moments()
+        z0, z1 = np.asarray(prism.z0_mm, dtype=np.float64), np.asarray(prism.z1_mm, dtype=np.float64)
+        length, z_first, z_second = z1 - z0, 0.5 * (z1**2 - z0**2), (z1**3 - z0**3) / 3.0
+        entries = np.broadcast_arrays(
+            area.area * length,
+            area.x * length,
+            area.y * length,
+            area.area * z_first,
+            area.xx * length,
+            area.yy * length,
+            area.area * z_second,
+            area.xy * length,
+            area.x * z_first,
+            area.y * z_first,
+        )
+        m, mx, my, mz, xx, yy, zz, xy, xz, yz = (np.asarray(e, dtype=np.float64) for e in entries)
+        rho = density_kg_per_m3 * 1e-9  # kg per mm3; each length in a moment adds 1e-3
+        result = result + MassProperties(
+            mass_kg=m * rho,
+            first_kg_m=np.stack([mx, my, mz], axis=-1) * (rho * 1e-3),
+            second_kg_m2=np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).reshape(*m.shape, 3, 3) * (rho * 1e-6),
+        )
+    return result

@@ -1,0 +1,75 @@
+"""Checked reading of TOML into frozen dataclasses; the one place that turns a wrong field into one clear line."""
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from pareto_monoped.errors import InputError
+
+T = TypeVar("T")
+
+
+def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Args:
+        path: the file.
+        what: what the file should be, for the message, such as ``"motor file"``.
+        error: which kind of ``InputError`` to raise.
+
+    Raises:
+        InputError: (or ``error``) the file is missing, unreadable, or no TOML.
+    """
+    try:
+        with path.open("rb") as stream:
+            return tomllib.load(stream)
+    except FileNotFoundError:
+        raise error(f"{what} {str(path)!r}: no such file; check the path") from None
+    except OSError as problem:
+        raise error(f"{what} {str(path)!r}: cannot be read ({problem.strerror}); give a readable TOML file") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+        raise error(f"{what} {str(path)!r}: not valid TOML ({problem}); correct that line") from None
+
+
+def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> T:
+    """An instance of dataclass ``kind`` from plain values, every field checked by its annotation.
+
+    Bounds stand in the annotations (``Annotated[float, Field(gt=0)]``); unknown keys are refused if the
+    dataclass carries ``__pydantic_config__ = ConfigDict(extra="forbid")``.
+
+    Args:
+        kind: the dataclass.
+        values: key to value, nested for nested dataclasses.
+        source: where the values come from, the first word of the message, such as ``"motor file my.toml"``.
+        error: which kind of ``InputError`` to raise.
+
+    Raises:
+        InputError: (or ``error``) naming the first wrong key, its value, what is allowed and the cure.
+    """
+    try:
+        return TypeAdapter(kind).validate_python(dict(values))
+    except ValidationError as problem:
+        raise error(f"{source}: {_line(kind, problem)}") from None
+
+
+def _line(kind: type, problem: ValidationError) -> str:
+    first = problem.errors(include_url=False)[0]
+    # A field of a union type adds the tried type's name to the location; only keys and indices help the user.
+    key = ".".join(str(step) for step in first["loc"] if not str(step).startswith(("tagged-union", "function-")))
+    if first["type"] == "missing":
+        return f"{key} is missing; add it"
+    if first["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
+        allowed = sorted(getattr(kind, "__dataclass_fields__", {}))
+        name = str(first["loc"][-1])
+        near = difflib.get_close_matches(name, allowed, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else "remove it"
+        top = f"; allowed: {', '.join(allowed)}" if len(first["loc"]) == 1 and allowed else ""
+        return f"unknown key {key!r}{top}; {hint}"
+    message = first["msg"].removeprefix("Value error, ")
+    if not key:
+        return message
+    return f"{key} = {first['input']!r}: {message[0].lower()}{message[1:]}; correct it"
