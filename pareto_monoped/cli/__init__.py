@@ -13,6 +13,7 @@ from pareto_monoped import __version__
 from pareto_monoped.errors import ParetoMonopedError
 
 _COMMANDS = {
+    "pareto": "pareto",
     "actuators": "actuators",
     "simulate": "jumps",
     "table1": "jumps",
@@ -46,7 +47,10 @@ class _Commands(click.Group):
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
 @click.version_option(__version__, prog_name="pareto-monoped")
 def cli() -> None:
-    """Design a jumping one-legged robot: gearboxes, links and controller on one height-energy Pareto front, down to CAD."""
+    """Design a jumping one-legged robot: gearboxes, links and controller at once.
+
+    A study finds the front of jump height against energy; every point of it exports to CAD.
+    """
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -66,11 +70,9 @@ def _run(arguments: list[str] | None) -> int:
         return 130
     except click.ClickException as error:
         # One line, as for our own errors; click's default adds the usage text.
-        hint = (
-            f" (see 'pareto-monoped {error.ctx.info_name} --help')"
-            if isinstance(error, click.UsageError) and error.ctx and error.ctx.parent
-            else ""
-        )
+        hint = ""
+        if isinstance(error, click.UsageError) and error.ctx is not None:
+            hint = f" (see '{error.ctx.command_path} --help')"
         click.echo(f"error: {error.format_message()}{hint}", err=True)
         return error.exit_code
     except ParetoMonopedError as error:

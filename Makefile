@@ -1,0 +1,54 @@
+# Two commands matter: `make pareto` runs the main job, `make test` the tests. Both set everything up first.
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.set-up
+# Two processes: what the machine in the documentation has; override with `make test JOBS=8`.
+JOBS ?= 2
+
+.PHONY: pareto test test-long lint format bench setup clean help
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make pareto     set up, then: actuator map, NSGA-II study, report, knee design, its CAD"
+	@echo "make test       set up, then the tests (about five minutes)"
+	@echo "make test-long  the tests that take longer, too"
+	@echo "make lint       ruff and mypy"
+	@echo "make bench      the benchmarks in benchmarks/"
+	@echo "make clean      remove the virtual environment"
+
+setup: $(STAMP)
+
+$(STAMP): pyproject.toml constraints.txt tools/system_libraries.sh
+	@test -n "$(PYTHON)" || { echo "error: no Python 3.11 or later found; install one, or name it: make PYTHON=/path/to/python3" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "error: $(PYTHON) cannot make virtual environments; on Debian or Ubuntu: sudo apt-get install python3-venv" >&2; exit 1; }
+	@echo "setting up $(VENV) (once; about a gigabyte, most of it the CAD kernel)" >&2
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@sh tools/system_libraries.sh $(BIN)/python
+	@touch $@
+
+pareto: setup
+	@$(BIN)/pareto-monoped pareto
+
+test: setup
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "not long"
+
+test-long: setup
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: setup
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: setup
+	@for b in benchmarks/*.py; do echo "== $$b"; $(BIN)/python $$b || exit 1; done
+
+clean:
+	rm -rf $(VENV)

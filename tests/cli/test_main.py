@@ -1,0 +1,63 @@
+import subprocess
+import sys
+
+import click
+import pytest
+
+from pareto_monoped import __version__, cli
+from pareto_monoped.errors import CheckError, DesignError
+
+
+def run(monkeypatch, capsys, failure):
+    """What the program prints, and its exit code, when a command raises ``failure``."""
+
+    @click.command()
+    def failing():
+        raise failure
+
+    monkeypatch.setattr(cli._Commands, "get_command", lambda *_: failing)
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["simulate"])
+    return caught.value.code, capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("failure", "code"),
+    [
+        (DesignError("knee_ratio = 3: must be 4 to 8.7; choose one"), 2),
+        (CheckError("sun and planet overlap by 2 mm3"), 1),
+        (click.UsageError("no such thing"), 2),
+        (KeyboardInterrupt(), 130),
+        (click.Abort(), 130),
+    ],
+)
+def test_failures_are_one_line_on_stderr_with_their_code(monkeypatch, capsys, failure, code):
+    got, output = run(monkeypatch, capsys, failure)
+    assert got == code
+    assert output.out == ""
+    assert len(output.err.strip().splitlines()) == 1
+    assert "Traceback" not in output.err
+
+
+def test_an_unknown_command_is_one_line():
+    result = subprocess.run(
+        [sys.executable, "-m", "pareto_monoped", "jmup"], capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert "jmup" in result.stderr
+
+
+def test_version():
+    result = subprocess.run(
+        [sys.executable, "-m", "pareto_monoped", "--version"], capture_output=True, text=True, check=True
+    )
+    assert __version__ in result.stdout
+
+
+def test_a_closed_pipe_is_no_error():
+    result = subprocess.run(
+        f"{sys.executable} -m pareto_monoped --help | head -n 1", shell=True, capture_output=True, text=True, check=True
+    )
+    assert result.stderr == ""
+    assert result.stdout.startswith("Usage: pareto-monoped")

@@ -1,0 +1,90 @@
+"""The house's rule: imports go one way only, and heavy libraries are imported in their own room."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parent.parent / "pareto_monoped"
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+
+# From the top of the house to the ground; a module may import from its own level's room and from lower levels.
+LEVELS = [
+    {"__main__"},
+    {"cli"},
+    {"report", "cad", "study"},
+    {"pareto", "jump"},
+    {"robot"},
+    {"actuator", "leg"},
+    {"geometry"},
+    {"design", "records"},
+    {"files"},
+    {"errors", "__init__"},
+]
+# Rooms of one level that may know each other all the same: the report and the CAD read what a study stored.
+BESIDE = {("report", "study"), ("cad", "study"), ("report", "cad"), ("design", "records")}
+HEAVY = {"mujoco": "jump", "build123d": "cad", "optuna": "study", "pymoo": "study", "cma": "study", "plotly": "report"}
+
+
+def level(room: str) -> int:
+    return next(index for index, rooms in enumerate(LEVELS) if room in rooms)
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imports(path: Path) -> list[tuple[str, bool]]:
+    """Every imported module with whether the import stands at the top of the file."""
+    tree = ast.parse(path.read_text())
+    found = []
+    for node in ast.walk(tree):
+        names = []
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module]
+            if node.module == "pareto_monoped":
+                names = [f"pareto_monoped.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        found += [(name, node in tree.body) for name in names]
+    return found
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_imports_go_down_only(path):
+    here = room_of(path)
+    for name, _ in imports(path):
+        parts = name.split(".")
+        if parts[0] != "pareto_monoped" or len(parts) == 1:
+            continue
+        there = parts[1]
+        if there in (here, "__version__"):
+            continue
+        down = level(there) > level(here) or (here, there) in BESIDE
+        assert down, f"{here} imports {name}, which is not below it"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_heavy_libraries_stay_in_their_room(path):
+    for name, at_top in imports(path):
+        library = name.split(".")[0]
+        home = HEAVY.get(library)
+        if home is None:
+            continue
+        # A version number or a model file may be asked for elsewhere, inside a function.
+        assert room_of(path) == home or not at_top, f"{library} belongs into {home}/"
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys\n"
+        "from pareto_monoped.cli import cli\n"
+        "from click.testing import CliRunner\n"
+        "result = CliRunner().invoke(cli, ['--help'])\n"
+        "assert result.exit_code == 0, result.output\n"
+        f"print([m for m in {sorted([*HEAVY, 'pandas', 'numba', 'matplotlib', 'scipy', 'OCP'])} if m in sys.modules])\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"

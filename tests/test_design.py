@@ -1,0 +1,70 @@
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER, Design
+from pareto_monoped.errors import DesignError
+
+# Table I of the paper, typed again from its LaTeX source: g_h, g_k, l1, l2, K, C, T, H, E.
+TABLE_1 = """\
+nominal,6,6,0.4,0.4,50,2.5,10.0,0.887,31.44
+A,4,7.9,0.4,0.4,13.7,6.5,46.5,0.743,15.51
+B,6,6,0.499,0.346,8.9,1.0,6.9,0.771,17.02
+C,4,6,0.49,0.36,7.9,2.2,8.4,0.800,15.36
+"""
+
+
+def test_order_is_the_papers():
+    assert NAMES == (
+        "thigh_length_m",
+        "shank_length_m",
+        "knee_ratio",
+        "hip_ratio",
+        "stiffness_n_per_m",
+        "damping_n_s_per_m",
+        "torsional_stiffness_n_m_per_rad",
+    )
+
+
+@pytest.mark.parametrize("row", list(csv.reader(io.StringIO(TABLE_1))), ids=lambda row: row[0])
+def test_cases_are_table_1(row):
+    case = PAPER_CASES[row[0]]
+    g_h, g_k, l1, l2, k, c, t, height, energy = map(float, row[1:])
+    assert case.design.as_array().tolist() == [l1, l2, g_k, g_h, k, c, t]
+    assert (case.height_m, case.energy_j) == (height, energy)
+
+
+def test_cases_lie_within_the_papers_bounds():
+    for case in PAPER_CASES.values():
+        values = case.design.as_array()
+        assert np.all((values >= LOWER) & (values <= UPPER))
+
+
+def test_array_and_back():
+    values = np.linspace(LOWER, UPPER, 3)[1]
+    assert Design.from_array(values).as_array().tolist() == values.tolist()
+
+
+def test_replace_changes_only_what_is_named():
+    design = PAPER_CASES["C"].design
+    changed = design.replace({"knee_ratio": 7.0})
+    assert changed.knee_ratio == 7.0
+    assert changed.as_dict() | {"knee_ratio": 6.0} == design.as_dict()
+
+
+@pytest.mark.parametrize("changes", [{"kne_ratio": 6.0}, {"knee_ratio": float("nan")}, {"knee_ratio": float("inf")}])
+def test_bad_changes_are_refused(changes):
+    with pytest.raises(DesignError, match=next(iter(changes))):
+        PAPER_CASES["C"].design.replace(changes)
+
+
+def test_wrong_number_of_values_is_refused():
+    with pytest.raises(DesignError, match=r"\(6,\)"):
+        Design.from_array(np.ones(6))
+
+
+def test_bounds_cannot_be_overwritten():
+    with pytest.raises(ValueError, match="read-only"):
+        LOWER[0] = 0.0
