@@ -1,4 +1,4 @@
-"""Prismatic parts: stacks of extruded shapes with a material, and the mass properties that follow from them.
+"""Parts as stacks of extruded shapes with a material, and the mass properties that follow from them.
 
 Every part of the robot is described this way once; the simulation takes its mass and inertia from the description, the
 CAD builds its solid from the same description. Lengths in millimetres, results in SI.
@@ -39,6 +39,64 @@ class Prism:
         for hole in self.holes:
             total = total - hole.moments()
         return total
+
+    def integrals(self) -> tuple[Numbers, ...]:
+        """Volume integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
+        area = self.moments()
+        z0, z1 = np.asarray(self.z0_mm, dtype=np.float64), np.asarray(self.z1_mm, dtype=np.float64)
+        length, z_first, z_second = z1 - z0, 0.5 * (z1**2 - z0**2), (z1**3 - z0**3) / 3.0
+        return (
+            area.area * length,
+            area.x * length,
+            area.y * length,
+            area.area * z_first,
+            area.xx * length,
+            area.yy * length,
+            area.area * z_second,
+            area.xy * length,
+            area.x * z_first,
+            area.y * z_first,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ball:
+    """A ball centred on the y axis, cut flat at a height, with a pocket: a foot moulded onto a tongue.
+
+    Attributes:
+        radius_mm: of the ball.
+        y_mm: of its centre; x and z are zero.
+        top_mm: height above the centre at which the ball is cut flat, at most the radius.
+        pocket: what is taken out, wholly inside the ball.
+    """
+
+    radius_mm: Numbers
+    y_mm: Numbers
+    top_mm: Numbers
+    pocket: Prism | None = None
+
+    def integrals(self) -> tuple[Numbers, ...]:
+        """As of ``Prism``: integrals over slices of radius sqrt(R^2 - t^2) for t from -R to the cut, in closed form."""
+        r, c, y = self.radius_mm, self.top_mm, self.y_mm
+        volume = np.pi * (r**2 * c - c**3 / 3.0 + 2.0 * r**3 / 3.0)
+        first = np.pi * (0.5 * r**2 * c**2 - 0.25 * c**4 - 0.25 * r**4)
+        along = np.pi * (r**2 * c**3 / 3.0 - 0.2 * c**5 + 2.0 * r**5 / 15.0)
+        across = 0.25 * np.pi * (r**4 * c - 2.0 * r**2 * c**3 / 3.0 + 0.2 * c**5 + 8.0 * r**5 / 15.0)
+        whole = (
+            volume,
+            0.0,
+            first + volume * y,
+            0.0,
+            across,
+            along + 2.0 * first * y + volume * y**2,
+            across,
+            0.0,
+            0.0,
+            0.0,
+        )
+        if self.pocket is None:
+            return whole
+        return tuple(a - b for a, b in zip(whole, self.pocket.integrals(), strict=True))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,10 +183,12 @@ class Part:
         name: unique in the unit, lower case with underscores, such as ``planet``.
         material: what it is made of.
         prisms: its geometry; drawn around the part's own centre if ``pitch_radius_mm`` is not zero.
-        process: how it comes to be: ``machined``, ``laser cut``, ``3D printed`` or ``bought``.
-        count: how many of it the unit has.
+        balls: further geometry that is round all over.
+        process: how it comes to be: ``machined``, ``laser cut``, ``3D printed``, ``moulded`` or ``bought``.
+        count: how many of it the unit has, at each place.
         pitch_radius_mm: its instances sit evenly on a circle of this radius about the unit's z axis; 0: at the origin.
         phase_rad: angle of the first instance on that circle.
+        places_mm: where the whole circle of instances, or the single one, is repeated: x, y, z from the unit's origin.
         group: what it moves with, such as ``housing``, ``output``, ``rotor``, ``planet``; ``fixed`` in a link.
         catalogue_mass_kg: mass of one, if it is bought and its solid is only an envelope; the density follows.
         note: what the maker should know (standard, fit, catalogue number).
@@ -141,6 +201,8 @@ class Part:
     count: Numbers = 1
     pitch_radius_mm: Numbers = 0.0
     phase_rad: float = 0.0
+    places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = ((0.0, 0.0, 0.0),)
+    balls: tuple[Ball, ...] = ()
     group: str = "fixed"
     catalogue_mass_kg: Numbers | None = None
     note: str = field(default="", compare=False)
@@ -148,8 +210,9 @@ class Part:
     def volume_mm3(self) -> Numbers:
         """Volume of one instance."""
         volume: Numbers = 0.0
-        for prism in self.prisms:
-            volume = volume + prism.moments().area * (prism.z1_mm - prism.z0_mm)
+        solids: tuple[Prism | Ball, ...] = (*self.prisms, *self.balls)
+        for solid in solids:
+            volume = volume + solid.integrals()[0]
         return volume
 
     def unit_mass_kg(self) -> Numbers:
@@ -160,14 +223,22 @@ class Part:
 
     def mass_kg(self) -> Numbers:
         """Mass of all instances."""
-        return self.count * self.unit_mass_kg()
+        return self.count * len(self.places_mm) * self.unit_mass_kg()
 
     def mass_properties(self) -> MassProperties:
         """All instances together, about the origin of the unit's frame.
 
         Instances on a circle are taken as evenly spread, exact for three and more (for two, about the z axis).
         """
-        one = _uniform(self.prisms, self.material.density_kg_per_m3)
+        circle = self._circle()
+        if self.places_mm == ((0.0, 0.0, 0.0),):
+            return circle
+        moves = (np.stack(np.broadcast_arrays(*place), axis=-1) * 1e-3 for place in self.places_mm)
+        return total(circle.placed(translation_m=move) for move in moves)
+
+    def _circle(self) -> MassProperties:
+        """The instances of one place, about the centre of their circle."""
+        one = _uniform((*self.prisms, *self.balls), self.material.density_kg_per_m3)
         if self.catalogue_mass_kg is not None:
             one = one.scaled(np.asarray(self.catalogue_mass_kg, dtype=np.float64) / one.mass_kg)
         everything = one.scaled(self.count)
@@ -186,26 +257,12 @@ class Part:
         return MassProperties(mass_kg=everything.mass_kg, first_kg_m=first, second_kg_m2=second + around)
 
 
-def _uniform(prisms: tuple[Prism, ...], density_kg_per_m3: float) -> MassProperties:
-    """Mass properties of prisms of one density about the origin, in SI."""
+def _uniform(solids: tuple[Prism | Ball, ...], density_kg_per_m3: float) -> MassProperties:
+    """Mass properties of solids of one density about the origin, in SI."""
     result = MassProperties.zero()
-    for prism in prisms:
-        area = prism.moments()
-        z0, z1 = np.asarray(prism.z0_mm, dtype=np.float64), np.asarray(prism.z1_mm, dtype=np.float64)
-        length, z_first, z_second = z1 - z0, 0.5 * (z1**2 - z0**2), (z1**3 - z0**3) / 3.0
-        entries = np.broadcast_arrays(
-            area.area * length,
-            area.x * length,
-            area.y * length,
-            area.area * z_first,
-            area.xx * length,
-            area.yy * length,
-            area.area * z_second,
-            area.xy * length,
-            area.x * z_first,
-            area.y * z_first,
-        )
-        m, mx, my, mz, xx, yy, zz, xy, xz, yz = (np.asarray(e, dtype=np.float64) for e in entries)
+    for solid in solids:
+        entries = np.broadcast_arrays(*(np.asarray(e, dtype=np.float64) for e in solid.integrals()))
+        m, mx, my, mz, xx, yy, zz, xy, xz, yz = entries
         rho = density_kg_per_m3 * 1e-9  # kg per mm3; each length in a moment adds 1e-3
         result = result + MassProperties(
             mass_kg=m * rho,
