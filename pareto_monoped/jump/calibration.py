@@ -1,0 +1,249 @@
+"""Calibrations: named, versioned records of everything the jump model leaves open once the robot is given.
+
+Three ship with the package (``data/calibrations``): ``reference``, well-posed and the default; ``paper``, the literal
+reading of the paper fitted to its Table I; ``ideal``, ``reference`` without losses. A user's own is read from TOML.
+"""
+
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.errors import CalibrationError
+from pareto_monoped.records import checked, read_toml
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Share = Annotated[float, Field(gt=0.0, le=1.0)]
+_STRICT = ConfigDict(extra="forbid")
+
+DEFAULT = "reference"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mass:
+    """Masses that the robot's parts do not give.
+
+    Attributes:
+        base_structure_mass_kg: what the base weighs besides the actuators; None: the frame of the parts.
+        foot_mass_kg, foot_radius_m: the foot; None: the foot part.
+        link_mass_scale: factor on mass and inertia of both links.
+        rotor_inertia_kg_m2: of one motor, about its axis; None: the motor's.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    base_structure_mass_kg: NotNegative | None = None
+    foot_mass_kg: Positive | None = None
+    foot_radius_m: Positive | None = None
+    link_mass_scale: Positive = 1.0
+    rotor_inertia_kg_m2: NotNegative | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndStop:
+    """Range of one joint and the spring-damper at its ends.
+
+    ``impedance`` is MuJoCo's d, see ``SpringContact``; here the virtual inertia acts while the stop is touched.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    lower_rad: float
+    upper_rad: float
+    stiffness_n_m_per_rad: Positive
+    damping_n_m_s_per_rad: NotNegative
+    impedance: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.5
+
+    def __post_init__(self) -> None:
+        """Refuse an empty range."""
+        if not self.lower_rad < self.upper_rad:
+            raise ValueError(f"lower_rad {self.lower_rad} must be below upper_rad {self.upper_rad}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joints:
+    """Losses and ends of both joints.
+
+    Attributes:
+        damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint.
+        hip_stop, knee_stop: end stops; None: the joint turns freely.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    damping_n_m_s_per_rad: NotNegative
+    friction_n_m: NotNegative
+    hip_stop: EndStop | None = None
+    knee_stop: EndStop | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """From motor to joint.
+
+    Attributes:
+        mesh_losses: whether the gearbox's efficiency is applied.
+        chain_efficiency: of the chain that drives the knee.
+        loss_speed_rad_per_s: speed over which load-dependent losses change their sign with the joint's.
+        voltage_limit: whether torque follows the voltage-speed line down to zero at the no-load speed.
+        peak_torque_scale: factor on the motors' peak torque.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    mesh_losses: bool
+    chain_efficiency: Share = 1.0
+    loss_speed_rad_per_s: Positive = 0.5
+    voltage_limit: bool = True
+    peak_torque_scale: Positive = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpringContact:
+    """The foot as a spring-damper (Kelvin-Voigt) on the floor.
+
+    Attributes:
+        stiffness_n_per_m, damping_n_s_per_m: normal to the floor.
+        impedance: MuJoCo's impedance d; the constraint adds a virtual mass d / (1 - d) / A, with A the inverse mass of
+            the foot's body, while it touches.
+        friction: Coulomb coefficient.
+        slip_ratio: tangential over normal damping (MuJoCo's ``impratio``); friction sets in over the slip speed
+            friction * normal force / (slip_ratio * damping_n_s_per_m).
+    """
+
+    __pydantic_config__ = _STRICT
+
+    kind: Literal["spring"]
+    stiffness_n_per_m: Positive
+    damping_n_s_per_m: Positive
+    impedance: Annotated[float, Field(gt=0.0, lt=1.0)]
+    friction: Positive
+    slip_ratio: Positive = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MujocoContact:
+    """The contact by MuJoCo's own parameters (its documentation, "Solver parameters")."""
+
+    __pydantic_config__ = _STRICT
+
+    kind: Literal["mujoco"]
+    time_constant_s: Positive
+    damping_ratio: Positive
+    impedance_min: Annotated[float, Field(gt=0.0, lt=1.0)]
+    impedance_max: Annotated[float, Field(gt=0.0, lt=1.0)]
+    impedance_width_m: Positive
+    friction: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactGate:
+    """Torque whenever the foot touches the floor, decided at every step: the paper's words."""
+
+    __pydantic_config__ = _STRICT
+
+    rule: Literal["contact"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FadeGate:
+    """Torque fades to zero as the foot rises.
+
+    With foot clearance c the torque is multiplied by 1 - s(c / length_m), s(u) = 3 u^2 - 2 u^3 between 0 and 1.
+
+    Attributes:
+        length_m: clearance at which no torque is left.
+        latch: whether the controller stays off once the foot has risen that far.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    rule: Literal["fade"]
+    length_m: Positive
+    latch: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Controller:
+    """The open numbers of the paper's controller (section II-B).
+
+    Attributes:
+        rest_length_m: l0, rest length of the virtual spring (10 m in a passage that the paper's final text lost).
+        gravity_feed_forward: whether m g is part of F_z, as in the paper.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    rest_length_m: Positive = 10.0
+    gravity_feed_forward: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulation:
+    """How it is integrated.
+
+    Attributes:
+        integrator: MuJoCo's integrator.
+        timestep_s: step, and period of the controller.
+        time_limit_s: a jump that is not over by then has failed.
+        base_slides: whether the base may move in x; otherwise a vertical guide holds it.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]
+    timestep_s: Positive
+    time_limit_s: Positive = 3.0
+    base_slides: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Calibration:
+    """Everything that turns a robot into a jump; a result always names the calibration it was made with."""
+
+    __pydantic_config__ = _STRICT
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
+    version: Annotated[int, Field(ge=1)]
+    description: str
+    mass: Mass
+    joints: Joints
+    drive: Drive
+    contact: Annotated[SpringContact | MujocoContact, Field(discriminator="kind")]
+    gate: Annotated[ContactGate | FadeGate, Field(discriminator="rule")]
+    controller: Controller
+    simulation: Simulation
+
+    @property
+    def label(self) -> str:
+        """Name and version, as results quote it."""
+        return f"{self.name}-{self.version}"
+
+
+def calibration_names() -> tuple[str, ...]:
+    """The calibrations that ship with the package, the default first."""
+    folder = resources.files("pareto_monoped") / "data" / "calibrations"
+    names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    return (DEFAULT, *(name for name in names if name != DEFAULT))
+
+
+def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
+    """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
+
+    Raises:
+        CalibrationError: unknown name, unreadable file, or a field missing, unknown or out of range.
+    """
+    if "/" in name_or_path or name_or_path.endswith(".toml"):
+        path = Path(name_or_path)
+    elif name_or_path in calibration_names():
+        path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name_or_path}.toml"))
+    else:
+        raise CalibrationError(
+            f"calibration {name_or_path!r}: must be one of {', '.join(calibration_names())}, or a TOML file; "
+            "correct the name"
+        )
+    values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
+    return checked(Calibration, values, source=f"calibration file {path.name}", error=CalibrationError)

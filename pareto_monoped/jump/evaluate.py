@@ -1,0 +1,233 @@
+"""Designs in, evaluations out, in order: the one door to the jump for search, report and command line."""
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, NAMES
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.population import Population, prepare
+from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.rows import take
+from pareto_monoped.robot import RobotArrays
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.search import ActuatorMap
+
+Floats = NDArray[np.float64]
+
+STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
+"""How a jump can end; every status but ``ok`` comes with a reason and without height and energy."""
+# A length below this has no room for the actuators' output couplings; it only keeps nonsense from the part models.
+_SHORTEST_LINK_M = 0.05
+# Jumps that are stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
+_CHUNK = 256
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evaluations:
+    """What n jumps came to; a row a design, NaN where its status has no such value.
+
+    Attributes:
+        status: one of ``STATUSES``, shape (n,).
+        reason: why the status is not ``ok``; empty where it is.
+        height_m: highest base height above the floor, shape (n,), as all that follow.
+        energy_j: sum of max(torque * speed, 0) dt over both joints to the apex, at the motors (paper, section III-B).
+        energy_hip_j, energy_knee_j: its parts.
+        absorbed_j: work that the joints did on the motors.
+        drive_loss_j: lost in gear meshes and chain.
+        joule_heat_j: heat in the windings, R (torque / (ratio k_t))^2 dt.
+        foot_clearance_m: of the foot above the floor at the apex.
+        lift_off_s, apex_s: last contact and apex, from the start.
+        mass_kg: of the whole robot.
+        peak_torque_hip_n_m, peak_torque_knee_n_m, peak_speed_hip_rad_per_s, peak_speed_knee_rad_per_s,
+            peak_power_hip_w, peak_power_knee_w: largest magnitudes at the joints.
+        saturation_hip, saturation_knee: share of the controlled time at a torque limit.
+        efficiency: m g (height - 0.5 m) over energy.
+    """
+
+    status: NDArray[np.str_]
+    reason: tuple[str, ...]
+    height_m: Floats
+    energy_j: Floats
+    energy_hip_j: Floats
+    energy_knee_j: Floats
+    absorbed_j: Floats
+    drive_loss_j: Floats
+    joule_heat_j: Floats
+    foot_clearance_m: Floats
+    lift_off_s: Floats
+    apex_s: Floats
+    mass_kg: Floats
+    peak_torque_hip_n_m: Floats
+    peak_torque_knee_n_m: Floats
+    peak_speed_hip_rad_per_s: Floats
+    peak_speed_knee_rad_per_s: Floats
+    peak_power_hip_w: Floats
+    peak_power_knee_w: Floats
+    saturation_hip: Floats
+    saturation_knee: Floats
+    efficiency: Floats
+
+    def __len__(self) -> int:
+        return len(self.height_m)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which jumps have a height and an energy, shape (n,)."""
+        return np.asarray(self.status == "ok")
+
+    def as_columns(self) -> dict[str, NDArray[np.generic]]:
+        """Column name to values of shape (n,), ``status`` and ``reason`` first."""
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        return columns | {"reason": np.array(self.reason, dtype=np.str_)}
+
+
+MEASURES: tuple[str, ...] = tuple(f.name for f in fields(Evaluations) if f.name not in ("status", "reason"))
+"""Names of the numeric columns."""
+
+
+class Evaluator:
+    """Evaluates designs with the actuators of one motor under one calibration.
+
+    Results do not depend, to the last bit, on what else is in the batch, on its order or on the number of workers.
+
+    Attributes:
+        actuator_map: ratio -> lightest actuator.
+        calibration: the jump model.
+        workers: threads.
+    """
+
+    def __init__(self, actuator_map: "ActuatorMap", calibration: Calibration, workers: int = 1) -> None:
+        self.actuator_map = actuator_map
+        self.calibration = calibration
+        self.workers = workers
+
+    def __call__(self, designs: ArrayLike) -> Evaluations:
+        """Jump with each design.
+
+        Args:
+            designs: shape (n, 7), in the order of ``design.NAMES``.
+        """
+        values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+        reasons = [_nonsense(row) for row in values]
+        sane = np.flatnonzero([not reason for reason in reasons])
+        table = _Table(len(values))
+        for i in range(len(values)):
+            if reasons[i]:
+                table.fail(i, "bad_input", reasons[i])
+        if len(sane):
+            from pareto_monoped.robot import robot_arrays
+
+            robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
+            _jump(robots, values[sane, 4:7], self.calibration, self.workers, table, sane)
+        return table.evaluations()
+
+
+def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Evaluations:
+    """Jump with robots that are already built.
+
+    Args:
+        robots: n robots.
+        control: K, C and T of each, shape (n, 3).
+        calibration: the jump model.
+        workers: threads.
+    """
+    table = _Table(len(robots))
+    _jump(robots, control, calibration, workers, table, np.arange(len(robots)))
+    return table.evaluations()
+
+
+def _nonsense(row: Floats) -> str:
+    """Why seven numbers are no design; empty if they are one, within the paper's bounds or not."""
+    for name, value in zip(NAMES, row.tolist(), strict=True):
+        if not np.isfinite(value):
+            return f"{name} = {value}: must be a finite number"
+        least = _SHORTEST_LINK_M if name.endswith("length_m") else 0.0
+        if value < least:
+            return f"{name} = {value:g}: must be at least {least:g}"
+    return ""
+
+
+class _Table:
+    """Rows of ``Evaluations`` as they come in."""
+
+    def __init__(self, n: int) -> None:
+        self.status = np.full(n, "ok", dtype="<U12")
+        self.reason = [""] * n
+        self.columns = {name: np.full(n, np.nan) for name in MEASURES}
+
+    def fail(self, i: int, status: str, reason: str) -> None:
+        self.status[i] = status
+        self.reason[i] = reason
+
+    def evaluations(self) -> Evaluations:
+        return Evaluations(status=self.status, reason=tuple(self.reason), **self.columns)
+
+
+def _jump(
+    robots: RobotArrays, control: Floats, calibration: Calibration, workers: int, table: _Table, rows: NDArray[np.intp]
+) -> None:
+    """Fill ``rows`` of the table with the jumps of ``robots``."""
+    built = np.array([not reason for reason in robots.reason], dtype=bool)
+    for i in np.flatnonzero(~built):
+        table.fail(rows[i], "no_gearbox", robots.reason[i])
+    table.columns["mass_kg"][rows[built]] = robots.body_mass_kg[built].sum(axis=1)
+    pose = start_pose(robots, calibration)
+    stands = np.array([not reason for reason in pose.reason], dtype=bool)
+    for i in np.flatnonzero(built & ~stands):
+        table.fail(rows[i], "cannot_stand", pose.reason[i])
+    ready = np.flatnonzero(built & stands)
+    for start in range(0, len(ready), _CHUNK):
+        chosen = ready[start : start + _CHUNK]
+        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration, workers)
+        population.run()
+        _collect(population, calibration, table, rows[chosen])
+
+
+def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:
+    from pareto_monoped.jump import kernel as k
+
+    memory, step = population.memory, calibration.simulation.timestep_s
+    complaints = population.complaints()
+    for i, row in enumerate(rows):
+        status = population.status[i]
+        time = (memory[i, k.STEPS] - 1) * step
+        if complaints[i] or status == k.DIVERGED:
+            table.fail(row, "diverged", complaints[i] or f"positions or speeds left all bounds after {time:.3f} s")
+        elif status == k.SANK:
+            table.fail(row, "no_lift_off", f"the base sank to {k.SANK_M} m after {time:.3f} s")
+        elif status == k.NO_LIFT_OFF:
+            table.fail(row, "no_lift_off", f"the foot had not left the floor after {time:.3f} s")
+        elif status == k.TIMEOUT:
+            table.fail(row, "timeout", f"the base had not come to its apex after {time:.3f} s")
+    ok = table.status[rows] == "ok"
+    energy = memory[:, k.ENERGY_HIP] + memory[:, k.ENERGY_KNEE]
+    mass = table.columns["mass_kg"][rows]
+    rise = memory[:, k.HEIGHT] - BASE_START_HEIGHT_M
+    active = np.maximum(memory[:, k.ACTIVE_STEPS], 1.0)
+    measures = {
+        "height_m": memory[:, k.HEIGHT],
+        "energy_j": energy,
+        "energy_hip_j": memory[:, k.ENERGY_HIP],
+        "energy_knee_j": memory[:, k.ENERGY_KNEE],
+        "absorbed_j": memory[:, k.ABSORBED_HIP] + memory[:, k.ABSORBED_KNEE],
+        "drive_loss_j": memory[:, k.LOST_HIP] + memory[:, k.LOST_KNEE],
+        "joule_heat_j": memory[:, k.HEAT_J],
+        "foot_clearance_m": memory[:, k.CLEARANCE],
+        "lift_off_s": (memory[:, k.LIFT_OFF_STEP] - 1) * step,
+        "apex_s": (memory[:, k.STEPS] - 1) * step,
+        "peak_torque_hip_n_m": memory[:, k.PEAK_TORQUE_HIP],
+        "peak_torque_knee_n_m": memory[:, k.PEAK_TORQUE_KNEE],
+        "peak_speed_hip_rad_per_s": memory[:, k.PEAK_SPEED_HIP],
+        "peak_speed_knee_rad_per_s": memory[:, k.PEAK_SPEED_KNEE],
+        "peak_power_hip_w": memory[:, k.PEAK_POWER_HIP],
+        "peak_power_knee_w": memory[:, k.PEAK_POWER_KNEE],
+        "saturation_hip": memory[:, k.SATURATED_HIP] / active,
+        "saturation_knee": memory[:, k.SATURATED_KNEE] / active,
+        "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(energy > 0.0, energy, np.nan),
+    }
+    for name, values in measures.items():
+        table.columns[name][rows[ok]] = values[ok]

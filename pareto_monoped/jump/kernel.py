@@ -1,0 +1,203 @@
+"""The controller and the bookkeeping of a population of jumps, compiled by numba.
+
+Importing this module imports numba, so it is imported where a simulation starts. ``advance`` is called between two
+steps of the batch: it books the step just made, ends jumps that are over, and sets the torques of the next step.
+"""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+# Columns of ``constants``, one row a jump.
+(
+    THIGH, SHANK, FOOT_RADIUS, STIFFNESS, DAMPING, TORSION, WEIGHT,
+    PEAK_HIP, PEAK_KNEE, NO_LOAD_HIP, NO_LOAD_KNEE, CORNER_HIP, CORNER_KNEE,
+    LOSS_HIP, LOSS_KNEE, HEAT_HIP, HEAT_KNEE,
+    N_CONSTANTS,
+) = range(18)  # fmt: skip
+
+# Columns of ``memory``, one row a jump. What follows ``_HIP`` is the knee's.
+(
+    STEPS, HEIGHT, CLEARANCE, LIFT_OFF_STEP, STOOD, OFF,
+    ENERGY_HIP, ENERGY_KNEE, ABSORBED_HIP, ABSORBED_KNEE, LOST_HIP, LOST_KNEE, HEAT_J,
+    PEAK_TORQUE_HIP, PEAK_TORQUE_KNEE, PEAK_SPEED_HIP, PEAK_SPEED_KNEE, PEAK_POWER_HIP, PEAK_POWER_KNEE,
+    ACTIVE_STEPS, SATURATED_HIP, SATURATED_KNEE,
+    SPEED_HIP, SPEED_KNEE, TORQUE_HIP, TORQUE_KNEE, JOINT_TORQUE_HIP, JOINT_TORQUE_KNEE,
+    N_MEMORY,
+) = range(29)  # fmt: skip
+
+# Entries of ``settings``, the same for all jumps.
+(
+    REST_LENGTH, TIMESTEP, STEP_LIMIT, FADE_LENGTH, LATCH, LOSS_SPEED, VOLTAGE_LIMIT, N_SETTINGS,
+) = range(8)  # fmt: skip
+
+# Values of ``status``.
+RUNNING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(6)
+
+TOUCH_M = 1e-9
+"""Clearance that still counts as touching: rounding of the start pose."""
+SANK_M = 0.1
+"""A base this low has fallen: half its actuators' diameter is 0.05 m."""
+SPEED_LIMIT = 1e4
+"""A joint or slide faster than this (m/s, rad/s) is a failed simulation."""
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def advance(
+    ids: NDArray[np.int32],
+    count: int,
+    qpos: Floats,
+    qvel: Floats,
+    ctrl: Floats,
+    constants: Floats,
+    memory: Floats,
+    status: NDArray[np.int32],
+    settings: Floats,
+) -> int:
+    """Book the last step of jumps ``ids[:count]``, end those that are over, set the torques of the others.
+
+    Running jumps are moved to the front of ``ids``, in order; returns how many there are.
+    """
+    left = 0
+    for position in range(count):
+        i = ids[position]
+        _one(qpos[i], qvel[i], ctrl[i], constants[i], memory[i], status, i, settings)
+        if status[i] == RUNNING:
+            ids[left] = i
+            left += 1
+    return left
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _one(
+    q: Floats, v: Floats, ctrl: Floats, c: Floats, m: Floats, status: NDArray[np.int32], i: int, settings: Floats
+) -> None:
+    nv = v.shape[0]
+    z, hip, knee = q[nv - 3], q[nv - 2], q[nv - 1]
+    dz = v[nv - 3]
+    fine = math.isfinite(z) and math.isfinite(hip) and math.isfinite(knee)
+    for k in range(nv):
+        if not abs(v[k]) < SPEED_LIMIT:
+            fine = False
+    if not fine:
+        status[i] = DIVERGED
+        return
+
+    # Foot relative to the base, and its Jacobian: d rx / d hip = rz, d rz / d hip = -rx.
+    shank_angle = hip + knee
+    shank_x, shank_z = -c[SHANK] * math.sin(shank_angle), -c[SHANK] * math.cos(shank_angle)
+    rx = -c[THIGH] * math.sin(hip) + shank_x
+    rz = -c[THIGH] * math.cos(hip) + shank_z
+    clearance = z + rz - c[FOOT_RADIUS]
+    speed = (v[nv - 2], v[nv - 1])
+
+    if m[STEPS] > 0:
+        _book(m, c, speed, settings[TIMESTEP])
+    m[STEPS] += 1
+    if z > m[HEIGHT]:
+        m[HEIGHT] = z
+    m[CLEARANCE] = clearance
+    touching = clearance <= TOUCH_M
+    if touching:
+        m[STOOD] = 1.0
+        m[LIFT_OFF_STEP] = m[STEPS]
+
+    # Share of the torque that the gate lets through.
+    length = settings[FADE_LENGTH]
+    if length > 0.0:
+        u = min(max(clearance / length, 0.0), 1.0)
+        gate = 1.0 - u * u * (3.0 - 2.0 * u)
+        in_air = clearance >= length
+        if settings[LATCH] > 0.0:
+            if in_air and m[STOOD] > 0.0:
+                m[OFF] = 1.0
+            in_air = m[OFF] > 0.0
+            if in_air:
+                gate = 0.0
+    else:
+        gate = 1.0 if touching else 0.0
+        in_air = not touching
+    if in_air and m[STOOD] > 0.0:
+        m[OFF] = 1.0
+        if dz <= 0.0:
+            status[i] = APEX
+            return
+    if z < SANK_M:
+        status[i] = SANK
+        return
+    if m[STEPS] > settings[STEP_LIMIT]:
+        status[i] = TIMEOUT if m[OFF] > 0.0 else NO_LIFT_OFF
+        return
+
+    torque_hip, torque_knee = 0.0, 0.0
+    if gate > 0.0:
+        # Paper, section II-B: F_l, tau_t, F_x, F_z and tau = J^T F; alpha is positive with the foot behind the base.
+        leg = math.sqrt(rx * rx + rz * rz)
+        sin, cos = -rx / leg, -rz / leg
+        alpha = math.atan2(-rx, -rz)
+        drx = rz * speed[0] + shank_z * speed[1]
+        drz = -rx * speed[0] - shank_x * speed[1]
+        dleg = (rx * drx + rz * drz) / leg
+        axial = c[STIFFNESS] * (settings[REST_LENGTH] - leg) - c[DAMPING] * dleg
+        across = c[TORSION] * (0.0 - alpha) / leg
+        fz = -axial * cos + across * sin - c[WEIGHT]
+        fx = -axial * sin - across * cos
+        torque_hip = rz * fx - rx * fz
+        torque_knee = shank_z * fx - shank_x * fz
+        m[ACTIVE_STEPS] += 1
+        torque_hip = gate * _limited(torque_hip, speed[0], m, c, settings, 0)
+        torque_knee = gate * _limited(torque_knee, speed[1], m, c, settings, 1)
+    m[TORQUE_HIP], m[TORQUE_KNEE] = torque_hip, torque_knee
+    m[SPEED_HIP], m[SPEED_KNEE] = speed
+    m[JOINT_TORQUE_HIP] = _delivered(torque_hip, speed[0], c[LOSS_HIP], c[PEAK_HIP], settings[LOSS_SPEED])
+    m[JOINT_TORQUE_KNEE] = _delivered(torque_knee, speed[1], c[LOSS_KNEE], c[PEAK_KNEE], settings[LOSS_SPEED])
+    ctrl[0], ctrl[1] = m[JOINT_TORQUE_HIP], m[JOINT_TORQUE_KNEE]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _limited(torque: float, speed: float, m: Floats, c: Floats, settings: Floats, joint: int) -> float:
+    """``torque`` within the motor's peak and, where it drives, within its voltage-speed line."""
+    peak = c[PEAK_HIP + joint]
+    upper, lower = peak, -peak
+    if settings[VOLTAGE_LIMIT] > 0.0:
+        no_load, corner = c[NO_LOAD_HIP + joint], c[CORNER_HIP + joint]
+        upper = peak * min(max((no_load - speed) / (no_load - corner), 0.0), 1.0)
+        lower = -peak * min(max((no_load + speed) / (no_load - corner), 0.0), 1.0)
+    if torque >= upper:
+        m[SATURATED_HIP + joint] += 1
+        return upper
+    if torque <= lower:
+        m[SATURATED_HIP + joint] += 1
+        return lower
+    return torque
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed: float) -> float:
+    """What reaches the joint: load-dependent friction of gears and chain opposes the motion."""
+    if loss == 0.0 or torque == 0.0:
+        return torque
+    after = torque - loss * abs(torque) * math.tanh(speed / loss_speed)
+    return min(max(after, -peak), peak)
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _book(m: Floats, c: Floats, speed: tuple[float, float], timestep: float) -> None:
+    """Add the step just made; its work is torque times the mean of the speeds before and after it."""
+    for joint in range(2):
+        torque = m[TORQUE_HIP + joint]
+        mean = 0.5 * (m[SPEED_HIP + joint] + speed[joint])
+        power = torque * mean
+        if power > 0.0:
+            m[ENERGY_HIP + joint] += power * timestep
+        else:
+            m[ABSORBED_HIP + joint] -= power * timestep
+        m[LOST_HIP + joint] += (torque - m[JOINT_TORQUE_HIP + joint]) * mean * timestep
+        m[HEAT_J] += c[HEAT_HIP + joint] * torque * torque * timestep
+        m[PEAK_TORQUE_HIP + joint] = max(m[PEAK_TORQUE_HIP + joint], abs(torque))
+        m[PEAK_SPEED_HIP + joint] = max(m[PEAK_SPEED_HIP + joint], abs(speed[joint]))
+        m[PEAK_POWER_HIP + joint] = max(m[PEAK_POWER_HIP + joint], abs(power))

@@ -1,0 +1,184 @@
+"""Robot -> MuJoCo: the MJCF of one robot, and the same numbers as model fields for a batch.
+
+World frame: x forward, z up, the floor at z = 0. Joints turn about +y; at zero both links hang straight down, a
+negative hip angle swings the thigh forward, and a positive knee angle is flexion. The base slides and does not pitch.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.jump.calibration import Calibration, EndStop, SpringContact
+from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.robot import RobotArrays
+
+Floats = NDArray[np.float64]
+
+# Body numbers in the model; the world is 0.
+BASE, THIGH, SHANK = 1, 2, 3
+FLOOR_GEOM, FOOT_GEOM = 0, 1
+# MuJoCo's default impedance for the parts of solimp that a constant impedance does not use.
+_WIDTH_M, _MIDPOINT, _POWER = 0.001, 0.5, 2.0
+
+
+def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comment: str = "") -> str:
+    """The MJCF document of robot ``index``: exactly what a batch simulates for it.
+
+    Args:
+        robots: robots that can be built and can stand.
+        calibration: names, losses, contact, integrator.
+        index: which of the robots.
+        comment: text for the head of the document, such as the design.
+    """
+    import mujoco
+
+    fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
+    pose = start_pose(robots, calibration)
+    start = start_qpos(calibration, pose.hip_rad, pose.knee_rad)[index]
+    # MuJoCo scales springs by inverse masses that only its compiler knows: compile, then give the springs in N/m.
+    draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, None, comment))
+    springs = spring_fields(calibration, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
+    return _document(fields, start, calibration, {name: values[0] for name, values in springs.items()}, comment)
+
+
+def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
+    """Model fields that differ from robot to robot, by MuJoCo's names, each of shape (n, ...)."""
+    n, slides = len(robots), calibration.simulation.base_slides
+    mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
+    mass[:, 1:] = robots.body_mass_kg
+    com[:, 1:] = robots.body_com_m
+    # All rotation is about y, so that only the yy moment acts; products of inertia load guides that are not modelled.
+    inertia[:, 1:] = np.diagonal(robots.body_inertia_kg_m2, axis1=-2, axis2=-1)
+    position = np.zeros((n, 4, 3))
+    position[:, SHANK, 2] = -robots.thigh_length_m
+    foot = np.zeros((n, 1, 3))
+    foot[:, 0, 2] = -robots.shank_length_m
+    armature = np.zeros((n, 4 if slides else 3))
+    armature[:, -2:] = robots.armature_kg_m2
+    limit = calibration.drive.peak_torque_scale * robots.peak_torque_n_m
+    return {
+        "body_mass": mass,
+        "body_ipos": com,
+        "body_inertia": inertia,
+        "body_pos": position,
+        "site_pos": foot,
+        "geom_pos": np.concatenate([np.zeros((n, 1, 3)), foot], axis=1),
+        "geom_size": np.stack(
+            [np.tile([0.0, 0.0, 1.0], (n, 1)), robots.foot_radius_m[:, None] * [1.0, 0.0, 0.0]], axis=1
+        ),
+        "dof_armature": armature,
+        "actuator_ctrlrange": np.stack([-limit, limit], axis=-1),
+    }
+
+
+def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweight0: Floats) -> dict[str, Floats]:
+    """``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2).
+
+    MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a) with impedance d, a fixed inverse mass A
+    and (k', b') = -solref / d (its documentation, "Computation: constraint model"). For a spring of k newtons a metre
+    therefore solref = -k A (1 - d), and likewise for the damper.
+    """
+    result = {}
+    contact = calibration.contact
+    if isinstance(contact, SpringContact):
+        scale = body_invweight0[:, SHANK, 0] * (1.0 - contact.impedance)
+        result["geom_solref"] = -scale[:, None] * [contact.stiffness_n_per_m, contact.damping_n_s_per_m]
+    stops = [(k, s) for k, s in enumerate((calibration.joints.hip_stop, calibration.joints.knee_stop)) if s]
+    if stops:
+        joint = np.tile([0.02, 1.0], (len(dof_invweight0), 2, 1))
+        for k, stop in stops:
+            scale = dof_invweight0[:, -2 + k] * (1.0 - stop.impedance)
+            joint[:, k] = -scale[:, None] * [stop.stiffness_n_m_per_rad, stop.damping_n_m_s_per_rad]
+        result["jnt_solref"] = joint
+    return result
+
+
+def start_qpos(calibration: Calibration, hip_rad: Floats, knee_rad: Floats) -> Floats:
+    """Joint positions at rest, shape (n, 4), or (n, 3) on a vertical guide."""
+    columns = [np.full(len(hip_rad), BASE_START_HEIGHT_M), hip_rad, knee_rad]
+    if calibration.simulation.base_slides:
+        columns.insert(0, np.zeros(len(hip_rad)))
+    return np.stack(columns, axis=1)
+
+
+def _document(
+    fields: dict[str, Any], start: Floats, calibration: Calibration, springs: dict[str, Any] | None, comment: str
+) -> str:
+    """The XML text; numbers are written so that reading them gives the same bits."""
+    simulation, joints = calibration.simulation, calibration.joints
+    friction_loss = f' frictionloss="{_n(joints.friction_n_m)}"' if joints.friction_n_m else ""
+    contact = calibration.contact
+    if isinstance(contact, SpringContact):
+        foot_solref = springs["geom_solref"] if springs else (-1.0, -1.0)
+        solimp = (contact.impedance, contact.impedance, _WIDTH_M, _MIDPOINT, _POWER)
+        slip_ratio, cone = contact.slip_ratio, "elliptic"
+    else:
+        foot_solref = (contact.time_constant_s, contact.damping_ratio)
+        solimp = (contact.impedance_min, contact.impedance_max, contact.impedance_width_m, _MIDPOINT, _POWER)
+        slip_ratio, cone = 1.0, "pyramidal"
+
+    def hinge(k: int, name: str, stop: EndStop | None) -> str:
+        limit = ""
+        if stop is not None:
+            solref = springs["jnt_solref"][k] if springs else (-1.0, -1.0)
+            d = stop.impedance
+            limit = (
+                f' limited="true" range="{_n(stop.lower_rad, stop.upper_rad)}" solreflimit="{_n(*solref)}"'
+                f' solimplimit="{_n(d, d, _WIDTH_M, _MIDPOINT, _POWER)}"'
+            )
+        armature, damping = fields["dof_armature"][-2 + k], joints.damping_n_m_s_per_rad
+        return (
+            f'<joint name="{name}" type="hinge" axis="0 1 0" armature="{_n(armature)}" damping="{_n(damping)}"'
+            f"{friction_loss}{limit}/>"
+        )
+
+    def inertial(body: int) -> str:
+        return (
+            f'<inertial pos="{_n(*fields["body_ipos"][body])}" mass="{_n(fields["body_mass"][body])}"'
+            f' diaginertia="{_n(*fields["body_inertia"][body])}"/>'
+        )
+
+    slide_x = '\n      <joint name="slide_x" type="slide" axis="1 0 0"/>' if simulation.base_slides else ""
+    foot = _n(*fields["site_pos"][0])
+    head = f"<!-- {comment.replace('--', '- -')} -->\n" if comment else ""
+    return f"""{head}<mujoco model="pareto_monoped {calibration.label}">
+  <compiler angle="radian" autolimits="false"/>
+  <option timestep="{_n(simulation.timestep_s)}" integrator="{simulation.integrator}" cone="{cone}" \
+impratio="{_n(slip_ratio)}" gravity="0 0 {_n(-GRAVITY_M_PER_S2)}" solver="Newton" tolerance="1e-12">
+    <flag island="disable" midphase="disable" autoreset="disable"/>
+  </option>
+  <worldbody>
+    <light pos="0 -2 3" dir="0 0.5 -1"/>
+    <geom name="floor" type="plane" size="0 0 1"/>
+    <body name="base">{slide_x}
+      <joint name="slide_z" type="slide" axis="0 0 1"/>
+      {inertial(BASE)}
+      <body name="thigh">
+        {hinge(0, "hip", joints.hip_stop)}
+        {inertial(THIGH)}
+        <body name="shank" pos="{_n(*fields["body_pos"][SHANK])}">
+          {hinge(1, "knee", joints.knee_stop)}
+          {inertial(SHANK)}
+          <geom name="foot" type="sphere" size="{_n(fields["geom_size"][FOOT_GEOM][0])}" pos="{foot}" priority="1" \
+friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solimp="{_n(*solimp)}"/>
+          <site name="foot" pos="{foot}"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="hip" joint="hip" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][0])}"/>
+    <motor name="knee" joint="knee" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][1])}"/>
+  </actuator>
+  <keyframe>
+    <key name="start" qpos="{_n(*start)}"/>
+  </keyframe>
+</mujoco>
+"""
+
+
+def _n(*values: float) -> str:
+    """Numbers as the shortest text that reads back to the same bits."""
+    return " ".join(repr(float(value)) for value in values)

@@ -1,0 +1,64 @@
+"""The pose at rest: base 0.5 m above the floor, foot directly below it (paper, section IV-B), by inverse kinematics."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.jump.calibration import Calibration, SpringContact
+from pareto_monoped.robot import RobotArrays
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartPose:
+    """Joint angles at rest of n robots, and why a robot cannot stand.
+
+    Attributes:
+        hip_rad, knee_rad: shape (n,), NaN where the robot cannot stand.
+        reason: empty where it can.
+    """
+
+    hip_rad: NDArray[np.float64]
+    knee_rad: NDArray[np.float64]
+    reason: tuple[str, ...]
+
+
+def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
+    """Joint angles for a foot directly below the base.
+
+    A spring contact starts compressed by the robot's weight, so that nothing moves before the motors do; a contact by
+    MuJoCo's parameters starts just touching.
+    """
+    radius = robots.foot_radius_m
+    sunk = np.zeros(len(robots))
+    if isinstance(calibration.contact, SpringContact):
+        sunk = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2 / calibration.contact.stiffness_n_per_m
+    length = BASE_START_HEIGHT_M - radius + sunk
+    thigh, shank = robots.thigh_length_m, robots.shank_length_m
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # Law of cosines; the knee's flexion is positive and lies between 0 and pi.
+        knee = np.arccos((length**2 - thigh**2 - shank**2) / (2.0 * thigh * shank))
+        hip = -np.arctan2(shank * np.sin(knee), thigh + shank * np.cos(knee))
+    reason = [""] * len(robots)
+    for i in np.flatnonzero(~np.isfinite(knee)):
+        need = f"{length[i]:.3f} m from hip to foot"
+        if thigh[i] + shank[i] < length[i]:
+            reason[i] = f"the stretched leg of {thigh[i] + shank[i]:.3f} m is shorter than the {need}"
+        else:
+            reason[i] = f"links of {thigh[i]:.3f} m and {shank[i]:.3f} m cannot fold to the {need}"
+    for name, angle, stop in (("hip", hip, calibration.joints.hip_stop), ("knee", knee, calibration.joints.knee_stop)):
+        if stop is None:
+            continue
+        with np.errstate(invalid="ignore"):
+            outside = (angle < stop.lower_rad) | (angle > stop.upper_rad)
+        for i in np.flatnonzero(outside):
+            if not reason[i]:
+                reason[i] = (
+                    f"the {name} would stand at {np.degrees(angle[i]):.1f} deg, outside its stops "
+                    f"{np.degrees(stop.lower_rad):.1f} to {np.degrees(stop.upper_rad):.1f} deg"
+                )
+    stands = np.array([not text for text in reason], dtype=bool)
+    return StartPose(
+        hip_rad=np.where(stands, hip, np.nan), knee_rad=np.where(stands, knee, np.nan), reason=tuple(reason)
+    )

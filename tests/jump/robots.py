@@ -1,0 +1,44 @@
+"""Plausible robots that need neither the actuator search nor the part models."""
+
+import numpy as np
+
+from pareto_monoped.design import LOWER, UPPER
+from pareto_monoped.robot import RobotArrays
+
+
+def random_designs(n, seed=0):
+    return np.random.default_rng(seed).uniform(LOWER, UPPER, (n, 7))
+
+
+def plausible_robots(designs):
+    """Round numbers near those of the paper's robot: 3.2 to 4 kg, VT8020 motors, links of 0.235 kg + 0.828 kg/m."""
+    designs = np.atleast_2d(designs)
+    thigh, shank, ratio = designs[:, 0], designs[:, 1], designs[:, [3, 2]]
+    n = len(designs)
+    actuator = 0.93 + 0.045 * (ratio - 4.0)
+    mass = np.stack([actuator[:, 0] + 0.3, actuator[:, 1] + 0.235 + 0.828 * thigh, 0.385 + 0.828 * shank], axis=1)
+    com = np.zeros((n, 3, 3))
+    com[:, 1, 2] = -0.4 * thigh * (0.235 + 0.828 * thigh) / mass[:, 1]
+    com[:, 2, 2] = -0.6 * shank
+    inertia = np.zeros((n, 3, 3, 3))
+    inertia[:, 0] = 0.002 * np.eye(3)
+    inertia[:, 1] = (0.002 + 0.12 * (0.235 + 0.828 * thigh) * thigh**2)[:, None, None] * np.eye(3)
+    inertia[:, 2] = (0.001 + 0.12 * (0.385 + 0.828 * shank) * shank**2)[:, None, None] * np.eye(3)
+    both = np.ones((n, 2))
+    return RobotArrays(
+        thigh_length_m=thigh,
+        shank_length_m=shank,
+        body_mass_kg=mass,
+        body_com_m=com,
+        body_inertia_kg_m2=inertia,
+        foot_radius_m=np.full(n, 0.025),
+        ratio=ratio,
+        armature_kg_m2=1.0e-4 * ratio**2,
+        peak_torque_n_m=5.5 * ratio,
+        continuous_torque_n_m=3.82 * ratio,
+        no_load_speed_rad_per_s=502.65 / ratio,
+        efficiency=0.97 * both,
+        torque_constant_n_m_per_a=0.0955 * both,
+        winding_resistance_ohm=0.06 * both,
+        reason=("",) * n,
+    )
