@@ -231,8 +231,6 @@ class Part:
         Instances on a circle are taken as evenly spread, exact for three and more (for two, about the z axis).
         """
         circle = self._circle()
-        if self.places_mm == ((0.0, 0.0, 0.0),):
-            return circle
         moves = (np.stack(np.broadcast_arrays(*place), axis=-1) * 1e-3 for place in self.places_mm)
         return total(circle.placed(translation_m=move) for move in moves)
 

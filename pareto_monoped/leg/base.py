@@ -1,0 +1,176 @@
+"""The base frame: two cheeks joined by four rods; it carries the hip actuator and the knee actuator's free end."""
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
+from pareto_monoped.leg.common import M3, M4, M4_HEAD, M4_HEAD_HEIGHT, M4_HOLE, Place, holes_at
+from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, STEEL, LegDimensions
+
+# Our own layout, mm: the rods stand above the hip, outside the reach of the thigh's round hip end and, up to the end
+# of the hip's range, of its bar.
+_TOP_Y, _TOP_RADIUS = 66.0, 40.0
+_RODS: tuple[Place, ...] = ((-32.0, 60.0, 0.0), (32.0, 60.0, 0.0), (-18.0, 90.0, 0.0), (18.0, 90.0, 0.0))
+_ROD_RADIUS = 5.0
+_ROD_THREAD = 10.0
+_JOURNAL_FLANGE = 4.0
+_JOURNAL_STEP = 1.5
+_SHOULDER = 11.8  # radius that touches the bearing's inner ring only
+
+
+def _far_z(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Numbers, Numbers, Numbers]:
+    """Heights z of the knee actuator's back, of the far cheek's inner face and of its outer face."""
+    back = d.knee_mount_mm + 1000.0 * knee_actuator_length_m
+    inner = back + _JOURNAL_FLANGE + _JOURNAL_STEP
+    return back, inner, inner + d.far_cheek_mm
+
+
+def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+    """The base frame in the frame of the base: origin on the hip axis in the middle plane, y up, z along the axis.
+
+    The hip actuator is placed at ``z = d.hip_mount_mm`` with its output towards +z.
+
+    Args:
+        knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
+        d: dimensions.
+    """
+    near0, near1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
+    _, far0, far1 = _far_z(knee_actuator_length_m, d)
+    seat1 = far0 + d.bearing_width_mm
+    rods = holes_at(_RODS, M4_HOLE)
+    window = hull(top_radius_mm=10.0, bottom_radius_mm=10.0, length_mm=14.0, y_mm=76.0)
+    outer_race = Circle(radius_mm=d.bearing_outer_radius_mm)
+    rim = d.mount_pitch_radius_mm + 6.0
+
+    def cheek(bottom_radius_mm: float) -> Path:
+        return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=_TOP_Y, y_mm=_TOP_Y)
+
+    rod_bolt = Circle(radius_mm=M4)
+    return (
+        Part(
+            name="base_near_cheek",
+            material=ALUMINIUM,
+            process="laser cut",
+            prisms=(
+                Prism(
+                    outline=cheek(rim),
+                    z0_mm=near0,
+                    z1_mm=near1,
+                    holes=(
+                        Circle(radius_mm=d.coupler_radius_mm + 1.0),
+                        Pattern(
+                            radius_mm=d.mount_hole_radius_mm,
+                            pitch_radius_mm=d.mount_pitch_radius_mm,
+                            count=d.mount_holes,
+                        ),
+                        # Lightening between the bore and the screws, a hole below each gap of the screws.
+                        Pattern(radius_mm=9.0, pitch_radius_mm=31.0, count=6, phase_rad=np.pi / 6),
+                        window,
+                        *rods,
+                    ),
+                ),
+            ),
+            note="6 mm sheet EN AW-6082 T6; countersink the screw holes on the thigh's side",
+        ),
+        Part(
+            name="hip_mount_screw",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=near0 - d.mount_thread_mm, z1_mm=near1),),
+            count=d.mount_holes,
+            pitch_radius_mm=d.mount_pitch_radius_mm,
+            note="M3 countersunk (ISO 10642) 10.9, flush, into the hip actuator's case",
+        ),
+        Part(
+            name="base_far_cheek",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(outline=cheek(26.0), z0_mm=far0, z1_mm=seat1, holes=(outer_race, window, *rods)),
+                Prism(
+                    outline=cheek(26.0),
+                    z0_mm=seat1,
+                    z1_mm=far1,
+                    holes=(Circle(radius_mm=d.bearing_outer_radius_mm - 2.0), window, *rods),
+                ),
+            ),
+            note="8 mm plate EN AW-6082 T6; seat 32 J7, 7 mm deep",
+        ),
+        Part(
+            name="base_bearing",
+            material=STEEL,
+            process="bought",
+            prisms=(
+                Prism(
+                    outline=outer_race,
+                    z0_mm=far0,
+                    z1_mm=seat1,
+                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
+                ),
+            ),
+            catalogue_mass_kg=d.bearing_kg,
+            note="6804, 20 x 32 x 7 mm (ISO 15)",
+        ),
+        Part(
+            name="base_rod",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(rod_bolt,)),),
+            places_mm=_RODS,
+            note="10 mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
+        ),
+        Part(
+            name="base_rod_screw_near",
+            material=STEEL,
+            process="bought",
+            prisms=(
+                Prism(outline=Circle(radius_mm=M4), z0_mm=near0, z1_mm=near1 + _ROD_THREAD),
+                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=near0 - M4_HEAD_HEIGHT, z1_mm=near0),
+            ),
+            places_mm=_RODS,
+            note="M4 x 16 cap screw (ISO 4762) 8.8",
+        ),
+        Part(
+            name="base_rod_screw_far",
+            material=STEEL,
+            process="bought",
+            prisms=(
+                Prism(outline=Circle(radius_mm=M4), z0_mm=far0 - _ROD_THREAD, z1_mm=far1),
+                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=far1, z1_mm=far1 + M4_HEAD_HEIGHT),
+            ),
+            places_mm=_RODS,
+            note="M4 x 18 cap screw (ISO 4762) 8.8",
+        ),
+    )
+
+
+def journal_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+    """The journal on the knee actuator's back that turns in the far cheek; in the frame of the thigh, part of it.
+
+    Args:
+        knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
+        d: dimensions.
+    """
+    back, far0, _ = _far_z(knee_actuator_length_m, d)
+    flange = back + _JOURNAL_FLANGE
+    seat1 = far0 + d.bearing_width_mm
+    bore = Circle(radius_mm=d.bearing_bore_radius_mm - 3.0)
+    holes = Pattern(radius_mm=d.back_hole_radius_mm + 0.15, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
+    return (
+        Part(
+            name="journal",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.back_pitch_radius_mm + 5.0),
+                    z0_mm=back,
+                    z1_mm=flange,
+                    holes=(bore, holes),
+                ),
+                Prism(outline=Circle(radius_mm=_SHOULDER), z0_mm=flange, z1_mm=far0, holes=(bore,)),
+                Prism(outline=Circle(radius_mm=d.bearing_bore_radius_mm), z0_mm=far0, z1_mm=seat1, holes=(bore,)),
+            ),
+            note="EN AW-7075; seat 20 h6; the bore takes the knee actuator's cables",
+        ),
+    )

@@ -1,0 +1,243 @@
+"""The shank as a list of parts: a fork of two plates around the thigh's knee end, the knee axle, and the foot."""
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, hull, rectangle
+from pareto_monoped.leg.common import (
+    BRIDGE,
+    M3,
+    M3_HOLE,
+    M4,
+    M4_HEAD,
+    M4_HEAD_HEIGHT,
+    M4_HOLE,
+    WINDOW_CORNER,
+    bolts_at,
+    holes_at,
+    sprocket_prism,
+    windows_between,
+)
+from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, RUBBER, STEEL, LegDimensions
+from pareto_monoped.leg.outlines import rounded
+
+# Our own layout, mm.
+_AXLE_BOLT_PITCH = 6.5
+_NECK = 7.5  # radius of the axle inside the sprocket
+_SHOULDER = 11.8  # radius that touches the bearing's inner ring only
+_FOOT_BLOCK = 34.0  # height of the foot's block above the ball's flat
+_TONGUE = 15.0  # how deep the foot's tongue reaches into the ball
+
+
+def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+    """The shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block, fasteners.
+
+    Args:
+        shank_length_m: knee axis to the centre of the foot, float or shape (n,).
+        d: dimensions.
+    """
+    length = 1000.0 * shank_length_m
+    half_gap = 0.5 * d.shank_gap_mm
+    face = half_gap + d.shank_plate_mm
+    flat = d.foot_flat_mm - length
+    block_top = flat + _FOOT_BLOCK
+    bridges = (-d.fork_mm - BRIDGE, block_top + 1.0 + BRIDGE)
+    bolts = holes_at(bolts_at(bridges), M3_HOLE)
+    foot_bolts = tuple((0.0, flat + up, 0.0) for up in (7.0, _FOOT_BLOCK - 7.0))
+    foot_holes = holes_at(foot_bolts, M4_HOLE)
+    return (
+        Part(
+            name="shank_plate",
+            material=ALUMINIUM,
+            process="laser cut",
+            prisms=(
+                Prism(
+                    outline=hull(
+                        top_radius_mm=d.shank_top_radius_mm,
+                        bottom_radius_mm=d.shank_bottom_radius_mm,
+                        length_mm=-flat - 1.0 - d.shank_bottom_radius_mm,
+                    ),
+                    z0_mm=0.0,
+                    z1_mm=d.shank_plate_mm,
+                    holes=(
+                        _axle_holes(),
+                        rounded(
+                            half_width_mm=d.shank_window_half_width_mm,
+                            high_mm=-28.0,
+                            low_mm=-d.fork_mm + 4.0,
+                            corner_mm=WINDOW_CORNER,
+                        ),
+                        *windows_between(bridges, d.shank_window_half_width_mm),
+                        *bolts,
+                        *foot_holes,
+                    ),
+                ),
+            ),
+            places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -face)),
+            note="3 mm sheet EN AW-6082 T6",
+        ),
+        Part(
+            name="shank_core",
+            material=PLASTIC,
+            process="3D printed",
+            prisms=(
+                Prism(
+                    outline=rectangle(
+                        width_mm=2.0 * d.shank_core_half_width_mm,
+                        height_mm=-d.fork_mm - (block_top + 1.0),
+                        y_mm=0.5 * (block_top + 1.0 - d.fork_mm),
+                    ),
+                    z0_mm=-half_gap,
+                    z1_mm=half_gap,
+                    holes=(*windows_between(bridges, d.shank_core_window_half_width_mm), *bolts),
+                ),
+            ),
+            note="print lying on a plate side, solid",
+        ),
+        Part(
+            name="shank_bolt",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-face, z1_mm=face),),
+            places_mm=bolts_at(bridges),
+            note="M3 x 40 countersunk (ISO 10642) with flush sleeve nut",
+        ),
+        *_axle_parts(d),
+        Part(
+            name="foot_block",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=rectangle(width_mm=24.0, height_mm=_FOOT_BLOCK, y_mm=flat + 0.5 * _FOOT_BLOCK),
+                    z0_mm=-half_gap,
+                    z1_mm=half_gap,
+                    holes=(*foot_holes, Circle(radius_mm=7.5, y_mm=flat + 0.5 * _FOOT_BLOCK)),
+                ),
+                _tongue(flat),
+            ),
+            note="holds the foot between the shank plates",
+        ),
+        Part(
+            name="foot_bolt",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M4), z0_mm=-face, z1_mm=face),),
+            places_mm=foot_bolts,
+            note="M4 x 40 countersunk (ISO 10642) with flush sleeve nut",
+        ),
+    )
+
+
+def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part:
+    """The rubber foot in the shank's frame; without a length around its own centre."""
+    y_mm = -1000.0 * shank_length_m
+    return Part(
+        name="foot",
+        material=RUBBER,
+        process="moulded",
+        prisms=(),
+        balls=(
+            Ball(
+                radius_mm=d.foot_radius_mm,
+                y_mm=y_mm,
+                top_mm=d.foot_flat_mm,
+                pocket=_tongue(y_mm + d.foot_flat_mm),
+            ),
+        ),
+        note="moulded and bonded onto the tongue of the foot block, 60 Shore A",
+    )
+
+
+def _tongue(flat_mm: Numbers) -> Prism:
+    return Prism(
+        outline=rectangle(width_mm=16.0, height_mm=_TONGUE, y_mm=flat_mm - 0.5 * _TONGUE), z0_mm=-5.0, z1_mm=5.0
+    )
+
+
+def _axle_holes() -> Pattern:
+    return Pattern(radius_mm=M4_HOLE, pitch_radius_mm=_AXLE_BOLT_PITCH, count=4, phase_rad=np.pi / 4)
+
+
+def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
+    """What turns in the thigh's knee bearings: two half axles with the sprocket between them, clamped by four bolts."""
+    half_gap, half_thigh_gap = 0.5 * d.shank_gap_mm, 0.5 * d.gap_mm
+    face = half_gap + d.shank_plate_mm
+    half_tooth = 0.5 * d.sprocket_width_mm
+    shoulder = half_thigh_gap - d.bearing_width_mm
+    flange = shoulder - 0.6
+    bolts = _axle_holes()
+    threads = Pattern(radius_mm=M3, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+
+    def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
+        return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=z0_mm, z1_mm=z1_mm, holes=(bolts, *holes))
+
+    return (
+        Part(
+            name="knee_axle",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                disc(_NECK, -half_tooth, half_tooth),
+                disc(d.coupler_radius_mm - 1.0, half_tooth, flange, threads),
+                disc(_SHOULDER, flange, shoulder),
+                disc(d.bearing_bore_radius_mm, shoulder, half_gap),
+            ),
+            note="EN AW-7075; seat 20 h6; threads M3",
+        ),
+        Part(
+            name="knee_axle_cap",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
+                disc(_SHOULDER, -shoulder, -half_tooth),
+            ),
+            note="EN AW-7075; seat 20 h6",
+        ),
+        Part(
+            name="knee_spacer",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=_SHOULDER),
+                    z0_mm=0.0,
+                    z1_mm=half_gap - half_thigh_gap,
+                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
+                ),
+            ),
+            places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
+            note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
+        ),
+        Part(
+            name="knee_sprocket",
+            material=STEEL,
+            process="machined",
+            prisms=(sprocket_prism(d),),
+            note=f"05B-1, {d.sprocket_teeth} teeth (ISO 606); the same part as drive_sprocket, countersunk",
+        ),
+        Part(
+            name="knee_sprocket_screw",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-half_tooth, z1_mm=flange),),
+            count=d.output_holes,
+            pitch_radius_mm=d.output_pitch_radius_mm,
+            note="M3 x 6 countersunk (ISO 10642) 10.9, flush",
+        ),
+        Part(
+            name="knee_bolt",
+            material=STEEL,
+            process="bought",
+            prisms=(
+                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=-face - M4_HEAD_HEIGHT, z1_mm=-face),
+                Prism(outline=Circle(radius_mm=M4), z0_mm=-face, z1_mm=face),
+                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=face, z1_mm=face + M4_HEAD_HEIGHT),
+            ),
+            count=4,
+            pitch_radius_mm=_AXLE_BOLT_PITCH,
+            phase_rad=np.pi / 4,
+            note="M4 x 50 cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
+        ),
+    )

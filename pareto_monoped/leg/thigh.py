@@ -1,0 +1,306 @@
+"""The thigh as a list of parts: sandwich, chain drive, hip coupling and knee bearings."""
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, hull, rectangle
+from pareto_monoped.leg.common import (
+    BRIDGE,
+    M3,
+    M3_HOLE,
+    bolts_at,
+    cap_screw,
+    holes_at,
+    sprocket_prism,
+    windows_between,
+)
+from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, STEEL, LegDimensions
+from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm, waisted
+
+# Our own layout, mm along the thigh.
+_FIRST_BRIDGE = 60.0  # below the hip axis, clear of the actuator's case
+_KNEE_END = 32.0  # core above the knee axis, clear of the sprocket's teeth
+_STANDOFF_RADIUS, _STANDOFF_PITCH = 3.5, 36.5
+
+
+def bridges_of(length_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """Heights of the three bridges that bolt the sandwich together, mm from the hip axis."""
+    first, last = -_FIRST_BRIDGE, _KNEE_END + BRIDGE - length_mm
+    return first, 0.5 * (first + last), last
+
+
+def thigh_parts(thigh_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+    """The thigh from hip axis to knee axis: plates, core, chain drive, hip coupling, knee bearings, fasteners.
+
+    The knee actuator itself is not in it: it is placed at ``z = d.knee_mount_mm`` with its output towards -z. The
+    parts of group ``knee_drive`` turn with the knee actuator's output (and, by the chain, with the shank).
+
+    Args:
+        thigh_length_m: hip axis to knee axis, float or shape (n,).
+        d: dimensions.
+    """
+    length = 1000.0 * thigh_length_m
+    return (*_sandwich(length, d), *_hip_joints(d), _chain(length, d), *_knee_seats(length, d))
+
+
+def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
+    """Both plates, the printed core between them, and what holds them together."""
+    half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
+    bridges = bridges_of(length)
+    windows = windows_between(bridges, d.thigh_window_half_width_mm)
+    bolts = holes_at(bolts_at(bridges), M3_HOLE)
+    knee_hole = Circle(radius_mm=d.bearing_outer_radius_mm - 2.0, y_mm=-length)
+    cup_pitch = d.bearing_outer_radius_mm + 2.5
+    cup_holes = Pattern(radius_mm=1.25, pitch_radius_mm=cup_pitch, count=4, phase_rad=np.pi / 4, y_mm=-length)
+    # On top of the hip, outside the chain's turn: at 30, 90 and 150 degrees.
+    standoffs = tuple(
+        (_STANDOFF_PITCH * float(np.cos(a)), _STANDOFF_PITCH * float(np.sin(a)), 0.0)
+        for a in (np.pi / 6, np.pi / 2, 5 * np.pi / 6)
+    )
+    standoff_holes = holes_at(standoffs, M3_HOLE)
+    output = Pattern(radius_mm=M3_HOLE, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+    mount = Pattern(radius_mm=d.mount_hole_radius_mm, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
+    bore = Circle(radius_mm=d.bearing_bore_radius_mm - 2.5)
+    common = (*windows, *bolts, knee_hole, cup_holes, *standoff_holes)
+
+    def plate(top_radius_mm: float) -> Shape:
+        return waisted(
+            top_radius_mm=top_radius_mm,
+            bottom_radius_mm=d.knee_radius_mm,
+            half_width_mm=d.thigh_half_width_mm,
+            length_mm=length,
+        )
+
+    core_end = _KNEE_END - length
+    core_top = BRIDGE - _FIRST_BRIDGE
+    return (
+        Part(
+            name="thigh_plate_inner",
+            material=ALUMINIUM,
+            process="laser cut",
+            prisms=(
+                Prism(
+                    outline=plate(_STANDOFF_PITCH + 5.5),
+                    z0_mm=-face,
+                    z1_mm=-half_gap,
+                    holes=(*common, bore, output, Pattern(radius_mm=5.5, pitch_radius_mm=25.5, count=6)),
+                ),
+            ),
+            note="2.5 mm sheet EN AW-6082 T6; countersink the standoff holes outside",
+        ),
+        Part(
+            name="thigh_plate_outer",
+            material=ALUMINIUM,
+            process="laser cut",
+            prisms=(
+                Prism(
+                    outline=plate(d.mount_pitch_radius_mm + 6.0),
+                    z0_mm=half_gap,
+                    z1_mm=face,
+                    holes=(
+                        *common,
+                        Circle(radius_mm=d.coupler_radius_mm + 1.0),
+                        mount,
+                        Pattern(radius_mm=8.0, pitch_radius_mm=31.0, count=6),
+                    ),
+                ),
+            ),
+            note="2.5 mm sheet EN AW-6082 T6; carries the knee actuator; countersink the standoff holes outside",
+        ),
+        Part(
+            name="thigh_core",
+            material=PLASTIC,
+            process="3D printed",
+            prisms=(
+                Prism(
+                    outline=rectangle(
+                        width_mm=2.0 * d.thigh_core_half_width_mm,
+                        height_mm=core_top - core_end,
+                        y_mm=0.5 * (core_top + core_end),
+                    ),
+                    z0_mm=-half_gap,
+                    z1_mm=half_gap,
+                    holes=(*windows, *bolts),
+                ),
+            ),
+            note="print lying on a plate side, solid",
+        ),
+        Part(
+            name="thigh_standoff",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(Prism(outline=Circle(radius_mm=_STANDOFF_RADIUS), z0_mm=-half_gap, z1_mm=half_gap),),
+            places_mm=standoffs,
+            note="7 mm rod, tapped M3 at both ends; M3 countersunk screws from outside",
+        ),
+        Part(
+            name="thigh_bolt",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-face, z1_mm=face),),
+            places_mm=bolts_at(bridges),
+            note="M3 x 30 countersunk (ISO 10642) with flush sleeve nut",
+        ),
+    )
+
+
+def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
+    """What joins the thigh to both actuators at the hip."""
+    half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
+    coupler_face = d.hip_mount_mm + d.coupler_height_mm
+    drive_face = d.knee_mount_mm - d.coupler_height_mm
+    half_tooth = 0.5 * d.sprocket_width_mm
+    coupling_holes = (
+        Circle(radius_mm=d.bearing_bore_radius_mm - 2.5),
+        Pattern(radius_mm=M3_HOLE, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+    )
+    return (
+        Part(
+            name="hip_coupling",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.coupler_radius_mm), z0_mm=coupler_face, z1_mm=-face, holes=coupling_holes
+                ),
+            ),
+            note="between hip output and inner plate; friction joint, dry",
+        ),
+        Part(
+            name="hip_coupling_screw",
+            material=STEEL,
+            process="bought",
+            prisms=cap_screw(
+                seat_mm=-half_gap, length_mm=-half_gap - coupler_face + d.coupler_thread_mm, direction=-1.0
+            ),
+            count=d.output_holes,
+            pitch_radius_mm=d.output_pitch_radius_mm,
+            note="M3 cap screw (ISO 4762) 12.9, from inside the thigh into the hip's output flange",
+        ),
+        Part(
+            name="knee_mount_screw",
+            material=STEEL,
+            process="bought",
+            prisms=cap_screw(seat_mm=half_gap, length_mm=d.plate_mm + d.mount_thread_mm, direction=1.0),
+            count=d.mount_holes,
+            pitch_radius_mm=d.mount_pitch_radius_mm,
+            note="M3 cap screw (ISO 4762) 12.9, from inside the thigh into the knee actuator's case",
+        ),
+        Part(
+            name="drive_sprocket",
+            material=STEEL,
+            process="machined",
+            prisms=(sprocket_prism(d),),
+            group="knee_drive",
+            note=f"05B-1, {d.sprocket_teeth} teeth (ISO 606)",
+        ),
+        Part(
+            name="drive_coupling",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.coupler_radius_mm),
+                    z0_mm=half_tooth,
+                    z1_mm=drive_face,
+                    holes=coupling_holes,
+                ),
+            ),
+            group="knee_drive",
+            note="between knee output and drive sprocket",
+        ),
+        Part(
+            name="drive_screw",
+            material=STEEL,
+            process="bought",
+            prisms=cap_screw(
+                seat_mm=-half_tooth, length_mm=drive_face + half_tooth + d.coupler_thread_mm, direction=1.0
+            ),
+            count=d.output_holes,
+            pitch_radius_mm=d.output_pitch_radius_mm,
+            group="knee_drive",
+            note="M3 cap screw (ISO 4762) 12.9, through the sprocket into the knee's output flange",
+        ),
+    )
+
+
+def _chain(length_mm: Numbers, d: LegDimensions) -> Part:
+    """The chain: its two rows of link plates all around and the rollers of the free strands as bars."""
+    pitch_radius = sprocket_pitch_radius_mm(teeth=d.sprocket_teeth, pitch_mm=d.chain_pitch_mm)
+    inner, outer = pitch_radius - 0.5 * d.chain_plate_mm, pitch_radius + 0.5 * d.chain_plate_mm
+    half_inner, half_pin = 0.5 * d.chain_inner_width_mm, 0.5 * d.chain_pin_mm
+
+    def around(radius: float) -> Shape:
+        return hull(top_radius_mm=radius, bottom_radius_mm=radius, length_mm=length_mm)
+
+    def rows(z0_mm: float, z1_mm: float) -> Prism:
+        return Prism(outline=around(outer), z0_mm=z0_mm, z1_mm=z1_mm, holes=(around(inner),))
+
+    # Where the strand has left the sprocket's teeth: a roller's breadth below the last tooth in mesh.
+    clear = 1.5 * d.chain_pitch_mm
+    strand = tuple(
+        Prism(
+            outline=rectangle(
+                width_mm=d.chain_roller_mm,
+                height_mm=length_mm - 2.0 * clear,
+                x_mm=side * pitch_radius,
+                y_mm=-0.5 * length_mm,
+            ),
+            z0_mm=-half_inner,
+            z1_mm=half_inner,
+        )
+        for side in (-1.0, 1.0)
+    )
+    # One whole turn in pitches, and both strands.
+    metres = 1e-3 * (2.0 * length_mm + d.sprocket_teeth * d.chain_pitch_mm)
+    return Part(
+        name="chain",
+        material=STEEL,
+        process="bought",
+        prisms=(rows(-half_pin, -half_inner), *strand, rows(half_inner, half_pin)),
+        catalogue_mass_kg=d.chain_kg_per_m * metres,
+        note="05B-1 (ISO 606), cut to the whole pitch below; a turnbuckle in each free strand takes up the rest",
+    )
+
+
+def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
+    """The bearings of the knee and their cups, which are screwed to the insides of the plates."""
+    half_gap = 0.5 * d.gap_mm
+    places = ((0.0, -length, half_gap - d.bearing_width_mm), (0.0, -length, -half_gap))
+    pitch = d.bearing_outer_radius_mm + 2.5
+    return (
+        Part(
+            name="knee_bearing_cup",
+            material=ALUMINIUM,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.bearing_outer_radius_mm + 5.0),
+                    z0_mm=0.0,
+                    z1_mm=d.bearing_width_mm,
+                    holes=(
+                        Circle(radius_mm=d.bearing_outer_radius_mm),
+                        Pattern(radius_mm=1.25, pitch_radius_mm=pitch, count=4, phase_rad=np.pi / 4),
+                    ),
+                ),
+            ),
+            places_mm=places,
+            note="seat 32 J7; the plate's lip holds the bearing outwards; four M2.5 countersunk screws",
+        ),
+        Part(
+            name="knee_bearing",
+            material=STEEL,
+            process="bought",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.bearing_outer_radius_mm),
+                    z0_mm=0.0,
+                    z1_mm=d.bearing_width_mm,
+                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
+                ),
+            ),
+            places_mm=places,
+            catalogue_mass_kg=d.bearing_kg,
+            note="6804, 20 x 32 x 7 mm (ISO 15)",
+        ),
+    )
