@@ -55,7 +55,7 @@ def sprocket_prism(d: LegDimensions) -> Prism:
         z0_mm=-half,
         z1_mm=half,
         holes=(
-            Circle(radius_mm=d.bearing_bore_radius_mm - 2.5),
+            Circle(radius_mm=d.bearing_bore_radius_mm - 1.0),
             Pattern(radius_mm=M3_HOLE, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
             Pattern(radius_mm=3.0, pitch_radius_mm=18.3, count=15),
         ),

@@ -22,8 +22,8 @@ from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, RUBBER, S
 from pareto_monoped.leg.outlines import rounded
 
 # Our own layout, mm.
-_AXLE_BOLT_PITCH = 6.5
-_NECK = 7.5  # radius of the axle inside the sprocket
+_AXLE_BOLT_PITCH = 5.5
+_NECK = 9.0  # radius of the axle inside the sprocket
 _SHOULDER = 11.8  # radius that touches the bearing's inner ring only
 _FOOT_BLOCK = 34.0  # height of the foot's block above the ball's flat
 _TONGUE = 15.0  # how deep the foot's tongue reaches into the ball
