@@ -1,15 +1,138 @@
 """Design -> Robot: the one place where actuators, links and base become bodies with masses and inertias.
 
-Both the simulation and the CAD read the robot from here.
+Both the simulation and the CAD read the robot from here: ``build_robot`` gives one robot with all its parts, and
+``robot_arrays`` weighs a whole population with the same part functions, a row a design.
+
+A continuous gear ratio gets the gearbox of its interval of 0.1 (stage 1), and the robot has that gearbox's real ratio.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.design import NAMES, Design
+from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.parts import MassProperties, Part, total
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.leg.dimensions import DEFAULT
+from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.record import Actuator
+    from pareto_monoped.actuator.search import ActuatorMap
+
+Floats = NDArray[np.float64]
 
 BODIES = ("base", "thigh", "shank")
 JOINTS = ("hip", "knee")
+
+PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Part frames have the joint axis along z and y up along the link; body frames have it along y and z up."""
+PART_TO_BODY.flags.writeable = False
+_UPRIGHT = np.eye(3)
+_OVER = np.diag([1.0, -1.0, -1.0])  # half a turn about x: the knee actuator looks at the thigh from outside
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MassOptions:
+    """What a calibration may set in place of the part-by-part masses; None keeps the parts.
+
+    Attributes:
+        base_structure_mass_kg: mass of the base frame, without the hip actuator.
+        foot_mass_kg, foot_radius_m: of the foot.
+        link_mass_scale: factor on mass and inertia of both links, without the foot.
+        rotor_inertia_kg_m2: of one motor about its axis, with all that turns at its speed.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    base_structure_mass_kg: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+    foot_mass_kg: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+    foot_radius_m: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+    link_mass_scale: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 1.0
+    rotor_inertia_kg_m2: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+
+
+PARTS_ONLY = MassOptions()
+"""Every mass from the parts: what is exported to CAD."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unit:
+    """A group of parts that is put into a body as a whole.
+
+    Attributes:
+        name: ``base_frame``, ``hip_actuator``, ``thigh``, ``knee_actuator``, ``journal`` (which carries the
+            knee actuator's free end), ``shank`` or ``foot``.
+        body: the body that carries it, one of ``BODIES``.
+        parts: in the unit's own frame.
+        turn: rotation from the unit's frame to the body's part frame (x forward, y up, z along the joint axis).
+        z_mm: where the unit's origin lies on the body's proximal joint axis, in the body's part frame.
+    """
+
+    name: str
+    body: str
+    parts: tuple[Part, ...]
+    turn: Floats
+    z_mm: float
+
+    def mass_properties(self) -> MassProperties:
+        """All parts together, in the body frame."""
+        return _in_body(total(part.mass_properties() for part in self.parts), self.turn, self.z_mm)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Robot:
+    """One robot with every part that has a mass.
+
+    Attributes:
+        design: what was asked for; the gearboxes' real ratios are ``hip.ratio`` and ``knee.ratio``.
+        hip, knee: the actuators.
+        units: from the base down to the foot.
+    """
+
+    design: Design
+    hip: "Actuator"
+    knee: "Actuator"
+    units: tuple[Unit, ...]
+
+    def body_mass_properties(self) -> Mapping[str, MassProperties]:
+        """Each body's parts together, in its body frame (see ``RobotArrays``)."""
+        return {body: total(u.mass_properties() for u in self.units if u.body == body) for body in BODIES}
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass of the whole robot."""
+        return float(sum(unit.mass_properties().mass_kg for unit in self.units))
+
+
+def build_robot(design: Design, actuator_map: "ActuatorMap") -> Robot:
+    """The robot of a design, part by part.
+
+    Raises:
+        DesignError: a link without length, or a gear ratio that no gearbox of this motor has.
+    """
+    for name in ("thigh_length_m", "shank_length_m"):
+        value = getattr(design, name)
+        if not value > 0.0:
+            raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
+    hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
+    shank_length_m = design.shank_length_m
+    units = (
+        Unit(name="base_frame", body="base", parts=base_parts(_length_m(knee)), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=DEFAULT.hip_mount_mm),
+        Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=DEFAULT.knee_mount_mm),
+        Unit(name="journal", body="thigh", parts=journal_parts(_length_m(knee)), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="shank", body="shank", parts=shank_parts(shank_length_m), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="foot", body="shank", parts=(foot_part(shank_length_m),), turn=_UPRIGHT, z_mm=0.0),
+    )
+    return Robot(design=design, hip=hip, knee=knee, units=units)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,3 +175,132 @@ class RobotArrays:
 
     def __len__(self) -> int:
         return len(self.thigh_length_m)
+
+
+def robot_arrays(designs: ArrayLike, actuator_map: "ActuatorMap", options: MassOptions = PARTS_ONLY) -> RobotArrays:
+    """Weigh many robots at once, with the same part functions as ``build_robot``.
+
+    Args:
+        designs: shape (n, 7), in the order of ``design.NAMES``; finite, with links longer than zero.
+        actuator_map: the gearboxes.
+        options: what stands in for part-by-part masses.
+
+    Returns:
+        A row a design. Rows with a ``reason`` (no gearbox of that ratio) hold the numbers of some other gearbox.
+    """
+    values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+    thigh_m, shank_m = values[:, 0], values[:, 1]
+    table = _actuator_table(actuator_map)
+    intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
+    reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
+    hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
+
+    frame = _upright(base_parts(table.length_m[knee]))
+    if options.base_structure_mass_kg is not None:
+        frame = frame.scaled(options.base_structure_mass_kg / frame.mass_kg)
+    thigh, shank = _upright(thigh_parts(thigh_m)), _upright(shank_parts(shank_m))
+    journal = _upright(journal_parts(table.length_m[knee]))
+    foot = _upright((foot_part(shank_m),))
+    if options.foot_mass_kg is not None:
+        foot = foot.scaled(options.foot_mass_kg / foot.mass_kg)
+    bodies = (
+        frame + table.placed(hip, _UPRIGHT, DEFAULT.hip_mount_mm),
+        thigh.scaled(options.link_mass_scale) + journal + table.placed(knee, _OVER, DEFAULT.knee_mount_mm),
+        shank.scaled(options.link_mass_scale) + foot,
+    )
+    rows = np.stack([hip, knee], axis=1)
+    armature = table.armature_kg_m2[rows]
+    if options.rotor_inertia_kg_m2 is not None:
+        armature = options.rotor_inertia_kg_m2 * np.square(table.ratio[rows])
+    foot_radius_m = DEFAULT.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
+    motor = actuator_map.motor
+    return RobotArrays(
+        thigh_length_m=thigh_m.copy(),
+        shank_length_m=shank_m.copy(),
+        body_mass_kg=np.stack([body.mass_kg for body in bodies], axis=1),
+        body_com_m=np.stack([body.com_m for body in bodies], axis=1),
+        body_inertia_kg_m2=np.stack([body.inertia_kg_m2 for body in bodies], axis=1),
+        foot_radius_m=np.full(len(values), foot_radius_m),
+        ratio=table.ratio[rows],
+        armature_kg_m2=armature,
+        peak_torque_n_m=table.peak_torque_n_m[rows],
+        continuous_torque_n_m=table.continuous_torque_n_m[rows],
+        no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
+        efficiency=table.efficiency[rows],
+        torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
+        winding_resistance_ohm=np.full(rows.shape, motor.winding_resistance_ohm),
+        reason=reason,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _ActuatorTable:
+    """The map's actuators as arrays of k rows; ``row`` leads from an interval of the map to its row."""
+
+    row: NDArray[np.intp]
+    mass: MassProperties
+    length_m: Floats
+    ratio: Floats
+    armature_kg_m2: Floats
+    peak_torque_n_m: Floats
+    continuous_torque_n_m: Floats
+    no_load_speed_rad_per_s: Floats
+    efficiency: Floats
+
+    def placed(self, rows: NDArray[np.intp], turn: Floats, z_mm: float) -> MassProperties:
+        """The chosen actuators in a body frame, a row a design."""
+        chosen = MassProperties(
+            mass_kg=self.mass.mass_kg[rows],
+            first_kg_m=self.mass.first_kg_m[rows],
+            second_kg_m2=self.mass.second_kg_m2[rows],
+        )
+        return _in_body(chosen, turn, z_mm)
+
+
+@lru_cache(maxsize=16)
+def _actuator_table(actuator_map: "ActuatorMap") -> _ActuatorTable:
+    actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
+    row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
+    masses = [total(part.mass_properties() for part in actuator.parts) for actuator in actuators]
+    return _ActuatorTable(
+        row=np.maximum(row, 0),
+        mass=MassProperties(
+            mass_kg=np.array([m.mass_kg for m in masses]),
+            first_kg_m=np.array([m.first_kg_m for m in masses]),
+            second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
+        ),
+        length_m=np.array([_length_m(a) for a in actuators]),
+        ratio=np.array([a.ratio for a in actuators]),
+        armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
+        peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
+        continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
+        no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
+        efficiency=np.array([a.efficiency for a in actuators]),
+    )
+
+
+def _missing(actuator_map: "ActuatorMap", intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
+    for joint in JOINTS:
+        if intervals[joint][i] < 0:
+            name = f"{joint}_ratio"
+            try:
+                actuator_map.lookup(float(values[i, NAMES.index(name)]))
+            except DesignError as error:
+                return f"{name}: {error}"
+    return ""
+
+
+def _upright(parts: tuple[Part, ...]) -> MassProperties:
+    """Parts that stand in a body's part frame, in the body frame."""
+    return _in_body(total(part.mass_properties() for part in parts), _UPRIGHT, 0.0)
+
+
+def _in_body(properties: MassProperties, turn: Floats, z_mm: Numbers) -> MassProperties:
+    """From a unit's frame to the body frame."""
+    move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * float(z_mm)])
+    return properties.placed(PART_TO_BODY @ turn, move)
+
+
+def _length_m(actuator: "Actuator") -> float:
+    """From the mounting face (z = 0) to the back of an actuator, which lies on the side of negative z."""
+    return -1e-3 * min(float(prism.z0_mm) for part in actuator.parts for prism in part.prisms)
