@@ -13,49 +13,38 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.errors import CalibrationError
 from pareto_monoped.records import checked, read_toml
+from pareto_monoped.robot import MassOptions
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
+Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
 _STRICT = ConfigDict(extra="forbid")
 
 DEFAULT = "reference"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mass:
-    """Masses that the robot's parts do not give.
+class EndStop:
+    """Range of one joint and the rubber bumper at each end.
+
+    A bumper is a spring-damper that hardens with compression, see ``SpringContact``: nothing jumps when it is met.
 
     Attributes:
-        base_structure_mass_kg: what the base weighs besides the actuators; None: the frame of the parts.
-        foot_mass_kg, foot_radius_m: the foot; None: the foot part.
-        link_mass_scale: factor on mass and inertia of both links.
-        rotor_inertia_kg_m2: of one motor, about its axis; None: the motor's.
-    """
-
-    __pydantic_config__ = _STRICT
-
-    base_structure_mass_kg: NotNegative | None = None
-    foot_mass_kg: Positive | None = None
-    foot_radius_m: Positive | None = None
-    link_mass_scale: Positive = 1.0
-    rotor_inertia_kg_m2: NotNegative | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EndStop:
-    """Range of one joint and the spring-damper at its ends.
-
-    ``impedance`` is MuJoCo's d, see ``SpringContact``; here the virtual inertia acts while the stop is touched.
+        lower_rad, upper_rad: where the bumpers are met.
+        width_rad: compression at which the stiffness and the damping are reached.
+        stiffness_n_m_per_rad, damping_n_m_s_per_rad: at that compression and beyond.
+        impedance: MuJoCo's d there.
     """
 
     __pydantic_config__ = _STRICT
 
     lower_rad: float
     upper_rad: float
+    width_rad: Positive
     stiffness_n_m_per_rad: Positive
     damping_n_m_s_per_rad: NotNegative
-    impedance: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.5
+    impedance: Impedance
 
     def __post_init__(self) -> None:
         """Refuse an empty range."""
@@ -103,15 +92,19 @@ class Drive:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpringContact:
-    """The foot as a spring-damper (Kelvin-Voigt) on the floor.
+    """The foot as a rubber spring-damper on the floor that hardens with compression.
+
+    MuJoCo's impedance rises linearly with the compression r up to ``impedance`` d at ``width_m`` w. With u = r / w the
+    normal force of a slow compression is k w u^3 (1 - d) / (1 - d u) up to w, so that force and damping set in smoothly
+    (as in the model of Hunt and Crossley, 1975); that smoothness is what makes the jump well-posed. While it touches,
+    the constraint adds a virtual mass d u / (1 - d u) / A, with A the inverse mass of the foot's body.
 
     Attributes:
-        stiffness_n_per_m, damping_n_s_per_m: normal to the floor.
-        impedance: MuJoCo's impedance d; the constraint adds a virtual mass d / (1 - d) / A, with A the inverse mass of
-            the foot's body, while it touches.
+        stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond.
+        width_m: that compression.
+        impedance: MuJoCo's d there.
         friction: Coulomb coefficient.
-        slip_ratio: tangential over normal damping (MuJoCo's ``impratio``); friction sets in over the slip speed
-            friction * normal force / (slip_ratio * damping_n_s_per_m).
+        slip_ratio: tangential over normal damping (MuJoCo's ``impratio``).
     """
 
     __pydantic_config__ = _STRICT
@@ -119,7 +112,8 @@ class SpringContact:
     kind: Literal["spring"]
     stiffness_n_per_m: Positive
     damping_n_s_per_m: Positive
-    impedance: Annotated[float, Field(gt=0.0, lt=1.0)]
+    width_m: Positive
+    impedance: Impedance
     friction: Positive
     slip_ratio: Positive = 1.0
 
@@ -133,19 +127,25 @@ class MujocoContact:
     kind: Literal["mujoco"]
     time_constant_s: Positive
     damping_ratio: Positive
-    impedance_min: Annotated[float, Field(gt=0.0, lt=1.0)]
-    impedance_max: Annotated[float, Field(gt=0.0, lt=1.0)]
+    impedance_min: Impedance
+    impedance_max: Impedance
     impedance_width_m: Positive
     friction: Positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGate:
-    """Torque whenever the foot touches the floor, decided at every step: the paper's words."""
+    """Torque whenever the foot touches the floor, decided at every step: the paper's words.
+
+    Attributes:
+        lags: whether the contact is that of the state before the last step, as MuJoCo's contact list has it after a
+            step, or that of the current state.
+    """
 
     __pydantic_config__ = _STRICT
 
     rule: Literal["contact"]
+    lags: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,7 +209,7 @@ class Calibration:
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
     version: Annotated[int, Field(ge=1)]
     description: str
-    mass: Mass
+    mass: MassOptions
     joints: Joints
     drive: Drive
     contact: Annotated[SpringContact | MujocoContact, Field(discriminator="kind")]

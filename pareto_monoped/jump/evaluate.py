@@ -11,7 +11,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot import RobotArrays, robot_arrays
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.search import ActuatorMap
@@ -119,8 +119,6 @@ class Evaluator:
             if reasons[i]:
                 table.fail(i, "bad_input", reasons[i])
         if len(sane):
-            from pareto_monoped.robot import robot_arrays
-
             robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
             _jump(robots, values[sane, 4:7], self.calibration, self.workers, table, sane)
         return table.evaluations()

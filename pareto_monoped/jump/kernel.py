@@ -22,18 +22,18 @@ Floats = NDArray[np.float64]
 
 # Columns of ``memory``, one row a jump. What follows ``_HIP`` is the knee's.
 (
-    STEPS, HEIGHT, CLEARANCE, LIFT_OFF_STEP, STOOD, OFF,
+    STEPS, HEIGHT, CLEARANCE, LIFT_OFF_STEP, STOOD, OFF, TOUCHED,
     ENERGY_HIP, ENERGY_KNEE, ABSORBED_HIP, ABSORBED_KNEE, LOST_HIP, LOST_KNEE, HEAT_J,
     PEAK_TORQUE_HIP, PEAK_TORQUE_KNEE, PEAK_SPEED_HIP, PEAK_SPEED_KNEE, PEAK_POWER_HIP, PEAK_POWER_KNEE,
     ACTIVE_STEPS, SATURATED_HIP, SATURATED_KNEE,
     SPEED_HIP, SPEED_KNEE, TORQUE_HIP, TORQUE_KNEE, JOINT_TORQUE_HIP, JOINT_TORQUE_KNEE,
     N_MEMORY,
-) = range(29)  # fmt: skip
+) = range(30)  # fmt: skip
 
 # Entries of ``settings``, the same for all jumps.
 (
-    REST_LENGTH, TIMESTEP, STEP_LIMIT, FADE_LENGTH, LATCH, LOSS_SPEED, VOLTAGE_LIMIT, N_SETTINGS,
-) = range(8)  # fmt: skip
+    REST_LENGTH, TIMESTEP, STEP_LIMIT, FADE_LENGTH, LATCH, LOSS_SPEED, VOLTAGE_LIMIT, LAGS, N_SETTINGS,
+) = range(9)  # fmt: skip
 
 # Values of ``status``.
 RUNNING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(6)
@@ -119,8 +119,11 @@ def _one(
             if in_air:
                 gate = 0.0
     else:
-        gate = 1.0 if touching else 0.0
-        in_air = not touching
+        # After a step MuJoCo's contact list still describes the state before it; a literal program reads that list.
+        listed = touching if settings[LAGS] == 0.0 or m[STEPS] == 1 else m[TOUCHED] > 0.0
+        m[TOUCHED] = 1.0 if touching else 0.0
+        gate = 1.0 if listed else 0.0
+        in_air = not listed
     if in_air and m[STOOD] > 0.0:
         m[OFF] = 1.0
         if dz <= 0.0:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, EndStop, SpringContact
-from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.pose import LEAST_IMPEDANCE, start_pose
 from pareto_monoped.robot import RobotArrays
 
 Floats = NDArray[np.float64]
@@ -19,8 +19,8 @@ Floats = NDArray[np.float64]
 # Body numbers in the model; the world is 0.
 BASE, THIGH, SHANK = 1, 2, 3
 FLOOR_GEOM, FOOT_GEOM = 0, 1
-# MuJoCo's default impedance for the parts of solimp that a constant impedance does not use.
-_WIDTH_M, _MIDPOINT, _POWER = 0.001, 0.5, 2.0
+# Midpoint and power of MuJoCo's impedance curve: a straight line, and its default sigmoid.
+_LINEAR, _SIGMOID = (0.5, 1.0), (0.5, 2.0)
 
 
 def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comment: str = "") -> str:
@@ -76,9 +76,10 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
 def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweight0: Floats) -> dict[str, Floats]:
     """``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2).
 
-    MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a) with impedance d, a fixed inverse mass A
-    and (k', b') = -solref / d (its documentation, "Computation: constraint model"). For a spring of k newtons a metre
-    therefore solref = -k A (1 - d), and likewise for the damper.
+    MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a), with impedance d (D at full compression),
+    a fixed inverse mass A, k' = -solref[0] d / D^2 and b' = -solref[1] / D (its documentation, "Computation: constraint
+    model" and "Solver parameters"). For k newtons a metre at full compression therefore solref[0] = -k A (1 - D), and
+    likewise for the damper.
     """
     result = {}
     contact = calibration.contact
@@ -112,21 +113,21 @@ def _document(
     contact = calibration.contact
     if isinstance(contact, SpringContact):
         foot_solref = springs["geom_solref"] if springs else (-1.0, -1.0)
-        solimp = (contact.impedance, contact.impedance, _WIDTH_M, _MIDPOINT, _POWER)
+        solimp = (LEAST_IMPEDANCE, contact.impedance, contact.width_m, *_LINEAR)
         slip_ratio, cone = contact.slip_ratio, "elliptic"
     else:
         foot_solref = (contact.time_constant_s, contact.damping_ratio)
-        solimp = (contact.impedance_min, contact.impedance_max, contact.impedance_width_m, _MIDPOINT, _POWER)
+        solimp = (contact.impedance_min, contact.impedance_max, contact.impedance_width_m, *_SIGMOID)
         slip_ratio, cone = 1.0, "pyramidal"
 
     def hinge(k: int, name: str, stop: EndStop | None) -> str:
         limit = ""
         if stop is not None:
             solref = springs["jnt_solref"][k] if springs else (-1.0, -1.0)
-            d = stop.impedance
+            solimp = (LEAST_IMPEDANCE, stop.impedance, stop.width_rad, *_LINEAR)
             limit = (
                 f' limited="true" range="{_n(stop.lower_rad, stop.upper_rad)}" solreflimit="{_n(*solref)}"'
-                f' solimplimit="{_n(d, d, _WIDTH_M, _MIDPOINT, _POWER)}"'
+                f' solimplimit="{_n(*solimp)}"'
             )
         armature, damping = fields["dof_armature"][-2 + k], joints.damping_n_m_s_per_rad
         return (

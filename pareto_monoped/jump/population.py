@@ -164,6 +164,8 @@ def settings(calibration: Calibration) -> Floats:
     result[k.STEP_LIMIT] = round(simulation.time_limit_s / simulation.timestep_s)
     if isinstance(gate, FadeGate):
         result[k.FADE_LENGTH], result[k.LATCH] = gate.length_m, float(gate.latch)
+    else:
+        result[k.LAGS] = float(gate.lags)
     result[k.LOSS_SPEED] = calibration.drive.loss_speed_rad_per_s
     result[k.VOLTAGE_LIMIT] = float(calibration.drive.voltage_limit)
     return result

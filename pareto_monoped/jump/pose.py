@@ -9,6 +9,9 @@ from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, SpringContact
 from pareto_monoped.robot import RobotArrays
 
+LEAST_IMPEDANCE = 0.0001
+"""MuJoCo's smallest impedance (mjMINIMP): a spring that hardens has this one at first touch."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartPose:
@@ -33,7 +36,7 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
     radius = robots.foot_radius_m
     sunk = np.zeros(len(robots))
     if isinstance(calibration.contact, SpringContact):
-        sunk = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2 / calibration.contact.stiffness_n_per_m
+        sunk = compression_m(calibration.contact, robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2)
     length = BASE_START_HEIGHT_M - radius + sunk
     thigh, shank = robots.thigh_length_m, robots.shank_length_m
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -62,3 +65,21 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
     return StartPose(
         hip_rad=np.where(stands, hip, np.nan), knee_rad=np.where(stands, knee, np.nan), reason=tuple(reason)
     )
+
+
+def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far the foot's rubber gives under a steady force, shape (n,), by bisection.
+
+    The force is that of MuJoCo's constraint without velocity and acceleration, see ``model.spring_fields``:
+    k (1 - D) d^2 / (D^2 (1 - d)) r.
+    """
+    full, least = contact.impedance, LEAST_IMPEDANCE
+    low = np.zeros_like(force_n)
+    # The secant stiffness rises to k at the full width and stays there.
+    high = np.maximum(contact.width_m, force_n / contact.stiffness_n_per_m)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        d = least + (full - least) * np.minimum(middle / contact.width_m, 1.0)
+        force = contact.stiffness_n_per_m * (1.0 - full) * d**2 / (full**2 * (1.0 - d)) * middle
+        low, high = np.where(force < force_n, middle, low), np.where(force < force_n, high, middle)
+    return 0.5 * (low + high)
