@@ -1,0 +1,147 @@
+"""``front`` and ``pick``, and the options that select one design, which ``export`` shares."""
+
+import functools
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pareto_monoped.design import NAMES, VARIABLES
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from pareto_monoped.pareto.pick import Selector
+
+COLUMNS = ("trial", "height_m", "energy_j", *NAMES)
+"""What ``front`` and ``pick`` give of each design."""
+
+
+def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that select one design; ``command`` gets them as one ``selector`` keyword.
+
+    Exactly one of them must be given, unless the command sets ``selector_optional`` on its click parameters by taking
+    ``--front`` or the like: then it reads ``selector`` as None.
+    """
+
+    @click.option("--min-height", type=float, metavar="M", help="Cheapest design that jumps at least M metres.")
+    @click.option("--max-energy", type=float, metavar="J", help="Highest jump on at most J joules.")
+    @click.option("--knee", is_flag=True, help="Where the front bends most.")
+    @click.option("--weights", metavar="WH,WE", help="Best weighted sum of scaled height and energy.")
+    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="One trial by its number.")
+    @functools.wraps(command)
+    def wrapper(
+        *arguments: Any,
+        min_height: float | None,
+        max_energy: float | None,
+        knee: bool,
+        weights: str | None,
+        trial: int | None,
+        **others: Any,
+    ) -> Any:
+        return command(*arguments, selector=_selector(min_height, max_energy, knee, weights, trial), **others)
+
+    return wrapper
+
+
+def _selector(
+    min_height: float | None, max_energy: float | None, knee: bool, weights: str | None, trial: int | None
+) -> "Selector | None":
+    from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, Trial, Weights
+
+    chosen: list[Selector] = []
+    if min_height is not None:
+        chosen.append(MinHeight(height_m=_finite("--min-height", min_height)))
+    if max_energy is not None:
+        chosen.append(MaxEnergy(energy_j=_finite("--max-energy", max_energy)))
+    if knee:
+        chosen.append(Knee())
+    if weights is not None:
+        height, energy = _pair(weights)
+        chosen.append(Weights(height=height, energy=energy))
+    if trial is not None:
+        chosen.append(Trial(number=trial))
+    if len(chosen) > 1:
+        raise click.UsageError(
+            f"{len(chosen)} selectors given: must be one of --min-height, --max-energy, --knee, --weights, --trial; "
+            "drop the others"
+        )
+    return chosen[0] if chosen else None
+
+
+def required(selector: "Selector | None") -> "Selector":
+    """The selector, or a usage error that names the options."""
+    if selector is None:
+        raise click.UsageError(
+            "no selector given: must be one of --min-height M, --max-energy J, --knee, --weights WH,WE, --trial N; "
+            "add one"
+        )
+    return selector
+
+
+def _finite(option: str, value: float) -> float:
+    import math
+
+    if not math.isfinite(value):
+        raise click.UsageError(f"{option} = {value}: must be a finite number; correct it")
+    return value
+
+
+def _pair(text: str) -> tuple[float, float]:
+    try:
+        height, energy = (float(part) for part in text.split(","))
+    except ValueError:
+        raise click.UsageError(f"--weights = {text!r}: must be two numbers WH,WE; give for example 1,1") from None
+    return height, energy
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
+@click.option("--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write them to FILE.")
+@click.option("--all", "include_all", is_flag=True, help="Keep designs on it that failed their audit.")
+def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> None:
+    """List the non-dominated designs, from the lowest jump to the highest."""
+    from pareto_monoped.study.reader import read_study
+
+    rows = read_study(db).front(include_ill_conditioned=include_all)[list(COLUMNS)]
+    if csv_file is not None:
+        from pareto_monoped.files import write_text
+
+        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"))
+        click.echo(f"wrote {csv_file} ({len(rows)} designs)", err=True)
+    if as_json:
+        click.echo(json.dumps(rows.to_dict(orient="records"), indent=2))
+    elif csv_file is None:
+        _print_table(rows)
+
+
+def _print_table(rows: "DataFrame") -> None:
+    symbols = [variable.symbol for variable in VARIABLES]
+    click.echo(f"{'trial':>7} {'height m':>9} {'energy J':>9} " + " ".join(f"{symbol:>7}" for symbol in symbols))
+    for _, row in rows.iterrows():
+        values = " ".join(f"{row[name]:7.3f}" for name in NAMES)
+        click.echo(f"{int(row['trial']):7d} {row['height_m']:9.4f} {row['energy_j']:9.3f} {values}")
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@selector_options
+@click.option("--json", "as_json", is_flag=True, help="Print the design as JSON.")
+def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
+    """Pick one design off the front, and say why that one."""
+    from pareto_monoped.pareto.pick import pick as pick_design
+    from pareto_monoped.study.reader import read_study
+
+    wanted = required(selector)
+    rows = read_study(db).front()
+    picked = pick_design(rows, wanted)
+    row = rows.loc[rows["trial"] == picked.trial, list(COLUMNS)].to_dict(orient="records")[0]
+    if as_json:
+        click.echo(json.dumps(row | {"why": picked.why}, indent=2))
+        return
+    click.echo(picked.why)
+    for name in COLUMNS[1:]:
+        click.echo(f"{name:<34} {row[name]:.6g}")

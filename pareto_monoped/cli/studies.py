@@ -1,0 +1,161 @@
+"""``run``, ``resume`` and ``status``."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.run import Progress, RunSummary
+
+_evaluations = click.option(
+    "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, in place of the study's."
+)
+_workers = click.option(
+    "--workers", type=click.IntRange(min=1), metavar="N", help="Threads that simulate.  [all cores]"
+)
+_SECONDS_BETWEEN_LINES = 5.0
+_REASONS = {
+    "budget": "the budget is used up",
+    "wall_time": "the wall time is used up",
+    "plateau": "the hypervolume has stopped growing",
+    "exhausted": "the algorithm has no more designs",
+    "interrupted": "interrupted; 'resume' goes on with it",
+}
+
+
+@click.command()
+@click.argument("study_file", metavar="STUDY.toml", type=click.Path(path_type=Path))
+@_evaluations
+@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Random seed, in place of the study's.")
+@_workers
+@click.option("--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [STUDY.db beside STUDY.toml]")
+def run(study_file: Path, evaluations: int | None, seed: int | None, workers: int | None, db: Path | None) -> int:
+    """Run a study, or go on with it where it stopped.
+
+    Every evaluated design is stored; the study can be stopped at any moment and run again.
+    """
+    from pareto_monoped.study.definition import load_study
+    from pareto_monoped.study.run import run as run_study
+
+    study = load_study(study_file)
+    target = db or study_file.with_suffix(".db")
+    with progress_reports() as progress:
+        summary = run_study(
+            study, target, evaluations=evaluations, seed=seed, workers=workers, progress=progress, notify=_say
+        )
+    return _finish(summary)
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@_evaluations
+@_workers
+def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
+    """Go on with a study from its database alone; N is the new total."""
+    from pareto_monoped.study.run import resume as resume_study
+
+    with progress_reports() as progress:
+        summary = resume_study(db, evaluations=evaluations, workers=workers, progress=progress, notify=_say)
+    return _finish(summary)
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
+def status(db: Path, as_json: bool) -> None:
+    """Show how far a study is, its hypervolume, rate and settings."""
+    from pareto_monoped.study.status import status as study_status
+
+    facts = study_status(db)
+    if as_json:
+        click.echo(json.dumps(facts, indent=2))
+        return
+    rate = facts["evaluations_per_second"]
+    at_height = facts["least_energy_at_0_8_m_j"]
+    ended = facts["state"] == "finished" and facts["stop_reason"]
+    lines = {
+        "study": facts["name"],
+        "state": facts["state"]
+        + (f" ({_REASONS[ended]})" if ended else "")
+        + (f" (process {facts['process']})" if facts["process"] else ""),
+        "motor, calibration": f"{facts['motor']}, {facts['calibration']}",
+        "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
+        "evaluations": f"{facts['evaluations']} of {facts['budget']}",
+        "feasible": f"{facts['feasible']} ({facts['infeasible']} infeasible, {facts['failed']} failed)",
+        "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",
+        "hypervolume": f"{facts['hypervolume']:.4f} m J above "
+        f"({facts['reference_point']['height_m']:g} m, {facts['reference_point']['energy_j']:g} J)",
+        "least energy at 0.8 m": f"{at_height:.2f} J" if at_height is not None else "not reached",
+        "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
+        "hash": facts["hash"][:16],
+    }
+    for name, value in lines.items():
+        click.echo(f"{name:<22} {value}")
+
+
+def _say(line: str) -> None:
+    click.echo(line, err=True)
+
+
+def _finish(summary: "RunSummary") -> int:
+    _say(
+        f"{summary.db}: {summary.evaluations} evaluations ({summary.new_evaluations} new, {summary.seconds:.1f} s), "
+        f"{_REASONS[summary.stop_reason]}"
+    )
+    click.echo(
+        f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} m J"
+        + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
+    )
+    return 130 if summary.stop_reason == "interrupted" else 0
+
+
+@contextmanager
+def progress_reports() -> "Iterator[Callable[[Progress], None]]":
+    """A callback that shows progress on stderr: a live bar on a terminal, else a line every few seconds."""
+    import sys
+
+    if sys.stderr.isatty():
+        yield from _bar()
+    else:
+        yield _line_reports()
+
+
+def _bar() -> "Iterator[Callable[[Progress], None]]":
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as Bar
+
+    with Bar(BarColumn(bar_width=16), TextColumn("{task.description}"), console=Console(stderr=True)) as bar:
+        task = bar.add_task("simulating", total=None)
+
+        def show(progress: "Progress") -> None:
+            bar.update(task, total=progress.budget, completed=progress.evaluations, description=_described(progress))
+
+        yield show
+
+
+def _line_reports() -> "Callable[[Progress], None]":
+    import time
+
+    last = time.monotonic()
+
+    def show(progress: "Progress") -> None:
+        nonlocal last
+        if time.monotonic() - last >= _SECONDS_BETWEEN_LINES:
+            last = time.monotonic()
+            _say(_described(progress))
+
+    return show
+
+
+def _described(progress: "Progress") -> str:
+    energy = f"{progress.least_energy_j:.2f} J at 0.8 m" if progress.least_energy_j is not None else "0.8 m not reached"
+    minutes, seconds = divmod(round(progress.seconds_left), 60)
+    return (
+        f"{progress.evaluations}/{progress.budget}, {progress.per_second:.0f}/s, {minutes}:{seconds:02d} left, "
+        f"hypervolume {progress.hypervolume:.2f}, {energy}"
+    )

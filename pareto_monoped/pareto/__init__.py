@@ -1,0 +1,1 @@
+"""The height-energy front: dominance, indicators, and picking one design."""

@@ -1,0 +1,125 @@
+"""Opening study databases: is it one, is it whole, may it be written; SQLite's errors become ours.
+
+A database may come from a stranger. It is read with plain SELECTs on known tables, with SQLite's own defences on
+(no trusted schema, no views or triggers, no extensions), and everything in it is numbers, text and JSON.
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pareto_monoped.errors import DatabaseError
+
+FORMAT = 1
+"""Version of our tables; a reader refuses a later one."""
+
+TABLES = ("monoped_meta", "monoped_checkpoint", "monoped_history", "monoped_trials", "monoped_audits")
+_OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
+
+
+@contextmanager
+def translated(path: Path) -> Iterator[None]:
+    """Turn SQLite's exceptions into one clear ``DatabaseError``."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise DatabaseError(f"study database {str(path)!r}: {_explained(error)}") from error
+
+
+def _explained(error: sqlite3.Error) -> str:
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    match code:
+        case sqlite3.SQLITE_FULL:
+            return "the disk is full; make room and resume, all acknowledged trials are safe"
+        case sqlite3.SQLITE_IOERR:
+            return (
+                f"cannot be written or read ({error}); check the disk's free space and health and resume, "
+                "all acknowledged trials are safe"
+            )
+        case sqlite3.SQLITE_READONLY:
+            return "is read-only; allow writing, or run on a copy"
+        case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
+            return "is locked by another program; close it and try again"
+        case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
+            return f"is damaged ({error}); restore a copy, or move it away and run the study again"
+        case sqlite3.SQLITE_CANTOPEN:
+            return "cannot be opened; check that the folder exists and may be written to"
+        case _:
+            return f"cannot be used ({error}); restore a copy, or move it away and run the study again"
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[sqlite3.Connection]:
+    """A read-only connection to a study database, all reads of which see the same moment.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    if not path.is_file():
+        raise DatabaseError(f"study database {str(path)!r}: no such file; check the path, or run a study first")
+    with path.open("rb") as stream:
+        header = stream.read(16)
+    if header != b"SQLite format 3\x00":
+        raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
+    with translated(path):
+        connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=10.0)
+        try:
+            connection.execute("PRAGMA trusted_schema = OFF")
+            connection.execute("PRAGMA query_only = ON")
+            connection.execute("BEGIN")
+            check(connection, path)
+            yield connection
+        finally:
+            connection.close()
+
+
+def _address(path: Path) -> str:
+    address = f"{path.resolve().as_uri()}?mode=ro"
+    wal = Path(f"{path}-wal")
+    # A database in WAL mode on a medium that cannot be written has no shared memory file; without a log there is
+    # nothing in it but the file itself, and SQLite may take it as unchanging.
+    if not (wal.exists() and wal.stat().st_size) and not _folder_writable(path):
+        address += "&immutable=1"
+    return address
+
+
+def _folder_writable(path: Path) -> bool:
+    import os
+
+    return os.access(path.resolve().parent, os.W_OK)
+
+
+def check(connection: sqlite3.Connection, path: Path) -> None:
+    """Refuse what is not a study database of a version that this package knows.
+
+    Raises:
+        DatabaseError: not a study, or of a newer version.
+    """
+    kinds = connection.execute("SELECT type, name FROM sqlite_master").fetchall()
+    tables = {name for kind, name in kinds if kind == "table"}
+    active = [name for kind, name in kinds if kind in ("view", "trigger")]
+    missing = [name for name in (*_OPTUNA_TABLES, *TABLES) if name not in tables]
+    if missing:
+        hint = " (it is a study of Optuna, but not of this package)" if "studies" in tables else ""
+        raise DatabaseError(
+            f"study database {str(path)!r}: is not a study database, it lacks the table {missing[0]!r}{hint}; "
+            "give a file that 'run' made"
+        )
+    if active:
+        raise DatabaseError(
+            f"study database {str(path)!r}: holds the view or trigger {active[0]!r}, which no study has; "
+            "do not trust it, or drop that from it"
+        )
+    row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
+    version = row[0] if row else None
+    if not isinstance(version, str) or not version.isascii() or not version.isdigit():
+        raise DatabaseError(
+            f"study database {str(path)!r}: its format is {version!r}, must be a version number; it is damaged, "
+            "restore a copy"
+        )
+    if int(version) > FORMAT:
+        raise DatabaseError(
+            f"study database {str(path)!r}: format {version} is newer than this version's {FORMAT}; "
+            "update pareto-monoped"
+        )

@@ -1,0 +1,268 @@
+"""What a study is, read from its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.design import BASE_START_HEIGHT_M, NAMES, PAPER_CASES, VARIABLES
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.records import checked, read_toml
+from pareto_monoped.study.settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds:
+    """A free variable's range."""
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraints:
+    """What a design must hold to be feasible; None switches a limit off.
+
+    ``min_height_m`` keeps robots that only stand off the front (they spend nothing): 0.55 m is a jump of 5 cm.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    min_height_m: Annotated[float, Field(ge=BASE_START_HEIGHT_M, le=10.0)] = 0.55
+    max_energy_j: Positive | None = None
+    max_mass_kg: Positive | None = None
+    min_foot_clearance_m: Annotated[float, Field(gt=0.0, le=10.0)] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objectives:
+    """Both objectives and their directions, which are what this package is about; the table documents them."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    height_m: Literal["maximise"] = "maximise"
+    energy_j: Literal["minimise"] = "minimise"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stop:
+    """When to end before the budget is used up.
+
+    Attributes:
+        wall_time_s: running time over all sessions.
+        plateau_evaluations: end when over this many evaluations ...
+        plateau_growth: ... the hypervolume has grown by less than this share.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    wall_time_s: Positive | None = None
+    plateau_evaluations: Annotated[int, Field(ge=1)] | None = None
+    plateau_growth: Annotated[float, Field(ge=0.0, le=1.0)] = 0.001
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Reference:
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    # The least height of the default constraint, and more than the hungriest designs of the VT8020 spend.
+    height_m: Annotated[float, Field(ge=0.0, le=10.0)] = 0.55
+    energy_j: Positive = 100.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _File:
+    """The study file's keys but for the tables that are read apart."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    description: Annotated[str, Field(max_length=2000)] = ""
+    case: Literal["A", "B", "C"] | None = None
+    motor: Annotated[str, Field(min_length=1, max_length=1000)] = "VT8020"
+    calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
+    evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
+    variables: dict[str, Any] = field(default_factory=dict)
+    objectives: Objectives = field(default_factory=Objectives)
+    constraints: Constraints = field(default_factory=Constraints)
+    reference_point: _Reference = field(default_factory=_Reference)
+    stop: Stop = field(default_factory=Stop)
+    algorithm: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """One study, complete: every variable is free within ``Bounds`` or fixed to a number, in the order of ``NAMES``."""
+
+    name: str
+    description: str
+    case: str | None
+    motor: str
+    calibration: str
+    evaluations: int
+    seed: int
+    variables: Mapping[str, Bounds | float]
+    objectives: Objectives
+    constraints: Constraints
+    reference_point: ReferencePoint
+    stop: Stop
+    algorithm: AlgorithmSettings
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the free variables, in the order of ``NAMES``."""
+        return tuple(name for name in NAMES if isinstance(self.variables[name], Bounds))
+
+    @property
+    def lower(self) -> NDArray[np.float64]:
+        """Lower bounds of all seven variables, shape (7,); a fixed variable's value."""
+        return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
+
+    @property
+    def upper(self) -> NDArray[np.float64]:
+        """Upper bounds of all seven variables, shape (7,); a fixed variable's value."""
+        return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
+
+    def _ordered(self) -> list[Bounds | float]:
+        return [self.variables[name] for name in NAMES]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The study as plain values in the form of its file; ``study_from_dict`` reads it back."""
+        plain = asdict(self)
+        plain["variables"] = {
+            name: asdict(v) if isinstance(v, Bounds) else v for name, v in zip(NAMES, self._ordered(), strict=True)
+        }
+        return plain
+
+
+def load_study(path: Path, *, evaluations: int | None = None, seed: int | None = None) -> Study:
+    """The study in a TOML file.
+
+    Args:
+        path: the file.
+        evaluations: a budget that replaces the file's.
+        seed: a seed that replaces the file's.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, impossible bounds, or no readable TOML.
+    """
+    values = read_toml(path, what="study file", error=StudyError)
+    # The file has to stand alone: a motor or calibration file is named relative to the study that uses it.
+    for key in ("motor", "calibration"):
+        name = values.get(key)
+        if isinstance(name, str) and name.endswith(".toml"):
+            values[key] = str((path.parent / name).resolve())
+    if evaluations is not None:
+        values["evaluations"] = evaluations
+    if seed is not None:
+        values["seed"] = seed
+    return study_from_dict(values, source=f"study file {str(path)!r}")
+
+
+def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
+    """A study from plain values.
+
+    Args:
+        values: the keys of a study file.
+        source: where they come from, for messages.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, or impossible bounds.
+    """
+    file = checked(_File, values, source=source, error=StudyError)
+    return Study(
+        name=file.name,
+        description=file.description,
+        case=file.case,
+        motor=file.motor,
+        calibration=file.calibration,
+        evaluations=file.evaluations,
+        seed=file.seed,
+        variables=_variables(file, source),
+        objectives=file.objectives,
+        constraints=file.constraints,
+        reference_point=ReferencePoint(height_m=file.reference_point.height_m, energy_j=file.reference_point.energy_j),
+        stop=file.stop,
+        algorithm=_algorithm(file.algorithm, source),
+    )
+
+
+def _algorithm(table: Mapping[str, Any], source: str) -> AlgorithmSettings:
+    if not table:
+        return EvolutionSettings(name="nsga2")
+    name = table.get("name")
+    kind = ALGORITHMS.get(name) if isinstance(name, str) else None
+    if kind is None:
+        allowed = f"one of {', '.join(ALGORITHMS)}"
+        raise StudyError(f"{source}: {complaint('algorithm.name', name, allowed, 'correct it')}")
+    settings: AlgorithmSettings = checked(kind, table, source=f"{source}, table [algorithm]", error=StudyError)
+    if isinstance(settings, WeightedSettings):
+        for key, value in settings.start.items():
+            if key not in NAMES:
+                allowed = f"one of {', '.join(NAMES)}"
+                raise StudyError(f"{source}: {complaint('variable in algorithm.start', key, allowed, 'correct it')}")
+            _number(f"{source}: algorithm.start.{key}", key, value)
+    return settings
+
+
+def _variables(file: _File, source: str) -> dict[str, Bounds | float]:
+    for name in file.variables:
+        if name not in NAMES:
+            allowed = f"one of {', '.join(NAMES)}"
+            raise StudyError(f"{source}: {complaint('variable', name, allowed, 'correct the name')}")
+    chosen: dict[str, Bounds | float] = {}
+    for variable in VARIABLES:
+        given = file.variables.get(variable.name)
+        if given is not None:
+            chosen[variable.name] = _variable(variable.name, given, source)
+        elif file.case is None or variable.name in PAPER_CASES[file.case].free:
+            chosen[variable.name] = Bounds(lower=variable.lower, upper=variable.upper)
+        else:
+            chosen[variable.name] = getattr(PAPER_CASES[file.case].design, variable.name)
+    if not any(isinstance(value, Bounds) for value in chosen.values()):
+        raise StudyError(f"{source}: variables: all seven are fixed, at least one must be free; give one bounds")
+    longest = sum(v.upper if isinstance(v, Bounds) else v for v in (chosen[NAMES[0]], chosen[NAMES[1]]))
+    if longest <= BASE_START_HEIGHT_M:
+        raise StudyError(
+            f"{source}: thigh_length_m + shank_length_m = {longest:g} at most: must exceed the start height of "
+            f"{BASE_START_HEIGHT_M:g} m; allow longer links"
+        )
+    return chosen
+
+
+def _variable(name: str, given: Any, source: str) -> Bounds | float:
+    key = f"{source}: variables.{name}"
+    if isinstance(given, Mapping):
+        if set(given) != {"lower", "upper"}:
+            raise StudyError(f"{key} has the keys {sorted(map(str, given))}; must be lower and upper; correct them")
+        bounds = Bounds(
+            lower=_number(f"{key}.lower", name, given["lower"]), upper=_number(f"{key}.upper", name, given["upper"])
+        )
+        if bounds.lower >= bounds.upper:
+            raise StudyError(
+                f"{key}: lower = {bounds.lower:g}, upper = {bounds.upper:g}: lower must be below upper; "
+                "correct them, or fix the variable to a number"
+            )
+        return bounds
+    return _number(key, name, given)
+
+
+_LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0)}
+"""Unit -> range beyond which a length or a ratio is a slip of the pen; controller gains may be any from 0 up."""
+
+
+def _number(key: str, name: str, given: Any) -> float:
+    unit = next(variable.unit for variable in VARIABLES if variable.name == name)
+    low, high = _LIMITS.get(unit, (0.0, 1e6))
+    allowed = f"a number from {low:g} to {high:g}"
+    if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
+        raise StudyError(complaint(key, given, allowed, "correct it"))
+    return float(given)

@@ -1,0 +1,95 @@
+"""pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2 behind the ask-and-tell face."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from pymoo.algorithms.base.genetic import GeneticAlgorithm
+from pymoo.core.population import Population
+from pymoo.core.problem import Problem
+from pymoo.core.termination import NoTermination
+from pymoo.operators.crossover.sbx import SBX
+from pymoo.operators.mutation.pm import PM
+
+from pareto_monoped.study.algorithms import (
+    Floats,
+    Proposal,
+    Scores,
+    Space,
+    generator_state,
+    set_generator_state,
+)
+from pareto_monoped.study.settings import EvolutionSettings
+
+
+class Evolution:
+    """A genetic algorithm of pymoo.
+
+    All three keep nothing between generations but the population with its ranks and crowding distances, the
+    generation count and the random generator, so that is the state.
+    """
+
+    def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
+        self._algorithm = _algorithm(settings, seed)
+        problem = Problem(n_var=len(space.names), n_obj=2, n_ieq_constr=1, xl=space.lower, xu=space.upper)
+        self._algorithm.setup(problem, termination=NoTermination())
+        self._asked: Population = Population.empty()
+
+    def ask(self) -> Proposal | None:
+        """The first population, or the offspring of the present one; None if pymoo finds no new offspring."""
+        asked = self._algorithm.ask()
+        if asked is None:
+            return None
+        self._asked = asked
+        return Proposal(values=self._asked.get("X").astype(float))
+
+    def tell(self, scores: Scores) -> None:
+        """Let the fittest survive; designs that violate constraints rank behind all others, by their violation."""
+        self._asked.set("F", scores.minimised())
+        self._asked.set("G", scores.violation[:, None])
+        self._algorithm.tell(infills=self._asked)
+
+    def state(self) -> dict[str, Any]:
+        """Population, ranks, crowding distances, generation count, random generator."""
+        state: dict[str, Any] = {"generator": generator_state(self._algorithm.random_state)}
+        if self._algorithm.is_initialized:
+            population = self._algorithm.pop
+            state["iteration"] = self._algorithm.n_iter
+            for key in ("X", "F", "G"):
+                state[key] = population.get(key).astype(float).tolist()
+            for key in ("rank", "crowding"):
+                # Infeasible survivors have neither rank nor crowding.
+                state[key] = [None if value is None else float(value) for value in population.get(key)]
+        return state
+
+    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+        """Set all of the state; the history is not needed."""
+        algorithm = self._algorithm
+        set_generator_state(algorithm.random_state, state["generator"])
+        if "X" not in state:
+            return
+        arrays = {key: np.array(state[key], dtype=np.float64) for key in ("X", "F", "G")}
+        population = Population.new(**arrays)
+        for key in ("rank", "crowding"):
+            for individual, value in zip(population, state[key], strict=True):
+                if value is not None:
+                    individual.set(key, int(value) if key == "rank" else value)
+        algorithm._initialize()
+        algorithm.pop = population
+        algorithm.n_iter = int(state["iteration"])
+        algorithm.is_initialized = True
+
+
+def _algorithm(settings: EvolutionSettings, seed: int) -> GeneticAlgorithm:
+    from pymoo.algorithms.moo.age2 import AGEMOEA2
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.algorithms.moo.sms import SMSEMOA
+
+    kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
+    # pymoo's default operators are shared between instances; own ones keep two studies of one process apart.
+    return kind(
+        pop_size=settings.population,
+        crossover=SBX(prob=settings.crossover_probability, eta=settings.crossover_eta),
+        mutation=PM(eta=settings.mutation_eta),
+        seed=seed,
+    )

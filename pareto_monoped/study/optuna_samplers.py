@@ -1,0 +1,103 @@
+"""Optuna's NSGA-II and TPE samplers behind the ask-and-tell face."""
+
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import optuna
+
+from pareto_monoped.study.algorithms import Floats, Proposal, Scores, Space
+from pareto_monoped.study.settings import OptunaSettings
+
+
+class OptunaSampler:
+    """A sampler of Optuna on a study in memory.
+
+    Optuna keeps what its samplers learn in the study's trials, and only the random generator in the sampler. So each
+    generation gets a new sampler whose seed follows from the study's seed and the generation's number: then the trials
+    are the whole state, and a study rebuilt from them goes on exactly.
+    """
+
+    def __init__(self, space: Space, settings: OptunaSettings, seed: int) -> None:
+        self._settings = settings
+        self._seed = seed
+        self._generation = 0
+        self._distributions: dict[str, optuna.distributions.BaseDistribution] = {
+            name: optuna.distributions.FloatDistribution(low, high)
+            for name, low, high in zip(space.names, space.lower.tolist(), space.upper.tolist(), strict=True)
+        }
+        self._asked: list[optuna.trial.Trial] = []
+        with _quiet():
+            self._study = optuna.create_study(directions=["maximize", "minimize"], sampler=self._sampler())
+
+    def ask(self) -> Proposal:
+        """The sampler's next designs."""
+        with _quiet():
+            self._study.sampler = self._sampler()
+            self._asked = [self._study.ask(self._distributions) for _ in range(self._settings.batch)]
+        values = [[trial.params[name] for name in self._distributions] for trial in self._asked]
+        return Proposal(values=np.array(values, dtype=np.float64))
+
+    def tell(self, scores: Scores) -> None:
+        """Complete the asked trials; the violation is told as Optuna's constraint."""
+        objectives = scores.minimised()
+        with _quiet():
+            for trial, (minus_height, energy), violation in zip(
+                self._asked, objectives.tolist(), scores.violation.tolist(), strict=True
+            ):
+                trial.set_constraint("violation", violation)
+                self._study.tell(trial, [-minus_height, energy])
+        self._generation += 1
+
+    def state(self) -> dict[str, Any]:
+        """The number of generations; the trials are in the database."""
+        return {"generation": self._generation}
+
+    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+        """Add the trials as they were."""
+        with _quiet():
+            for generation, (values, scores) in enumerate(told):
+                self._add(generation, values, scores)
+                sampler = self._study.sampler
+                if isinstance(sampler, optuna.samplers.NSGAIISampler):
+                    # Optuna remembers the parents of each generation from when it first needs them; from the last
+                    # one, without this, it would recurse through all generations.
+                    sampler.get_parent_population(self._study, generation)
+        self._generation = int(state["generation"])
+
+    def _add(self, generation: int, values: Floats, scores: Scores) -> None:
+        for row, (minus_height, energy), violation in zip(
+            values.tolist(), scores.minimised().tolist(), scores.violation.tolist(), strict=True
+        ):
+            trial = optuna.trial.create_trial(
+                params=dict(zip(self._distributions, row, strict=True)),
+                distributions=self._distributions,
+                values=[-minus_height, energy],
+                constraints={"violation": violation},
+                # Where NSGAIISampler notes a trial's generation; other samplers pass it over.
+                system_attrs={"NSGAIISampler:generation": generation},
+            )
+            self._study.add_trial(trial)
+
+    def _sampler(self) -> optuna.samplers.BaseSampler:
+        seed = int(np.random.SeedSequence([self._seed, self._generation]).generate_state(1)[0])
+        if self._settings.name == "optuna_nsga2":
+            return optuna.samplers.NSGAIISampler(population_size=self._settings.batch, seed=seed)
+        # The whole batch is asked for before any of it is told: pending trials count as bad (constant liar), so that
+        # the designs of a batch keep apart.
+        return optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """No log line a trial, and no warning that an option is experimental: both are choices made here."""
+    verbosity = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+            yield
+    finally:
+        optuna.logging.set_verbosity(verbosity)

@@ -1,0 +1,65 @@
+"""What decides a study's results: settings, contents of motor and calibration, versions; their hash and differences."""
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+from typing import Any
+
+from pareto_monoped import __version__
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.settings import EvolutionSettings, OptunaSettings, WeightedSettings
+
+_NOT_RESULTS = ("description", "evaluations", "stop")
+"""Keys of a study that say when it ends or what it is for, not which trials it has."""
+
+
+def versions(study: Study) -> dict[str, str]:
+    """Versions of the packages that decide the trials of ``study``."""
+    names = ["mujoco", "numba", "numpy"]
+    match study.algorithm:
+        case EvolutionSettings():
+            names += ["pymoo"]
+        case OptunaSettings():
+            names += ["optuna"]
+        case WeightedSettings():
+            names += ["cma"]
+    return {"pareto-monoped": __version__} | {name: version(name) for name in sorted(names)}
+
+
+def environment() -> dict[str, str]:
+    """Where it runs; for the record, not part of the hash."""
+    return {"python": platform.python_version(), "system": platform.system(), "machine": platform.machine()}
+
+
+def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mapping[str, str]) -> dict[str, Any]:
+    """Everything that changes results, as JSON values."""
+    settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
+    # Names of files are no results, their contents are: they stand beside the settings.
+    settings = {key: value for key, value in settings.items() if key not in ("motor", "calibration")}
+    plain: dict[str, Any] = json.loads(json.dumps({"study": settings, **contents, "versions": dict(package_versions)}))
+    return plain
+
+
+def digest(values: Mapping[str, Any]) -> str:
+    """SHA-256 of JSON values, independent of the order of keys."""
+    text = json.dumps(values, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What differs between two sets of JSON values, as ``key: old -> new``."""
+    old, new = _flat(before), _flat(now)
+    keys = [*old, *(key for key in new if key not in old)]
+    absent = "(none)"
+    return [f"{key}: {old.get(key, absent)} -> {new.get(key, absent)}" for key in keys if old.get(key) != new.get(key)]
+
+
+def _flat(values: Any, prefix: str = "") -> dict[str, str]:
+    if isinstance(values, Mapping) and values:
+        flat: dict[str, str] = {}
+        for key, value in values.items():
+            flat |= _flat(value, f"{prefix}.{key}" if prefix else str(key))
+        return flat
+    return {prefix: json.dumps(values, sort_keys=True)}

@@ -1,0 +1,130 @@
+"""Reading a study: everything that report, CAD and the command line want to know, by plain SELECTs."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.study.database import reading
+from pareto_monoped.study.definition import Study, study_from_dict
+
+_TEXT = ("state", "status", "reason")
+_WHOLE = ("trial", "generation")
+_FIRST = ("trial", "generation", "state", "status", "reason", *NAMES, "height_m", "energy_j")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checkpoint:
+    """Where a study stands: the algorithm's state after ``told`` trials, before generation ``generation``."""
+
+    generation: int
+    told: int
+    state: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyData:
+    """All of a study.
+
+    Attributes:
+        study: its definition.
+        meta: versions, seed, hash, contents of motor and calibration, budget, finished, stop_reason, wall_time_s, ...
+        trials: a row a trial: trial, generation, state, status, reason, the seven variables, height_m, energy_j, every
+            other measure, violation, height_weight (of a weighted search).
+        history: evaluations, hypervolume, seconds, generation by generation.
+        audits: trial, well_conditioned and the measures of the audit, for the front at the study's end.
+        checkpoint: for resuming.
+    """
+
+    study: Study
+    meta: dict[str, Any]
+    trials: pd.DataFrame
+    history: pd.DataFrame
+    audits: pd.DataFrame
+    checkpoint: Checkpoint
+
+    @property
+    def reference_point(self) -> ReferencePoint:
+        """Corner from which the study's hypervolume is measured."""
+        return self.study.reference_point
+
+    def front(self, include_ill_conditioned: bool = False) -> pd.DataFrame:
+        """The non-dominated feasible trials, from the lowest jump to the highest.
+
+        Args:
+            include_ill_conditioned: whether trials that failed their audit may be on the front; without them, what
+                they dominated comes up.
+        """
+        eligible = (self.trials["state"] == "feasible").to_numpy()
+        if not include_ill_conditioned and len(self.audits):
+            bad = self.audits.loc[~self.audits["well_conditioned"].astype(bool), "trial"]
+            eligible &= ~self.trials["trial"].isin(bad).to_numpy()
+        mask = front_mask(self.trials["height_m"].to_numpy(), self.trials["energy_j"].to_numpy(), eligible)
+        return self.trials[mask].sort_values("height_m", ignore_index=True)
+
+
+def read_study(db: Path) -> StudyData:
+    """Read a study database, finished or still growing.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    with reading(db) as connection:
+        meta_rows = connection.execute("SELECT key, value FROM monoped_meta").fetchall()
+        checkpoint_row = connection.execute("SELECT generation, told, state FROM monoped_checkpoint").fetchone()
+        cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+        trials = _frame([column[0] for column in cursor.description], cursor.fetchall())
+        history_rows = connection.execute(
+            "SELECT generation, evaluations, hypervolume, seconds FROM monoped_history ORDER BY generation"
+        ).fetchall()
+        audit_rows = connection.execute(
+            "SELECT trial, well_conditioned, measures FROM monoped_audits ORDER BY trial"
+        ).fetchall()
+    try:
+        meta = {str(key): json.loads(value) for key, value in meta_rows}
+        study = study_from_dict(meta["study"], source=f"study database {str(db)!r}")
+        generation, told, state = checkpoint_row
+        checkpoint = Checkpoint(generation=int(generation), told=int(told), state=json.loads(state))
+        audits = [
+            {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
+            for trial, good, measures in audit_rows
+        ]
+    except (KeyError, TypeError, ValueError) as error:
+        raise DatabaseError(
+            f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
+    meta["wall_time_s"] = float(history_rows[-1][3]) if history_rows else 0.0
+    return StudyData(
+        study=study,
+        meta=meta,
+        trials=trials,
+        history=pd.DataFrame(history_rows, columns=["generation", "evaluations", "hypervolume", "seconds"]).astype(
+            {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
+        ),
+        audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
+        checkpoint=checkpoint,
+    )
+
+
+def _frame(names: list[str], rows: list[tuple[Any, ...]]) -> pd.DataFrame:
+    columns = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else dict.fromkeys(names, ())
+    ordered = [*_FIRST, *(name for name in names if name not in _FIRST)]
+    try:
+        return pd.DataFrame({name: _column(name, columns[name]) for name in ordered})
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise DatabaseError(f"study database: its trials are damaged ({error}); restore a copy") from None
+
+
+def _column(name: str, values: tuple[Any, ...]) -> Any:
+    if name in _TEXT:
+        return pd.array([str(value) for value in values], dtype="str")
+    if name in _WHOLE:
+        return np.array(values, dtype=np.int64)
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -1,0 +1,102 @@
+"""The settings of each algorithm, as they stand in a study file's ``[algorithm]`` table."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.design import PAPER_CASES
+
+Population = Annotated[int, Field(ge=2, le=100_000)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvolutionSettings:
+    """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
+
+    The defaults were chosen by measurement on Case C: benchmarks/search_algorithms.md.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Literal["nsga2", "sms_emoa", "age_moea2"]
+    population: Annotated[int, Field(ge=4, le=100_000, multiple_of=2)] = 40
+    crossover_probability: Share = 0.9
+    crossover_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 15.0
+    mutation_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OptunaSettings:
+    """Optuna's NSGA-II and TPE samplers; ``population`` designs are asked for at a time.
+
+    For NSGA-II it is the population (Optuna's default 50). TPE models one design at a time, so its batches are small.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Literal["optuna_nsga2", "optuna_tpe"]
+    population: Annotated[int, Field(ge=1, le=100_000)] | None = None
+
+    @property
+    def batch(self) -> int:
+        """Designs asked for at a time."""
+        return self.population or {"optuna_nsga2": 50, "optuna_tpe": 8}[self.name]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomSettings:
+    """Designs drawn evenly over the bounds: the yardstick that every search must beat."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Literal["random"]
+    population: Annotated[int, Field(ge=1, le=100_000)] = 40
+
+
+_NOMINAL = PAPER_CASES["nominal"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeightedSettings:
+    """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run a weight, one after the other.
+
+    Attributes:
+        height_weights: lambda1 of each run, with lambda2 = 1 - lambda1.
+        population: designs an iteration (paper: N = 8).
+        sigma: first step size in variables scaled to their bounds (paper: 0.1).
+        iterations: at most so many a run (paper: M = 200).
+        start: start of each run by variable name; variables left out start at the paper's nominal design, which is
+            the start vector the paper gives, [0.4, 0.4, 6, 6, 50, 2.5, 10].
+        height_scale_j: Kh. The paper chooses it "to ensure that the order of both terms is similar"; the default
+            makes both terms equal at the published nominal design, E exp(h) = 31.44 J exp(0.887).
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Literal["weighted_cmaes"]
+    height_weights: Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1.0)], ...], Field(min_length=1)] = (0.5,)
+    population: Population = 8
+    sigma: Annotated[float, Field(gt=0.0, le=1.0)] = 0.1
+    iterations: Annotated[int, Field(ge=1)] = 200
+    start: dict[str, float] = field(default_factory=_NOMINAL.design.as_dict)
+    height_scale_j: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = _NOMINAL.energy_j * math.exp(
+        _NOMINAL.height_m
+    )
+
+
+AlgorithmSettings = EvolutionSettings | OptunaSettings | RandomSettings | WeightedSettings
+
+ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
+    "nsga2": EvolutionSettings,
+    "sms_emoa": EvolutionSettings,
+    "age_moea2": EvolutionSettings,
+    "optuna_nsga2": OptunaSettings,
+    "optuna_tpe": OptunaSettings,
+    "random": RandomSettings,
+    "weighted_cmaes": WeightedSettings,
+}
+"""Name in a study file -> its settings."""

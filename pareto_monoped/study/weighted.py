@@ -1,0 +1,97 @@
+"""The paper's search: CMA-ES on a weighted cost of height and energy, one run for each weight of a sweep."""
+
+from collections.abc import Iterable
+from itertools import islice
+from typing import Any
+
+import cma
+import numpy as np
+
+from pareto_monoped.study.algorithms import Floats, Proposal, Scores, Space
+from pareto_monoped.study.settings import WeightedSettings
+
+
+class WeightedSearch:
+    """CMA-ES (Hansen's ``cma``) on lambda1 Kh exp(-h) + lambda2 E, with lambda2 = 1 - lambda1.
+
+    Cost: paper, section III-B and its commented-out passage on C_h. The runs of a sweep follow each other; a run ends
+    after ``iterations`` or when CMA-ES finds that it has converged. On restore the present run is told its own
+    history again, which is exact because it has its own random generator, and takes a fraction of a second.
+    """
+
+    def __init__(self, space: Space, settings: WeightedSettings, start: Floats, seed: int) -> None:
+        self._space = space
+        self._settings = settings
+        self._seed = seed
+        extent = space.upper - space.lower
+        self._start = np.clip((start - space.lower) / extent, 0.0, 1.0)
+        self._run = 0
+        self._iteration = 0
+        self._strategy = self._fresh()
+        self._asked: list[Floats] = []
+
+    def ask(self) -> Proposal | None:
+        """The present run's next designs, or None after the last run."""
+        if self._run == len(self._settings.height_weights):
+            return None
+        self._asked = self._strategy.ask()
+        unit = np.clip(np.array(self._asked), 0.0, 1.0)
+        values = self._space.lower + unit * (self._space.upper - self._space.lower)
+        return Proposal(
+            values=np.minimum(values, self._space.upper),
+            height_weight=self._settings.height_weights[self._run],
+        )
+
+    def tell(self, scores: Scores) -> None:
+        """Update the run's distribution; go over to the next run when this one is at its end."""
+        self._strategy.tell(self._asked, self.cost(scores).tolist())
+        self._iteration += 1
+        if self._iteration == self._settings.iterations or self._strategy.stop():
+            self._run += 1
+            self._iteration = 0
+            if self._run < len(self._settings.height_weights):
+                self._strategy = self._fresh()
+
+    def cost(self, scores: Scores) -> Floats:
+        """Cost of each design, shape (n,).
+
+        A design that violates a constraint costs more than any that holds them, the more the farther it is off;
+        CMA-ES uses the ranks only.
+        """
+        weight, scale = self._settings.height_weights[self._run], self._settings.height_scale_j
+        feasible = weight * scale * np.exp(-scores.height_m) + (1.0 - weight) * scores.energy_j
+        return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)
+
+    def state(self) -> dict[str, Any]:
+        """Which run it is in and how far; the designs and scores are in the database."""
+        return {"run": self._run, "iteration": self._iteration}
+
+    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+        """Tell the present run its history again."""
+        history = list(told)
+        self._run = int(state["run"])
+        self._iteration = 0
+        if self._run == len(self._settings.height_weights):
+            return
+        self._strategy = self._fresh()
+        iterations = int(state["iteration"])
+        for _, scores in islice(history, len(history) - iterations, None):
+            self.ask()
+            self.tell(scores)
+
+    def _fresh(self) -> cma.CMAEvolutionStrategy:
+        generator = np.random.default_rng([self._seed, self._run])
+        dimensions = len(self._start)
+        return cma.CMAEvolutionStrategy(
+            self._start,
+            self._settings.sigma,
+            {
+                "popsize": self._settings.population,
+                "bounds": [[0.0] * dimensions, [1.0] * dimensions],
+                # With its own normal deviates and no seed, cma leaves NumPy's global generator alone.
+                "randn": lambda *shape: generator.standard_normal(shape),
+                "seed": np.nan,
+                "verbose": -9,
+                "verb_log": 0,
+            },
+        )
