@@ -1,0 +1,116 @@
+"""``pareto``: the main job, from the actuator map to the CAD of the knee design, as a chain of the other commands."""
+
+import contextlib
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import SelectionError
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.reader import StudyData
+
+_CASE = PAPER_CASES["C"]
+
+
+@click.command()
+@click.argument("study_file", metavar="[STUDY.toml]", type=click.Path(path_type=Path), default="studies/case_c.toml")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for what is made.  [reports/STUDY]")
+@click.option("--db", type=click.Path(path_type=Path), help="Study database.  [beside STUDY.toml]")
+@click.option("--evaluations", type=click.IntRange(min=1), help="Number of jumps, in place of the study's.")
+@click.option("--workers", type=click.IntRange(min=1), help="Threads that simulate.  [all cores]")
+def pareto(
+    study_file: Path, output: Path | None, db: Path | None, evaluations: int | None, workers: int | None
+) -> None:
+    """Do the main job: actuator map, study, knee design, its CAD, report.
+
+    Safe to repeat: a finished study is not run again, and CAD and report that are up to date are not made again.
+    """
+    from pareto_monoped.pareto.pick import Knee, pick
+    from pareto_monoped.study.definition import load_study
+    from pareto_monoped.study.reader import read_study
+
+    study = load_study(study_file)
+    folder = output or Path("reports") / study_file.stem
+    db = db or study_file.with_suffix(".db")
+    folder.mkdir(parents=True, exist_ok=True)
+    table, report, cad = folder / "actuators.csv", folder / "report.html", folder / "cad"
+
+    _step(1, "actuators", "--motor", study.motor, "--csv", table)
+    options = [f"--evaluations={evaluations}"] if evaluations else []
+    options += [f"--workers={workers}"] if workers else []
+    _step(2, "run", study_file, "--db", db, *options)
+    data = read_study(db)
+    knee = pick(data.front(), Knee())
+    design = cad / f"trial_{knee.trial}"
+    _step(3, "export", db, "--trial", knee.trial, "-o", design, made=(design / "design.json").exists)
+    _step(4, "report", db, "-o", report, "--exports", cad, made=lambda: _newer(report, db, design / "design.json"))
+
+    click.echo("\nMade")
+    for path, what in (
+        (table, "stage 1: the lightest actuator of every ratio"),
+        (db, "stage 2: every jump; resumable, opens in Optuna"),
+        (design, "stage 3: CAD and models of the knee design"),
+        (report, "the front to decide with: open it in a browser"),
+    ):
+        click.echo(f"  {path!s:<32} {what}")
+    _compare(data, knee.trial)
+
+
+def _step(number: int, command: str, *arguments: object, made: Callable[[], bool] = lambda: False) -> None:
+    """Run one of our own commands as a user would, show it, and keep its table off the screen."""
+    from pareto_monoped.cli import cli
+
+    words = [command, *map(str, arguments)]
+    done = made()
+    click.echo(f"[{number}/4] pareto-monoped {' '.join(words)}{'  (up to date)' if done else ''}", err=True)
+    if not done:
+        with contextlib.redirect_stdout(io.StringIO()):
+            code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)
+        if code:
+            raise click.exceptions.Exit(code)
+
+
+def _newer(target: Path, *sources: Path) -> bool:
+    return target.exists() and all(target.stat().st_mtime >= source.stat().st_mtime for source in sources)
+
+
+def _compare(data: "StudyData", knee: int) -> None:
+    """Print the paper's design beside the front's answers, all simulated with the study's motor and calibration."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.evaluate import Evaluator
+    from pareto_monoped.pareto.pick import MinHeight, pick
+
+    study, front = data.study, data.front()
+    again = Evaluator(map_for(study.motor), load_calibration(study.calibration))(_CASE.design.as_array())
+    height_m = float(again.height_m[0])
+    rows = [
+        ("paper's Case C, as published", _CASE.height_m, _CASE.energy_j),
+        ("paper's Case C, simulated here", height_m, float(again.energy_j[0])),
+    ]
+    for label, selector in (("front: at least that height", MinHeight(height_m=height_m)), ("front: knee", None)):
+        try:
+            trial = knee if selector is None else pick(front, selector).trial
+        except SelectionError:
+            continue
+        row = front.set_index("trial").loc[trial]
+        rows.append((f"{label}, trial {trial}", float(row["height_m"]), float(row["energy_j"])))
+    table = Table(box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    table.add_column("design")
+    table.add_column("height / m", justify="right")
+    table.add_column("energy / J", justify="right")
+    for name, height, energy in rows:
+        table.add_row(name, f"{height:.3f}", f"{energy:.2f}")
+    Console(width=80).print(table)
+    click.echo(
+        f"Simulated with motor {study.motor}, calibration {study.calibration}; {len(front)} designs on the front."
+    )
