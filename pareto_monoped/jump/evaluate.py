@@ -1,5 +1,6 @@
 """Designs in, evaluations out, in order: the one door to the jump for search, report and command line."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
@@ -178,11 +179,21 @@ def _jump(
     for i in np.flatnonzero(built & ~stands):
         table.fail(rows[i], "cannot_stand", pose.reason[i])
     ready = np.flatnonzero(built & stands)
-    for start in range(0, len(ready), _CHUNK):
-        chosen = ready[start : start + _CHUNK]
-        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration, workers)
+    # A thread has its own batch: threads that share one would have to wait for each other at every step.
+    parts = max(workers, -(-len(ready) // _CHUNK))
+    chunks = [chunk for chunk in np.array_split(ready, parts) if len(chunk)]
+
+    def run(chosen: NDArray[np.intp]) -> None:
+        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration)
         population.run()
         _collect(population, calibration, table, rows[chosen])
+
+    if workers == 1 or len(chunks) == 1:
+        for chunk in chunks:
+            run(chunk)
+    else:
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(run, chunks))
 
 
 def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:

@@ -1,7 +1,8 @@
 """The controller and the bookkeeping of a population of jumps, compiled by numba.
 
 Importing this module imports numba, so it is imported where a simulation starts. ``advance`` is called between two
-steps of the batch: it books the step just made, ends jumps that are over, and sets the torques of the next step.
+steps of the batch: it books the step just made, ends jumps that are over, and sets the torques of the next step. Once
+the controller is off for good, ``fly`` goes through several recorded steps at a time.
 """
 
 import math
@@ -36,7 +37,7 @@ Floats = NDArray[np.float64]
 ) = range(9)  # fmt: skip
 
 # Values of ``status``.
-RUNNING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(6)
+RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
 
 TOUCH_M = 1e-9
 """Clearance that still counts as touching: rounding of the start pose."""
@@ -60,12 +61,13 @@ def advance(
 ) -> int:
     """Book the last step of jumps ``ids[:count]``, end those that are over, set the torques of the others.
 
-    Running jumps are moved to the front of ``ids``, in order; returns how many there are.
+    Jumps that still need the controller are moved to the front of ``ids``, in order; returns how many there are.
     """
     left = 0
     for position in range(count):
         i = ids[position]
-        _one(qpos[i], qvel[i], ctrl[i], constants[i], memory[i], status, i, settings)
+        if status[i] == RUNNING:
+            _one(qpos[i], qvel[i], ctrl[i], constants[i], memory[i], status, i, settings)
         if status[i] == RUNNING:
             ids[left] = i
             left += 1
@@ -73,19 +75,78 @@ def advance(
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
+def fly(
+    ids: NDArray[np.int32],
+    count: int,
+    qpos: Floats,
+    qvel: Floats,
+    constants: Floats,
+    memory: Floats,
+    status: NDArray[np.int32],
+    settings: Floats,
+) -> int:
+    """Book recorded steps without torque of jumps ``ids[:count]``, up to the apex of each.
+
+    ``qpos`` and ``qvel`` have shape (count, steps, ...). Flying jumps are moved to the front of ``ids``, in order;
+    returns how many there are.
+    """
+    left = 0
+    for position in range(count):
+        i = ids[position]
+        m, nv = memory[i], qvel.shape[2]
+        for step in range(qpos.shape[1]):
+            q, v = qpos[position, step], qvel[position, step]
+            if status[i] != FLYING:
+                break
+            if not _fine(q, v):
+                status[i] = DIVERGED
+                break
+            m[STEPS] += 1
+            m[HEIGHT] = max(m[HEIGHT], q[nv - 3])
+            m[PEAK_SPEED_HIP] = max(m[PEAK_SPEED_HIP], abs(v[nv - 2]))
+            m[PEAK_SPEED_KNEE] = max(m[PEAK_SPEED_KNEE], abs(v[nv - 1]))
+            _end(q, v, m, status, i, settings)
+            if status[i] != FLYING:
+                c = constants[i]
+                rz = -c[THIGH] * math.cos(q[nv - 2]) - c[SHANK] * math.cos(q[nv - 2] + q[nv - 1])
+                m[CLEARANCE] = q[nv - 3] + rz - c[FOOT_RADIUS]
+                break
+        if status[i] == FLYING:
+            ids[left] = i
+            left += 1
+    return left
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _fine(q: Floats, v: Floats) -> bool:
+    """Whether a state is finite and not absurdly fast."""
+    fine = True
+    for k in range(v.shape[0]):
+        fine = fine and math.isfinite(q[k]) and abs(v[k]) < SPEED_LIMIT
+    return fine
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _end(q: Floats, v: Floats, m: Floats, status: NDArray[np.int32], i: int, settings: Floats) -> None:
+    """End a jump at the apex (the foot has stood and is off the ground, the base no longer rises), or in failure."""
+    nv = v.shape[0]
+    if m[OFF] > 0.0 and v[nv - 3] <= 0.0:
+        status[i] = APEX
+    elif q[nv - 3] < SANK_M:
+        status[i] = SANK
+    elif m[STEPS] > settings[STEP_LIMIT]:
+        status[i] = TIMEOUT if m[OFF] > 0.0 else NO_LIFT_OFF
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def _one(
     q: Floats, v: Floats, ctrl: Floats, c: Floats, m: Floats, status: NDArray[np.int32], i: int, settings: Floats
 ) -> None:
-    nv = v.shape[0]
-    z, hip, knee = q[nv - 3], q[nv - 2], q[nv - 1]
-    dz = v[nv - 3]
-    fine = math.isfinite(z) and math.isfinite(hip) and math.isfinite(knee)
-    for k in range(nv):
-        if not abs(v[k]) < SPEED_LIMIT:
-            fine = False
-    if not fine:
+    if not _fine(q, v):
         status[i] = DIVERGED
         return
+    nv = v.shape[0]
+    z, hip, knee = q[nv - 3], q[nv - 2], q[nv - 1]
 
     # Foot relative to the base, and its Jacobian: d rx / d hip = rz, d rz / d hip = -rx.
     shank_angle = hip + knee
@@ -98,42 +159,33 @@ def _one(
     if m[STEPS] > 0:
         _book(m, c, speed, settings[TIMESTEP])
     m[STEPS] += 1
-    if z > m[HEIGHT]:
-        m[HEIGHT] = z
+    m[HEIGHT] = max(m[HEIGHT], z)
     m[CLEARANCE] = clearance
     touching = clearance <= TOUCH_M
     if touching:
         m[STOOD] = 1.0
         m[LIFT_OFF_STEP] = m[STEPS]
 
-    # Share of the torque that the gate lets through.
+    # Share of the torque that the gate lets through, and whether the foot counts as off the ground.
     length = settings[FADE_LENGTH]
     if length > 0.0:
         u = min(max(clearance / length, 0.0), 1.0)
         gate = 1.0 - u * u * (3.0 - 2.0 * u)
         in_air = clearance >= length
-        if settings[LATCH] > 0.0:
-            if in_air and m[STOOD] > 0.0:
-                m[OFF] = 1.0
-            in_air = m[OFF] > 0.0
-            if in_air:
-                gate = 0.0
     else:
         # After a step MuJoCo's contact list still describes the state before it; a literal program reads that list.
         listed = touching if settings[LAGS] == 0.0 or m[STEPS] == 1 else m[TOUCHED] > 0.0
         m[TOUCHED] = 1.0 if touching else 0.0
         gate = 1.0 if listed else 0.0
         in_air = not listed
-    if in_air and m[STOOD] > 0.0:
-        m[OFF] = 1.0
-        if dz <= 0.0:
-            status[i] = APEX
-            return
-    if z < SANK_M:
-        status[i] = SANK
+    m[OFF] = 1.0 if in_air and m[STOOD] > 0.0 else 0.0
+    _end(q, v, m, status, i, settings)
+    if status[i] != RUNNING:
         return
-    if m[STEPS] > settings[STEP_LIMIT]:
-        status[i] = TIMEOUT if m[OFF] > 0.0 else NO_LIFT_OFF
+    if m[OFF] > 0.0 and settings[LATCH] > 0.0:
+        status[i] = FLYING
+        m[TORQUE_HIP] = m[TORQUE_KNEE] = m[JOINT_TORQUE_HIP] = m[JOINT_TORQUE_KNEE] = 0.0
+        ctrl[0] = ctrl[1] = 0.0
         return
 
     torque_hip, torque_knee = 0.0, 0.0

@@ -43,6 +43,22 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
     return _document(fields, start, calibration, {name: values[0] for name, values in springs.items()}, comment)
 
 
+def template_mjcf(calibration: Calibration) -> str:
+    """The MJCF document of a robot with round numbers, whose fields a batch overwrites."""
+    fields = {
+        "body_mass": np.ones(4),
+        "body_ipos": np.zeros((4, 3)),
+        "body_inertia": np.ones((4, 3)),
+        "body_pos": np.array([[0.0, 0.0, 0.0]] * 3 + [[0.0, 0.0, -0.4]]),
+        "site_pos": np.array([[0.0, 0.0, -0.4]]),
+        "geom_size": np.array([[0.0, 0.0, 1.0], [0.03, 0.0, 0.0]]),
+        "dof_armature": np.ones(4),
+        "actuator_ctrlrange": np.array([[-1.0, 1.0], [-1.0, 1.0]]),
+    }
+    start = start_qpos(calibration, np.zeros(1), np.ones(1))[0]
+    return _document(fields, start, calibration, None, "")
+
+
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
     """Model fields that differ from robot to robot, by MuJoCo's names, each of shape (n, ...)."""
     n, slides = len(robots), calibration.simulation.base_slides

@@ -1,5 +1,7 @@
 """Many jumps at once on MuJoCo's public batch interface: one model, per-jump fields, one compiled controller."""
 
+import functools
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,6 +15,9 @@ from pareto_monoped.jump.pose import StartPose
 from pareto_monoped.robot import RobotArrays
 
 Floats = NDArray[np.float64]
+
+# Steps between two looks at flying jumps; what is stepped beyond an apex is lost, half of this on average.
+_FLIGHT_STEPS = 8
 
 
 @dataclass(slots=True, kw_only=True)
@@ -48,26 +53,44 @@ class Population:
         )
         return self.count
 
-    def step(self) -> None:
-        """One ``mj_step`` of every running jump; a jump in which MuJoCo raises an error ends as diverged."""
+    def run(self) -> None:
+        """All jumps to their end."""
+        from pareto_monoped.jump.kernel import FLYING, fly
+
+        while self.advance():
+            self._call(self.batch.step)
+        self.ids = np.flatnonzero(self.status == FLYING).astype(np.int32)
+        self.count = len(self.ids)
+        while self.count:
+            shape = (self.count, _FLIGHT_STEPS)
+            records = {"qpos": np.empty((*shape, self.qpos.shape[1])), "qvel": np.empty((*shape, self.qvel.shape[1]))}
+            self._call(functools.partial(self._rollout, records))
+            self.count = fly(
+                self.ids,
+                self.count,
+                records["qpos"],
+                records["qvel"],
+                self.constants,
+                self.memory,
+                self.status,
+                self.settings,
+            )
+
+    def _rollout(self, records: dict[str, Floats], ids: NDArray[np.int32]) -> None:
+        self.batch.rollout(_FLIGHT_STEPS, record=tuple(records), ids=ids, out=records)
+
+    def _call(self, function: Callable[[NDArray[np.int32]], None]) -> None:
+        """Call the batch for all running jumps; a jump in which MuJoCo raises an error ends as diverged."""
         from mujoco.batch import SimulationError
 
         try:
-            self.batch.step(self.ids[: self.count])
+            function(self.ids[: self.count])
         except SimulationError as problem:
             from pareto_monoped.jump.kernel import DIVERGED
 
             for i in problem.ids:
                 self.errors[int(i)] = self.batch.error(int(i))
             self.status[problem.ids] = DIVERGED
-            running = np.setdiff1d(self.ids[: self.count], problem.ids)
-            self.count = len(running)
-            self.ids[: self.count] = running
-
-    def run(self) -> None:
-        """All jumps to their end."""
-        while self.advance():
-            self.step()
 
     def complaints(self) -> list[str]:
         """What MuJoCo raised or warned of in each jump; empty where nothing."""
@@ -89,16 +112,11 @@ def prepare(
         control: K, C and T of each, shape (n, 3).
         pose: their start pose.
         calibration: the model.
-        threads: of the batch.
     """
-    import mujoco
     from mujoco.batch import Batch
 
-    from pareto_monoped.jump import kernel
-
     n = len(robots)
-    template = mujoco.MjModel.from_xml_string(model.mjcf(robots, calibration))
-    batch = Batch(template, n, threads)
+    batch = Batch(_template(calibration), n, nthread=1)
     for name, values in model.model_fields(robots, calibration).items():
         batch.expand(name)[:] = values
     inverse_body_mass, inverse_joint_mass = batch.expand("body_invweight0"), batch.expand("dof_invweight0")
@@ -110,8 +128,6 @@ def prepare(
         batch.expand("jnt_solref")[:, -2:] = springs["jnt_solref"]
     qpos = batch.bind("qpos")
     qpos[:] = model.start_qpos(calibration, pose.hip_rad, pose.knee_rad)
-    memory = np.zeros((n, kernel.N_MEMORY))
-    memory[:, kernel.HEIGHT] = BASE_START_HEIGHT_M
     return Population(
         batch=batch,
         ids=np.arange(n, dtype=np.int32),
@@ -120,10 +136,27 @@ def prepare(
         qvel=batch.bind("qvel"),
         ctrl=batch.bind("ctrl"),
         constants=constants(robots, control, calibration),
-        memory=memory,
+        memory=first_memory(n),
         status=np.zeros(n, dtype=np.int32),
         settings=settings(calibration),
     )
+
+
+@functools.lru_cache(maxsize=16)
+def _template(calibration: Calibration) -> Any:
+    """A model of no robot in particular: all that differs between robots is written over."""
+    import mujoco
+
+    return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration))
+
+
+def first_memory(n: int) -> Floats:
+    """What the controller remembers before the first step, shape (n, kernel.N_MEMORY)."""
+    from pareto_monoped.jump import kernel
+
+    memory = np.zeros((n, kernel.N_MEMORY))
+    memory[:, kernel.HEIGHT] = BASE_START_HEIGHT_M
+    return memory
 
 
 def constants(robots: RobotArrays, control: Floats, calibration: Calibration) -> Floats:

@@ -1,0 +1,171 @@
+"""Commands of stage 2, physics: ``simulate`` and ``table1``."""
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pareto_monoped.design import NAMES, PAPER_CASES, VARIABLES, Design
+from pareto_monoped.errors import DesignError, complaint
+
+if TYPE_CHECKING:
+    from pareto_monoped.jump.audit import Audits
+    from pareto_monoped.jump.single import EnergyBalance, JumpResult
+
+_OUTPUT = click.Path(dir_okay=False, path_type=Path)
+
+
+@click.command()
+@click.option("--case", type=click.Choice(list(PAPER_CASES)), default="nominal", help="Start from a row of Table I.")
+@click.option("--set", "changes", metavar="NAME=VALUE", multiple=True, help="Change one of the seven variables.")
+@click.option("--calibration", "calibration_name", metavar="NAME", default="reference", help="Name or TOML file.")
+@click.option("--motor", metavar="NAME", default="VT8020", help="Name or TOML file.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write a row a step.")
+@click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the MJCF that is simulated.")
+@click.option("--audit", "audited", is_flag=True, help="Check energy balance, finer steps and perturbations.")
+def simulate(
+    case: str,
+    changes: tuple[str, ...],
+    calibration_name: str,
+    motor: str,
+    as_json: bool,
+    trace: Path | None,
+    model: Path | None,
+    audited: bool,
+) -> None:
+    """Jump once."""
+    design = _design(case, changes)
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.files import write_text
+    from pareto_monoped.jump.audit import audit
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.model import mjcf
+    from pareto_monoped.jump.single import energy_balance
+    from pareto_monoped.jump.single import simulate as jump
+    from pareto_monoped.robot import robot_arrays
+
+    calibration = load_calibration(calibration_name)
+    actuator_map = map_for(motor)
+    result = jump(design, actuator_map, calibration, trace=trace is not None)
+    if result.status in ("bad_input", "no_gearbox"):
+        raise DesignError(result.reason)
+    stands = result.status != "cannot_stand"
+    if not stands and (trace or model):
+        raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
+    values = design.as_array()[None, :]
+    robots = robot_arrays(values, actuator_map, calibration.mass)
+    report = _report(result, motor)
+    if audited and result.status == "ok":
+        audits = audit(values, actuator_map, calibration)
+        report["audit"] = _audit(audits, energy_balance(robots, values[:, 4:7], calibration))
+    if trace:
+        rows = zip(*(column.tolist() for column in result.trace.values()), strict=True)
+        lines = [",".join(result.trace), *(",".join("" if math.isnan(v) else repr(v) for v in row) for row in rows)]
+        write_text(trace, "\n".join(lines) + "\n")
+    if model:
+        write_text(model, mjcf(robots, calibration, comment=f"design: {json.dumps(design.as_dict())}; motor: {motor}"))
+    if as_json:
+        click.echo(json.dumps(report, indent=2))
+    else:
+        _print(report)
+
+
+def _design(case: str, changes: tuple[str, ...]) -> Design:
+    """The design asked for, with a note on stderr about values outside the paper's bounds."""
+    numbers = {}
+    for change in changes:
+        name, equals, text = change.partition("=")
+        name = name.strip()
+        if not equals:
+            raise DesignError(f"--set {change!r}: must be NAME=VALUE; give for example knee_ratio=6.0")
+        if name not in NAMES:
+            raise DesignError(complaint("--set name", name, f"one of {', '.join(NAMES)}", "correct the name"))
+        try:
+            numbers[name] = float(text)
+        except ValueError:
+            raise DesignError(complaint(name, text, "a number", "give for example 0.4")) from None
+    design = PAPER_CASES[case].design.replace(numbers)
+    for variable in VARIABLES:
+        value = getattr(design, variable.name)
+        if not variable.lower <= value <= variable.upper:
+            bounds = f"{variable.lower:g} to {variable.upper:g} {variable.unit}"
+            click.echo(f"note: {variable.name} = {value:g} is outside the paper's bounds, {bounds}", err=True)
+    return design
+
+
+def _plain(value: float) -> float | None:
+    """A JSON number, or null where there is none."""
+    return value if math.isfinite(value) else None
+
+
+def _report(result: "JumpResult", motor: str) -> dict[str, Any]:
+    return {
+        "status": result.status,
+        "reason": result.reason,
+        "calibration": result.calibration,
+        "motor": motor,
+        **{name: _plain(value) for name, value in result.measures.items()},
+        "design": result.design.as_dict(),
+    }
+
+
+def _audit(audits: "Audits", balance: "EnergyBalance") -> dict[str, Any]:
+    first = {name: values[0].item() for name, values in audits.as_columns().items()}
+    for name in ("status", "height_m", "energy_j"):
+        del first[name]
+    numbers = {name: _plain(v) if isinstance(v, float) else v for name, v in first.items()}
+    terms = ("actuator_work_j", "kinetic_j", "potential_j", "damping_j", "friction_j", "stops_j", "contact_j")
+    return {**numbers, "energy": {name: getattr(balance, name) for name in (*terms, "residual_j")}}
+
+
+def _print(report: dict[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(show_header=False, box=None, pad_edge=False)
+    for name, value in _lines(report):
+        table.add_row(name, value)
+    Console(width=80, highlight=False).print(table)
+
+
+def _lines(report: dict[str, Any], indent: str = "") -> list[tuple[str, str]]:
+    lines = []
+    for name, value in report.items():
+        if isinstance(value, dict):
+            lines += [(f"{indent}{name}", ""), *_lines(value, indent + "  ")]
+        elif value not in ("", None):
+            lines.append((f"{indent}{name}", f"{value:.6g}" if isinstance(value, float) else str(value)))
+    return lines
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def table1(as_json: bool) -> None:
+    """The paper's Table I: as published, under `paper` and under `reference`."""
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.jump.table1 import table1 as rows_of
+
+    rows = rows_of(map_for("VT8020"))
+    if as_json:
+        click.echo(json.dumps([row.as_dict() for row in rows], indent=2))
+        return
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="Height in m and energy in J", title_justify="left")
+    table.add_column("case")
+    for name in ("published", "paper (5 to 95 %)", "reference"):
+        table.add_column(name, justify="right")
+    for row in rows:
+        spread = row.paper
+        table.add_row(
+            row.case,
+            f"{row.published.height_m:.3f}\n{row.published.energy_j:.2f}",
+            f"{spread.height_m:.3f} ({spread.height_p05_m:.3f} to {spread.height_p95_m:.3f})\n"
+            f"{spread.energy_j:.2f} ({spread.energy_p05_j:.2f} to {spread.energy_p95_j:.2f})",
+            f"{row.reference.height_m:.3f}\n{row.reference.energy_j:.2f}",
+        )
+    Console(width=80, highlight=False).print(table)

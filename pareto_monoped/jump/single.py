@@ -1,0 +1,261 @@
+"""One jump, step by step: traces and the energy balance that a batch does not record.
+
+The loop runs plain ``mj_step`` on the exported MJCF and takes its torques from the population's controller, so that it
+makes the same jump as the batch, to the last bit.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.design import GRAVITY_M_PER_S2, Design
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.model import mjcf
+from pareto_monoped.robot import RobotArrays, robot_arrays
+
+Floats = NDArray[np.float64]
+
+TRACE_COLUMNS = (
+    "time_s", "base_x_m", "base_z_m", "base_x_m_per_s", "base_z_m_per_s",
+    "foot_x_m", "foot_z_m", "foot_clearance_m", "hip_rad", "knee_rad", "hip_rad_per_s", "knee_rad_per_s",
+    "hip_motor_torque_n_m", "knee_motor_torque_n_m", "hip_torque_n_m", "knee_torque_n_m",
+    "contact_x_n", "contact_z_n", "kinetic_j", "potential_j",
+)  # fmt: skip
+"""One row a step: the state, the torques held during the step that starts there (motor torque at the joint before and
+after losses), the floor's force on the foot, and the robot's energy."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JumpResult:
+    """One jump.
+
+    Attributes:
+        design: what jumped.
+        calibration: name and version of the calibration.
+        status, reason: as in ``Evaluations``.
+        measures: numeric columns of ``Evaluations`` by name; NaN where the status has none.
+        trace: ``TRACE_COLUMNS`` to values, shape (steps,); empty if it was not asked for or nothing moved.
+    """
+
+    design: Design
+    calibration: str
+    status: str
+    reason: str
+    measures: dict[str, float]
+    trace: dict[str, Floats]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnergyBalance:
+    """Where the work of one jump went, in joules, from the start to the apex.
+
+    Attributes:
+        actuator_work_j: of the torques that reach the joints.
+        kinetic_j, potential_j: change of the robot's energy.
+        damping_j, friction_j: lost in the joints' viscous and Coulomb friction.
+        stops_j: taken by the end stops (less what they still hold).
+        contact_j: lost at the foot, in its rubber and by slip.
+    """
+
+    actuator_work_j: float
+    kinetic_j: float
+    potential_j: float
+    damping_j: float
+    friction_j: float
+    stops_j: float
+    contact_j: float
+
+    @property
+    def residual_j(self) -> float:
+        """What the other terms leave unexplained."""
+        spent = self.kinetic_j + self.potential_j + self.damping_j + self.friction_j + self.stops_j + self.contact_j
+        return self.actuator_work_j - spent
+
+    @property
+    def error(self) -> float:
+        """The residual as a share of the actuator work."""
+        return abs(self.residual_j) / max(abs(self.actuator_work_j), 1e-12)
+
+
+def simulate(design: Design, actuator_map: ActuatorMap, calibration: Calibration, *, trace: bool = False) -> JumpResult:
+    """Jump once.
+
+    Args:
+        design: what jumps.
+        actuator_map: the gearboxes.
+        calibration: the jump model.
+        trace: whether to record every step.
+    """
+    values = design.as_array()[None, :]
+    evaluations = Evaluator(actuator_map, calibration)(values)
+    rows: dict[str, Floats] = {}
+    if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
+        robots = robot_arrays(values, actuator_map, calibration.mass)
+        rows = trace_of(robots, values[:, 4:7], calibration)
+    return result_of(design, calibration, evaluations, rows)
+
+
+def result_of(
+    design: Design, calibration: Calibration, evaluations: Evaluations, trace: dict[str, Floats]
+) -> JumpResult:
+    """The first row of ``evaluations`` as a single result."""
+    columns = evaluations.as_columns()
+    return JumpResult(
+        design=design,
+        calibration=calibration.label,
+        status=str(evaluations.status[0]),
+        reason=evaluations.reason[0],
+        measures={name: float(values[0]) for name, values in columns.items() if name not in ("status", "reason")},
+        trace=trace,
+    )
+
+
+@dataclass(slots=True, kw_only=True)
+class _Moment:
+    """One state of the loop, with MuJoCo's derived quantities of that state and the torques held from there on."""
+
+    model: Any
+    data: Any
+    qpos: Floats
+    qvel: Floats
+    memory: Floats
+    last: bool
+
+
+def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[_Moment]:
+    """Step the first robot to the end of its jump.
+
+    At each moment ``data`` holds the derived quantities of the state ``qpos, qvel`` (MuJoCo computes them at the start
+    of a step), and the state after the step; the last moment has no step.
+    """
+    import mujoco
+
+    from pareto_monoped.jump import kernel as k
+    from pareto_monoped.jump.population import constants, first_memory, settings
+
+    model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    ids, status = np.zeros(1, dtype=np.int32), np.zeros(1, dtype=np.int32)
+    ctrl, memory = np.zeros((1, 2)), first_memory(1)
+    numbers, shared = constants(robots, control, calibration), settings(calibration)
+    while True:
+        qpos, qvel = data.qpos.copy(), data.qvel.copy()
+        if status[0] == k.RUNNING:
+            k.advance(ids, 1, qpos[None], qvel[None], ctrl, numbers, memory, status, shared)
+        else:
+            k.fly(ids, 1, qpos[None, None], qvel[None, None], numbers, memory, status, shared)
+        running = status[0] in (k.RUNNING, k.FLYING)
+        if not running:
+            ctrl[:] = 0.0
+        data.ctrl[:] = ctrl[0]
+        if running:
+            mujoco.mj_step(model, data)
+        else:
+            mujoco.mj_forward(model, data)
+        yield _Moment(model=model, data=data, qpos=qpos, qvel=qvel, memory=memory[0], last=not running)
+        if not running:
+            return
+
+
+def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:
+    """``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
+    import mujoco
+
+    from pareto_monoped.jump import kernel as k
+
+    rows = []
+    weight_n = float(robots.body_mass_kg[0].sum()) * GRAVITY_M_PER_S2
+    radius = float(robots.foot_radius_m[0])
+    for index, moment in enumerate(_moments(robots, control, calibration)):
+        data, q, v, m = moment.data, moment.qpos, moment.qvel, moment.memory
+        slides = len(q) == 4
+        foot = data.site_xpos[0]
+        force = _contact_force(data)
+        matrix = np.zeros((len(v), len(v)))
+        mujoco.mj_fullM(moment.model, data, matrix)
+        torques = (0.0,) * 4 if moment.last else (m[k.TORQUE_HIP], m[k.TORQUE_KNEE], data.ctrl[0], data.ctrl[1])
+        rows.append(
+            (
+                index * calibration.simulation.timestep_s,
+                q[0] if slides else 0.0,
+                q[-3],
+                v[0] if slides else 0.0,
+                v[-3],
+                foot[0],
+                foot[2],
+                foot[2] - radius,
+                q[-2],
+                q[-1],
+                v[-2],
+                v[-1],
+                *torques,
+                force[0] if slides else float("nan"),
+                force[-3],
+                0.5 * v @ matrix @ v,
+                weight_n * float(data.subtree_com[0, 2]),
+            )
+        )
+    return dict(zip(TRACE_COLUMNS, np.array(rows).T, strict=True))
+
+
+def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
+    """Where the work of the first robot's jump went.
+
+    A force's work in a step is force times the mean of the speeds before and after it, which for a constant inertia
+    is exactly the change of kinetic energy that it causes in MuJoCo's semi-implicit step.
+    """
+    import mujoco
+
+    step = calibration.simulation.timestep_s
+    work = dict.fromkeys(("actuator", "damping", "friction", "stops", "contact"), 0.0)
+    energies: list[Floats] = []
+    for moment in _moments(robots, control, calibration):
+        model, data = moment.model, moment.data
+        if moment.last or not energies:
+            ends = mujoco.MjData(model)
+            ends.qpos[:], ends.qvel[:] = moment.qpos, moment.qvel
+            mujoco.mj_forward(model, ends)
+            mujoco.mj_energyPos(model, ends)
+            mujoco.mj_energyVel(model, ends)
+            energies.append(ends.energy.copy())
+        if moment.last:
+            break
+        mean = 0.5 * (moment.qvel + data.qvel) * step
+        # MuJoCo's Euler step takes joint damping at the speed after the step.
+        damped = data.qvel if calibration.simulation.integrator == "Euler" else 0.5 * (moment.qvel + data.qvel)
+        work["actuator"] += float(data.qfrc_actuator @ mean)
+        work["damping"] += float((model.dof_damping * damped) @ mean)
+        work["friction"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF,)) @ mean)
+        work["stops"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT,)) @ mean)
+        work["contact"] -= float(_contact_force(data) @ mean)
+    potential, kinetic = energies[-1] - energies[0]
+    return EnergyBalance(
+        actuator_work_j=work["actuator"],
+        kinetic_j=float(kinetic),
+        potential_j=float(potential),
+        damping_j=work["damping"],
+        friction_j=work["friction"],
+        stops_j=work["stops"],
+        contact_j=work["contact"],
+    )
+
+
+def _contact_force(data: Any) -> Floats:
+    """The contacts' generalised force, shape (nv,); its slide entries are the floor's force on the foot."""
+    import mujoco
+
+    kinds = mujoco.mjtConstraint
+    return _force(data, (kinds.mjCNSTR_CONTACT_PYRAMIDAL, kinds.mjCNSTR_CONTACT_ELLIPTIC))
+
+
+def _force(data: Any, kinds: tuple[Any, ...]) -> Floats:
+    """The generalised force of the constraints of some kinds, shape (nv,)."""
+    chosen = np.isin(data.efc_type, [int(kind) for kind in kinds])
+    jacobian = data.efc_J.reshape(-1, len(data.qvel))
+    return np.asarray(jacobian[chosen].T @ data.efc_force[chosen], dtype=np.float64)

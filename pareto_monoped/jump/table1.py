@@ -1,0 +1,102 @@
+"""The paper's Table I beside what is simulated here."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.jump.audit import perturbed
+from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
+
+PERTURBATIONS = 100
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """Height and energy of a jump."""
+
+    height_m: float
+    energy_j: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread(Result):
+    """Medians over perturbations of 1e-6, with the 5th and 95th percentile."""
+
+    height_p05_m: float
+    height_p95_m: float
+    energy_p05_j: float
+    energy_p95_j: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One case of Table I: as published, under ``paper`` and under ``reference``."""
+
+    case: str
+    published: Result
+    paper: Spread
+    reference: Result
+
+    def as_dict(self) -> dict[str, Any]:
+        """Nested plain values."""
+        return asdict(self)
+
+
+def table1(actuator_map: ActuatorMap, *, workers: int = 1, seed: int = 0) -> tuple[Row, ...]:
+    """All four cases.
+
+    Args:
+        actuator_map: the gearboxes of the paper's motor.
+        workers: threads.
+        seed: of the perturbations.
+    """
+    spreads = paper_spreads(actuator_map, load_calibration("paper"), workers=workers, seed=seed)
+    designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
+    reference = Evaluator(actuator_map, load_calibration("reference"), workers)(designs)
+    return tuple(
+        Row(
+            case=case.name,
+            published=Result(height_m=case.height_m, energy_j=case.energy_j),
+            paper=spreads[k],
+            reference=Result(height_m=float(reference.height_m[k]), energy_j=float(reference.energy_j[k])),
+        )
+        for k, case in enumerate(PAPER_CASES.values())
+    )
+
+
+def paper_spreads(
+    actuator_map: ActuatorMap,
+    calibration: Calibration,
+    *,
+    perturbations: int = PERTURBATIONS,
+    workers: int = 1,
+    seed: int = 0,
+) -> tuple[Spread, ...]:
+    """Medians and spread of the four cases under ``calibration``, perturbed copies that do not jump left out."""
+    designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
+    copies = perturbed(designs, perturbations, np.random.default_rng(seed))
+    evaluations = Evaluator(actuator_map, calibration, workers)(copies)
+    height = evaluations.height_m.reshape(len(designs), perturbations)
+    energy = evaluations.energy_j.reshape(len(designs), perturbations)
+    result = []
+    for k in range(len(designs)):
+        jumped = np.isfinite(height[k])
+        percentiles = np.full((3, 2), np.nan)
+        if jumped.any():
+            percentiles = np.percentile(np.stack([height[k][jumped], energy[k][jumped]], axis=1), [5, 50, 95], axis=0)
+        (low_h, low_e), (mid_h, mid_e), (high_h, high_e) = percentiles.tolist()
+        result.append(
+            Spread(
+                height_m=mid_h,
+                energy_j=mid_e,
+                height_p05_m=low_h,
+                height_p95_m=high_h,
+                energy_p05_j=low_e,
+                energy_p95_j=high_e,
+            )
+        )
+    return tuple(result)

@@ -1,0 +1,108 @@
+"""The jump written a second time: a plain loop over ``mj_step``, from the equations, knowing only the exported MJCF.
+
+Nothing of the package is used. Kinematics and the Jacobian are MuJoCo's, torque limits are read from the model.
+"""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+REST_LENGTH = 10.0
+
+
+@dataclass
+class Motor:
+    """What the MJCF cannot say of one joint's drive, in SI at the joint."""
+
+    no_load_speed: float = np.inf
+    corner_speed: float = np.inf
+    loss: float = 0.0
+
+
+@dataclass
+class Jump:
+    height: float
+    energy: float
+    hip_energy: float
+    lift_off: float
+    apex: float
+    clearance: float
+    ended: bool
+    torques: list
+
+
+def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, loss_speed=0.5, time_limit=3.0):
+    """Paper, section II-B, on the MJCF's robot.
+
+    Args:
+        xml: the model.
+        stiffness, damping, torsion: K, C, T.
+        motors: of hip and knee.
+        fade: clearance over which torque fades to zero for good; None: torque whenever the foot touches.
+        lags: with ``fade`` None, whether the contact is that of the state before.
+        loss_speed: of the smooth sign in the drive's losses.
+        time_limit: in s.
+    """
+    model = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.keyframe("start").id)
+    base, foot = model.body("base").id, model.site("foot").id
+    radius = model.geom("foot").size[0]
+    hinges = [model.joint(name).dofadr[0] for name in ("hip", "knee")]
+    limits = model.actuator_ctrlrange[[model.actuator(name).id for name in ("hip", "knee")], 1]
+    weight = model.body_mass.sum() * 9.81
+    lift = model.joint("slide_z").dofadr[0]
+    step = model.opt.timestep
+    energy, height, lift_off = np.zeros(2), 0.0, 0.0
+    off, stood, touched = False, False, None
+    torques = []
+    for k in range(round(time_limit / step) + 1):
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        height = max(height, data.xpos[base, 2])
+        r = data.site_xpos[foot] - data.xpos[base]
+        clearance = data.site_xpos[foot, 2] - radius
+        if clearance <= 1e-9:
+            stood, lift_off = True, k * step
+        if fade is not None:
+            off = off or (stood and clearance >= fade)
+            u = np.clip(clearance / fade, 0.0, 1.0)
+            share = 0.0 if off else 1.0 - (3.0 * u**2 - 2.0 * u**3)
+        else:
+            touches = clearance <= 1e-9
+            listed = touched if lags and touched is not None else touches
+            touched = touches
+            off, share = stood and not listed, float(listed)
+        if off and data.qvel[lift] <= 0.0:
+            return Jump(height, energy.sum(), energy[0], lift_off, k * step, clearance, True, torques)
+
+        speeds = data.qvel[hinges].copy()
+        torque = np.zeros(2)
+        if share > 0.0:
+            position = np.zeros((3, model.nv))
+            mujoco.mj_jacSite(model, data, position, None, foot)
+            jacobian = position[[0, 2]][:, hinges]
+            rx, rz = r[0], r[2]
+            length = np.hypot(rx, rz)
+            alpha = np.arcsin(-rx / length)
+            dr = jacobian @ speeds
+            axial = stiffness * (REST_LENGTH - length) - damping * (rx * dr[0] + rz * dr[1]) / length
+            twist = torsion * (0.0 - alpha)
+            fz = -axial * np.cos(alpha) + twist / length * np.sin(alpha) - weight
+            fx = -axial * np.sin(alpha) - twist / length * np.cos(alpha)
+            torque = jacobian.T @ [fx, fz]
+            for j, motor in enumerate(motors):
+                up = down = 1.0
+                if np.isfinite(motor.no_load_speed):
+                    span = motor.no_load_speed - motor.corner_speed
+                    up = np.clip((motor.no_load_speed - speeds[j]) / span, 0.0, 1.0)
+                    down = np.clip((motor.no_load_speed + speeds[j]) / span, 0.0, 1.0)
+                torque[j] = share * np.clip(torque[j], -limits[j] * down, limits[j] * up)
+        for j, motor in enumerate(motors):
+            lost = motor.loss * abs(torque[j]) * np.tanh(speeds[j] / loss_speed)
+            data.ctrl[j] = np.clip(torque[j] - lost, -limits[j], limits[j])
+        torques.append(data.ctrl.copy())
+        mujoco.mj_step(model, data)
+        energy += np.maximum(torque * 0.5 * (speeds + data.qvel[hinges]), 0.0) * step
+    return Jump(height, energy.sum(), energy[0], lift_off, np.nan, np.nan, False, torques)
