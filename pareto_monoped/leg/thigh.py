@@ -236,8 +236,8 @@ def _chain(length_mm: Numbers, d: LegDimensions) -> Part:
     def rows(z0_mm: float, z1_mm: float) -> Prism:
         return Prism(outline=around(outer), z0_mm=z0_mm, z1_mm=z1_mm, holes=(around(inner),))
 
-    # Where the strand has left the sprocket's teeth: a roller's breadth below the last tooth in mesh.
-    clear = 1.5 * d.chain_pitch_mm
+    # From where on no tooth reaches the strand, whatever the sprocket's angle.
+    clear = 2.0 * d.chain_pitch_mm
     strand = tuple(
         Prism(
             outline=rectangle(

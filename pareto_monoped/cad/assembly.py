@@ -1,0 +1,168 @@
+"""Where every instance of every part stands: the robot taken apart into named, placed instances.
+
+Frames are 4 x 4 matrices in millimetres. The assembly's frame has its origin on the hip axis in the middle plane of the
+leg, x forward, y to the left (the joint axes), z up, as the body frames of ``robot`` at zero joint angles.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.robot import PART_TO_BODY, Robot, Unit
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.record import Actuator
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pose:
+    """Joint angles about +y; at zero the leg hangs straight down."""
+
+    hip_rad: float
+    knee_rad: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instance:
+    """One instance of a part.
+
+    Attributes:
+        name: unique in the assembly, ``unit/part`` with a number if there are several.
+        unit: name of its unit.
+        part: the part; instances of one part of one unit share it.
+        body: ``base``, ``thigh`` or ``shank``: what its mass counts for.
+        in_body: from the part's frame to the body frame, at zero joint angles.
+        moves: the same at the asked pose, with what turns inside the actuators turned.
+        world: from the part's frame to the assembly's frame at the asked pose.
+    """
+
+    name: str
+    unit: str
+    part: Part
+    body: str
+    in_body: Matrix
+    moves: Matrix
+    world: Matrix
+
+
+def instances(robot: Robot, pose: Pose) -> tuple[Instance, ...]:
+    """Every instance of every part of a robot in a pose."""
+    frames = body_frames(robot, pose)
+    found = []
+    for unit in robot.units:
+        for part in unit.parts:
+            rest = list(_places(robot, unit, part, 0.0))
+            turned = list(_places(robot, unit, part, _angle(unit, pose)))
+            for k, (at_rest, at_pose) in enumerate(zip(rest, turned, strict=True)):
+                number = f"_{k + 1}" if len(rest) > 1 else ""
+                found.append(
+                    Instance(
+                        name=f"{unit.name}/{part.name}{number}",
+                        unit=unit.name,
+                        part=part,
+                        body=unit.body,
+                        in_body=at_rest,
+                        moves=at_pose,
+                        world=frames[unit.body] @ at_pose,
+                    )
+                )
+    return tuple(found)
+
+
+def body_frames(robot: Robot, pose: Pose) -> dict[str, Matrix]:
+    """Forward kinematics: from each body frame to the assembly's frame."""
+    base = np.eye(4)
+    thigh = base @ turn_y(pose.hip_rad)
+    shank = thigh @ shift(0.0, 0.0, -1000.0 * robot.design.thigh_length_m) @ turn_y(pose.knee_rad)
+    return {"base": base, "thigh": thigh, "shank": shank}
+
+
+def foot_centre_mm(robot: Robot, pose: Pose) -> Matrix:
+    """Centre of the foot in the assembly's frame, shape (3,)."""
+    foot = np.array([0.0, 0.0, -1000.0 * robot.design.shank_length_m, 1.0])
+    return (body_frames(robot, pose)["shank"] @ foot)[:3]
+
+
+def unit_frame(unit: Unit) -> Matrix:
+    """From a unit's frame to its body's frame."""
+    frame = np.eye(4)
+    frame[:3, :3] = PART_TO_BODY @ unit.turn
+    frame[:3, 3] = PART_TO_BODY @ np.array([0.0, 0.0, unit.z_mm])
+    return frame
+
+
+def turn_y(angle_rad: float) -> Matrix:
+    """Rotation about the y axis."""
+    matrix = np.eye(4)
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = cos, sin, -sin, cos
+    return matrix
+
+
+def turn_z(angle_rad: float) -> Matrix:
+    """Rotation about the z axis."""
+    matrix = np.eye(4)
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1] = cos, -sin, sin, cos
+    return matrix
+
+
+def shift(x: float, y: float, z: float) -> Matrix:
+    """Translation."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = (x, y, z)
+    return matrix
+
+
+def _angle(unit: Unit, pose: Pose) -> float:
+    """Angle of a unit's output about +y relative to its housing: of the joint that it drives."""
+    return {"hip_actuator": pose.hip_rad, "knee_actuator": pose.knee_rad, "thigh": pose.knee_rad}.get(unit.name, 0.0)
+
+
+def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator[Matrix]:
+    """From the frame of each instance of a part to the unit's body frame, with the output turned by ``output_rad``."""
+    frame = unit_frame(unit)
+    # The joint axis is the unit's z axis up to its sign.
+    theta = output_rad * float(frame[1, 2])
+    actuator = {"hip_actuator": robot.hip, "knee_actuator": robot.knee}.get(unit.name)
+    whole, spin = turns(actuator, part, theta)
+    for place in part.places_mm:
+        at = frame @ shift(*(float(v) for v in place))
+        radius, count = float(part.pitch_radius_mm), int(part.count)
+        for k in range(count):
+            angle = 2.0 * np.pi * k / count
+            if radius == 0.0:
+                yield at @ turn_z(whole)
+                continue
+            around = part.phase_rad + angle
+            yield at @ turn_z(whole + around) @ shift(radius, 0.0, 0.0) @ turn_z(spin(angle))
+
+
+def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[float, Callable[[float], float]]:
+    """How a part turns about its unit's z axis when the unit's output has turned by ``theta_rad``.
+
+    A planetary gear with a fixed ring: the carrier is the output, the sun turns by the ratio, and a planet turns
+    against its carrier by -z_ring / z_planet of the carrier's angle. At rest the planet at angle a is turned by
+    pi - pi / z_planet + a z_sun / z_planet against its carrier, so that its spaces meet the sun's teeth.
+
+    Returns:
+        The angle of the whole circle of instances, and from an instance's place on it to its own turn on its place.
+    """
+    if actuator is None:
+        return (theta_rad if part.group == "knee_drive" else 0.0), lambda _: 0.0
+    if part.group == "rotor":
+        return actuator.ratio * theta_rad, lambda _: 0.0
+    if part.group == "output":
+        return theta_rad, lambda _: 0.0
+    if part.group == "planet":
+        gears = actuator.gears
+        at_rest = np.pi - np.pi / gears.planet_teeth
+        rolled = -theta_rad * gears.ring_teeth / gears.planet_teeth
+        return theta_rad, lambda place: at_rest + place * gears.sun_teeth / gears.planet_teeth + rolled
+    return 0.0, lambda _: 0.0

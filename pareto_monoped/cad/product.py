@@ -1,0 +1,106 @@
+"""A robot as a product: its unique parts with solids and meshes, and all placed instances."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import manifold3d as m3
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.assembly import Instance, Pose, instances
+from pareto_monoped.cad.meshes import Mesh, mesh_of, placed
+from pareto_monoped.cad.solids import Solid, solid_of
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.robot import Robot
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UniquePart:
+    """One kind of part: made once, used ``count`` times in the robot.
+
+    Attributes:
+        name: unique in the product and safe as a file name.
+        part: the record.
+        solid: B-rep in the part's own frame, millimetres.
+        mesh: triangles in the part's own frame, millimetres.
+        count: how often the robot has it.
+        units: the units that have it.
+    """
+
+    name: str
+    part: Part
+    solid: Solid
+    mesh: Mesh
+    count: int
+    units: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Product:
+    """A robot in a pose with everything that its files are made from.
+
+    Attributes:
+        robot, pose: what and how.
+        unique: every kind of part, in the order of the assembly.
+        instances: every part in its place.
+        kinds: for each instance the index of its kind in ``unique``.
+    """
+
+    robot: Robot
+    pose: Pose
+    unique: tuple[UniquePart, ...]
+    instances: tuple[Instance, ...]
+    kinds: tuple[int, ...]
+
+    def placed(self) -> Iterator[tuple[Instance, UniquePart]]:
+        """Every instance with its kind."""
+        for instance, kind in zip(self.instances, self.kinds, strict=True):
+            yield instance, self.unique[kind]
+
+    def world_bodies(self) -> list[m3.Manifold]:
+        """The mesh of every instance in the assembly's frame."""
+        return [placed(kind.mesh.body, instance.world) for instance, kind in self.placed()]
+
+
+def build_product(robot: Robot, pose: Pose) -> Product:
+    """Make every part of a robot once and place it."""
+    found = instances(robot, pose)
+    # The hip and knee actuators of one gear ratio are the same records, and then the same parts.
+    order: dict[int, list[Instance]] = {}
+    for instance in found:
+        order.setdefault(id(instance.part), []).append(instance)
+    unique = []
+    for members in order.values():
+        part = members[0].part
+        units = tuple(dict.fromkeys(member.unit for member in members))
+        unique.append(
+            UniquePart(
+                name=part_file_name(units, part.name),
+                part=part,
+                solid=solid_of(part),
+                mesh=mesh_of(part),
+                count=len(members),
+                units=units,
+            )
+        )
+    index = {key: k for k, key in enumerate(order)}
+    return Product(
+        robot=robot,
+        pose=pose,
+        unique=tuple(unique),
+        instances=found,
+        kinds=tuple(index[id(instance.part)] for instance in found),
+    )
+
+
+def part_file_name(units: tuple[str, ...], part_name: str) -> str:
+    """Name of a part over all units: an actuator's parts carry its joint, those of two like actuators do not."""
+    joints = [unit for unit in units if unit.endswith("_actuator")]
+    if not joints:
+        return part_name
+    return f"{joints[0] if len(joints) == 1 else 'actuator'}_{part_name}"
+
+
+def extent_mm(mesh: Mesh) -> NDArray[np.float64]:
+    """Size of a part along its axes, shape (3,)."""
+    return np.asarray(mesh.points_mm.max(axis=0) - mesh.points_mm.min(axis=0))
