@@ -102,9 +102,7 @@ class Population:
         return texts
 
 
-def prepare(
-    robots: RobotArrays, control: Floats, pose: StartPose, calibration: Calibration, threads: int
-) -> Population:
+def prepare(robots: RobotArrays, control: Floats, pose: StartPose, calibration: Calibration) -> Population:
     """A population at rest.
 
     Args:

@@ -37,7 +37,9 @@ def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, los
 
     Args:
         xml: the model.
-        stiffness, damping, torsion: K, C, T.
+        stiffness: K.
+        damping: C.
+        torsion: T.
         motors: of hip and knee.
         fade: clearance over which torque fades to zero for good; None: torque whenever the foot touches.
         lags: with ``fade`` None, whether the contact is that of the state before.
