@@ -57,15 +57,16 @@ class OptunaSampler:
 
     def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the trials as they were."""
+        self._generation = int(state["generation"])
         with _quiet():
             for generation, (values, scores) in enumerate(told):
                 self._add(generation, values, scores)
-                sampler = self._study.sampler
-                if isinstance(sampler, optuna.samplers.NSGAIISampler):
-                    # Optuna remembers the parents of each generation from when it first needs them; from the last
-                    # one, without this, it would recurse through all generations.
+            sampler = self._study.sampler
+            if isinstance(sampler, optuna.samplers.NSGAIISampler):
+                # Optuna notes the parents of a generation when it first needs them, and finds them from the note of
+                # the generation before. Without the notes the next one would recurse through all generations.
+                for generation in range(self._generation):
                     sampler.get_parent_population(self._study, generation)
-        self._generation = int(state["generation"])
 
     def _add(self, generation: int, values: Floats, scores: Scores) -> None:
         for row, (minus_height, energy), violation in zip(

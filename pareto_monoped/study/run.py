@@ -209,7 +209,7 @@ def _go_on(
             reason = loop.go(interrupt)
         finished = reason != "interrupted"
         if finished:
-            audit_front(db, store, physics)
+            audit_front(db, store, physics, notify)
         store.set_meta({"finished": finished, "stop_reason": reason})
     after = read_study(db)
     front = after.front()

@@ -1,0 +1,176 @@
+"""Every algorithm behind the same face holds the same promises, on a problem whose front is known."""
+
+import json
+
+import numpy as np
+import pytest
+
+from pareto_monoped.pareto.indicators import ReferencePoint, hypervolume
+from pareto_monoped.study.algorithms import Scores, create
+from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.settings import ALGORITHMS
+
+NAMES = tuple(ALGORITHMS)
+GENETIC = ("nsga2", "sms_emoa", "age_moea2")
+
+
+def study(name, *, seed=1, **more):
+    algorithm = {"name": name}
+    if name == "weighted_cmaes":
+        algorithm |= {"height_weights": [0.3, 0.7], "iterations": 12}
+    return study_from_dict({"name": name, "evaluations": 1, "seed": seed, "algorithm": algorithm} | more, source="test")
+
+
+def zdt1(values, lower, upper):
+    """ZDT1 (Zitzler, Deb, Thiele 2000) with 1 - f1 for the height, f2 for the energy, infeasible below f1 = 0.1.
+
+    Its front is f2 = 1 - sqrt(f1); some designs fail, to see that every algorithm takes that.
+    """
+    unit = (values - lower) / (upper - lower)
+    f1 = unit[:, 0]
+    g = 1.0 + 9.0 * unit[:, 1:].mean(axis=1)
+    f2 = g * (1.0 - np.sqrt(f1 / g))
+    failed = unit[:, -1] > 0.97
+    violation = np.where(failed, 100.0, np.maximum(0.0, 0.1 - f1))
+    return Scores(
+        height_m=np.where(failed, np.nan, 1.0 - f1), energy_j=np.where(failed, np.nan, f2), violation=violation
+    )
+
+
+def search(definition, generations, algorithm=None, history=None):
+    """Ask and tell; returns the algorithm and [(values, scores)]."""
+    algorithm = algorithm or create(definition)
+    history = [] if history is None else history
+    for _ in range(generations):
+        proposal = algorithm.ask()
+        if proposal is None:
+            break
+        scores = zdt1(proposal.values, definition.lower, definition.upper)
+        algorithm.tell(scores)
+        history.append((proposal.values, scores))
+    return algorithm, history
+
+
+def designs(history):
+    return np.vstack([values for values, _ in history])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_asks_for_designs_within_the_bounds(name):
+    definition = study(name)
+    values = designs(search(definition, 6)[1])
+    assert values.shape[1] == 7
+    assert (values >= definition.lower).all()
+    assert (values <= definition.upper).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_works_in_the_free_variables_only(name):
+    definition = study(name, variables={"thigh_length_m": 0.4, "hip_ratio": 5.0})
+    assert create(definition).ask().values.shape[1] == 5
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_seed_decides_all(name):
+    first, again, other = (designs(search(study(name, seed=seed), 4)[1]) for seed in (1, 1, 2))
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_leaves_the_global_random_state_alone(name):
+    np.random.seed(5)  # noqa: NPY002
+    before = np.random.get_state()[1].copy()  # noqa: NPY002
+    search(study(name), 3)
+    assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
+
+
+@pytest.mark.parametrize("told", [0, 1, 2, 5, 13])
+@pytest.mark.parametrize("name", NAMES)
+def test_restored_from_json_it_goes_on_exactly(name, told):
+    definition = study(name)
+    algorithm, history = search(definition, told)
+    state = json.loads(json.dumps(algorithm.state()))
+    restored = create(definition)
+    restored.restore(state, iter(history))
+    _, expected = search(definition, 4, algorithm)
+    _, got = search(definition, 4, restored)
+    assert len(got) == len(expected) > 0
+    for (values, _), (wanted, _) in zip(got, expected, strict=True):
+        assert np.array_equal(values, wanted)
+    assert json.dumps(restored.state()) == json.dumps(algorithm.state())
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in ("random", "weighted_cmaes")])
+def test_beats_random_search_at_equal_evaluations(name):
+    reference = ReferencePoint(height_m=0.0, energy_j=5.0)
+
+    def volume(algorithm_name, evaluations=400):
+        definition = study(algorithm_name)
+        batch = len(create(definition).ask().values)
+        _, history = search(definition, evaluations // batch)
+        feasible = [np.column_stack((s.height_m, s.energy_j))[s.violation == 0.0] for _, s in history]
+        return hypervolume(np.vstack(feasible), reference)
+
+    assert volume(name) > 1.1 * volume("random")
+
+
+@pytest.mark.parametrize("name", GENETIC)
+def test_infeasible_designs_give_way_to_feasible_ones(name):
+    """With the feasible region a tenth of one variable, late generations live in it."""
+    definition = study(name, variables={"knee_ratio": 5.0, "hip_ratio": 5.0})
+    algorithm = create(definition)
+    free = np.array([n in definition.free for n in definition.variables])
+    lower, upper = definition.lower[free], definition.upper[free]
+    for _ in range(25):
+        values = algorithm.ask().values
+        unit = (values - lower) / (upper - lower)
+        violation = np.maximum(0.0, unit[:, 0] - 0.1)
+        algorithm.tell(Scores(height_m=unit[:, 1], energy_j=unit[:, 2], violation=violation))
+    assert (violation == 0.0).mean() > 0.8
+
+
+def test_a_sweep_of_weights_runs_one_after_the_other_and_ends():
+    algorithm, history = search(study("weighted_cmaes"), 1000)
+    assert len(history) == 2 * 12
+    assert algorithm.ask() is None
+    assert algorithm.state() == {"run": 2, "iteration": 0}
+
+
+def test_the_first_weighted_designs_gather_around_the_papers_start_vector():
+    """Step 0.1 in scaled variables: the mean of many first designs is the start within a few standard errors."""
+    definition = study_from_dict(
+        {"name": "w", "evaluations": 1, "algorithm": {"name": "weighted_cmaes", "population": 4000}}, source="test"
+    )
+    values = create(definition).ask().values
+    start = np.array([0.4, 0.4, 6.0, 6.0, 50.0, 2.5, 10.0])
+    extent = definition.upper - definition.lower
+    # 0.1 / sqrt(4000) = 0.0016; variables near a bound are folded back into it and shift a little more.
+    assert np.abs((values.mean(axis=0) - start) / extent).max() < 0.01
+    # Far from the bounds the spread is the step size itself.
+    assert np.std((values[:, 0] - 0.4) / 0.2) == pytest.approx(0.1, rel=0.05)
+
+
+def test_the_weighted_cost_is_the_papers():
+    from pareto_monoped.study.algorithms import Space
+    from pareto_monoped.study.settings import WeightedSettings
+    from pareto_monoped.study.weighted import WeightedSearch
+
+    settings = WeightedSettings(name="weighted_cmaes", height_weights=(0.25,), height_scale_j=80.0)
+    space = Space(names=("a", "b"), lower=np.zeros(2), upper=np.ones(2))
+    algorithm = WeightedSearch(space, settings, np.full(2, 0.5), 1)
+    scores = Scores(
+        height_m=np.array([0.8, 0.52, np.nan]),
+        energy_j=np.array([20.0, 1.0, np.nan]),
+        violation=np.array([0, 0.05, 100]),
+    )
+    cost = algorithm.cost(scores)
+    assert cost[0] == pytest.approx(0.25 * 80.0 * np.exp(-0.8) + 0.75 * 20.0, rel=1e-14)
+    # However cheap, a design that misses a constraint costs more than one that holds it; a failed one most.
+    assert cost[0] < cost[1] < cost[2] < np.inf
+
+
+def test_the_default_height_scale_makes_both_terms_equal_at_the_papers_nominal_design():
+    from pareto_monoped.study.settings import WeightedSettings
+
+    assert WeightedSettings(name="weighted_cmaes").height_scale_j * np.exp(-0.887) == pytest.approx(31.44, rel=1e-12)

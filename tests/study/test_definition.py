@@ -1,0 +1,136 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pareto_monoped.design import LOWER, NAMES, UPPER
+from pareto_monoped.errors import StudyError
+from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
+from pareto_monoped.study.settings import ALGORITHMS
+
+SHIPPED = sorted((Path(__file__).parents[2] / "studies").glob("*.toml"))
+MINIMAL = {"name": "s", "evaluations": 10}
+
+
+def made(**more):
+    return study_from_dict(MINIMAL | more, source="study file 's.toml'")
+
+
+def test_the_defaults_are_case_c_with_the_papers_bounds():
+    study = made()
+    assert study.free == NAMES
+    assert np.array_equal(study.lower, LOWER)
+    assert np.array_equal(study.upper, UPPER)
+    assert study.constraints.min_height_m == 0.55
+    assert study.algorithm.name == "nsga2"
+    assert (study.motor, study.calibration) == ("VT8020", "reference")
+
+
+@pytest.mark.parametrize(
+    ("case", "fixed"),
+    [
+        ("A", {"thigh_length_m": 0.4, "shank_length_m": 0.4}),
+        ("B", {"knee_ratio": 6.0, "hip_ratio": 6.0}),
+        ("C", {}),
+    ],
+)
+def test_a_case_fixes_what_the_paper_fixed(case, fixed):
+    study = made(case=case)
+    assert {name: v for name, v in study.variables.items() if not isinstance(v, Bounds)} == fixed
+    assert study.free == tuple(name for name in NAMES if name not in fixed)
+
+
+def test_bounds_and_fixed_values_override_the_case():
+    study = made(case="A", variables={"thigh_length_m": {"lower": 0.35, "upper": 0.45}, "hip_ratio": 4})
+    assert study.variables["thigh_length_m"] == Bounds(lower=0.35, upper=0.45)
+    assert study.variables["hip_ratio"] == 4.0
+    assert study.variables["shank_length_m"] == 0.4
+
+
+@pytest.mark.parametrize("name", ALGORITHMS)
+def test_plain_values_and_back(name):
+    study = made(
+        case="B", algorithm={"name": name}, seed=2**60, stop={"wall_time_s": 3.5}, variables={"hip_ratio": 5.0}
+    )
+    assert study_from_dict(json.loads(json.dumps(study.as_dict())), source="db") == study
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"evaluation": 3}, ["'evaluation'", "did you mean 'evaluations'"]),
+        ({"evaluations": 0}, ["evaluations = 0", "greater than or equal to 1"]),
+        ({"evaluations": "many"}, ["evaluations = 'many'", "integer"]),
+        ({"name": ""}, ["name = ''", "at least 1"]),
+        ({"case": "D"}, ["case = 'D'", "'A', 'B' or 'C'"]),
+        ({"seed": -1}, ["seed = -1"]),
+        ({"variables": {"K": 5}}, ["'K'", "stiffness_n_per_m"]),
+        ({"variables": {"knee_ratio": "big"}}, ["variables.knee_ratio = 'big'", "1 to 100"]),
+        ({"variables": {"knee_ratio": True}}, ["variables.knee_ratio = True"]),
+        ({"variables": {"knee_ratio": float("nan")}}, ["variables.knee_ratio = nan"]),
+        ({"variables": {"knee_ratio": {"lower": 5.0}}}, ["variables.knee_ratio", "lower and upper"]),
+        ({"variables": {"knee_ratio": {"lower": 5.0, "upper": 5.0}}}, ["lower = 5, upper = 5", "below"]),
+        ({"variables": {"knee_ratio": {"lower": 0.5, "upper": 5.0}}}, ["variables.knee_ratio.lower = 0.5"]),
+        ({"variables": {"damping_n_s_per_m": -1.0}}, ["damping_n_s_per_m = -1.0", "from 0"]),
+        (
+            {"variables": {"thigh_length_m": 0.2, "shank_length_m": {"lower": 0.1, "upper": 0.3}}},
+            ["thigh_length_m + shank_length_m = 0.5", "0.5 m", "longer links"],
+        ),
+        ({"variables": dict.fromkeys(NAMES[2:], 5.0) | dict.fromkeys(NAMES[:2], 0.4)}, ["all seven are fixed"]),
+        ({"objectives": {"height_m": "minimise"}}, ["objectives.height_m = 'minimise'", "'maximise'"]),
+        ({"constraints": {"min_height": 0.6}}, ["constraints.min_height"]),
+        ({"constraints": {"min_height_m": 0.2}}, ["constraints.min_height_m = 0.2", "0.5"]),
+        ({"stop": {"wall_time_s": 0}}, ["stop.wall_time_s = 0"]),
+        ({"algorithm": {"name": "nsga3"}}, ["algorithm.name = 'nsga3'", "nsga2", "weighted_cmaes"]),
+        ({"algorithm": {"population": 8}}, ["algorithm.name = None"]),
+        ({"algorithm": {"name": "nsga2", "pop": 8}}, ["'pop'", "population"]),
+        ({"algorithm": {"name": "nsga2", "population": 7}}, ["population = 7", "multiple of 2"]),
+        ({"algorithm": {"name": "nsga2", "sigma": 0.1}}, ["'sigma'"]),
+        ({"algorithm": {"name": "weighted_cmaes", "height_weights": []}}, ["height_weights"]),
+        ({"algorithm": {"name": "weighted_cmaes", "height_weights": [1.5]}}, ["height_weights.0 = 1.5"]),
+        ({"algorithm": {"name": "weighted_cmaes", "start": {"k": 1.0}}}, ["algorithm.start", "'k'"]),
+    ],
+)
+def test_what_cannot_be_names_its_key_and_what_is_allowed(change, words):
+    with pytest.raises(StudyError) as caught:
+        made(**change)
+    message = str(caught.value)
+    assert message.startswith("study file 's.toml'")
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+def test_missing_keys_are_named():
+    with pytest.raises(StudyError, match="evaluations is missing"):
+        study_from_dict({"name": "s"}, source="s")
+
+
+def test_a_file_that_is_no_toml_is_refused(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text("name = = 3")
+    with pytest.raises(StudyError, match="not valid TOML"):
+        load_study(path)
+    with pytest.raises(StudyError, match="no such file"):
+        load_study(tmp_path / "t.toml")
+
+
+def test_a_users_motor_file_is_found_beside_the_study(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\nmotor = "mine.toml"\n')
+    assert load_study(path).motor == str((tmp_path / "mine.toml").resolve())
+
+
+def test_budget_and_seed_can_be_given_in_place_of_the_files(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\n')
+    study = load_study(path, evaluations=7, seed=9)
+    assert (study.evaluations, study.seed) == (7, 9)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_studies_are_sound(path):
+    study = load_study(path)
+    assert study.name == path.stem
+    assert study.description
