@@ -14,6 +14,9 @@ from pareto_monoped.errors import DatabaseError
 FORMAT = 1
 """Version of our tables; a reader refuses a later one."""
 
+READ_TIMEOUT_S = 10.0
+"""How long a reader waits for another program that has locked the whole file; runs never do that for long."""
+
 TABLES = ("monoped_meta", "monoped_checkpoint", "monoped_history", "monoped_trials", "monoped_audits")
 _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
 
@@ -63,7 +66,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
     if header != b"SQLite format 3\x00":
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
     with translated(path):
-        connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=10.0)
+        connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S)
         try:
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.execute("PRAGMA query_only = ON")

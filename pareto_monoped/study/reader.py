@@ -65,7 +65,7 @@ class StudyData:
         eligible = (self.trials["state"] == "feasible").to_numpy()
         if not include_ill_conditioned and len(self.audits):
             bad = self.audits.loc[~self.audits["well_conditioned"].astype(bool), "trial"]
-            eligible &= ~self.trials["trial"].isin(bad).to_numpy()
+            eligible = eligible & ~self.trials["trial"].isin(bad).to_numpy()
         mask = front_mask(self.trials["height_m"].to_numpy(), self.trials["energy_j"].to_numpy(), eligible)
         return self.trials[mask].sort_values("height_m", ignore_index=True)
 

@@ -1,0 +1,96 @@
+"""Studies with plain numbers in place of jumps, for tests of storage that no physics matters to."""
+
+from datetime import UTC, datetime
+
+import numpy as np
+
+from pareto_monoped.jump.evaluate import MEASURES, Evaluations
+from pareto_monoped.study import provenance
+from pareto_monoped.study.algorithms import create as create_algorithm
+from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.scoring import judge
+from pareto_monoped.study.store import Generation, Store, create
+
+CONTENTS = {"motor": {"peak_torque_n_m": 5.5}, "calibration": {"name": "reference"}}
+
+
+def made_study(**more):
+    return study_from_dict({"name": "made", "evaluations": 40} | more, source="test")
+
+
+def made_evaluations(height_m, energy_j, status=None, seed=0):
+    """Evaluations with these heights and energies, and drawn numbers for all other measures."""
+    height_m, energy_j = np.asarray(height_m, float), np.asarray(energy_j, float)
+    status = np.array(status if status is not None else ["ok"] * len(height_m))
+    generator = np.random.default_rng(seed)
+    columns = {name: generator.standard_normal(len(height_m)) for name in MEASURES}
+    columns |= {"height_m": height_m, "energy_j": energy_j}
+    for values in columns.values():
+        values[status != "ok"] = np.nan
+    return Evaluations(status=status, reason=tuple("" if s == "ok" else f"it was {s}" for s in status), **columns)
+
+
+def made_meta(study):
+    versions = provenance.versions(study)
+    return {
+        "study": study.as_dict(),
+        "motor": study.motor,
+        "calibration": "reference-1",
+        "seed": study.seed,
+        "contents": CONTENTS,
+        "files": {"motor": None, "calibration": None},
+        "versions": versions,
+        "environment": provenance.environment(),
+        "hash": provenance.digest(provenance.decisive(study, CONTENTS, versions)),
+        "probe": [],
+        "created": "2025-01-01T00:00:00+00:00",
+        "budget": study.evaluations,
+        "finished": False,
+        "stop_reason": None,
+    }
+
+
+def made_generation(study, number, first, evaluations, state=None, seed=0, height_weight=None):
+    designs = np.random.default_rng([seed, number]).uniform(study.lower, study.upper, (len(evaluations.height_m), 7))
+    now = datetime(2025, 1, 1, tzinfo=UTC)
+    return Generation(
+        number=number,
+        first_trial=first,
+        designs=designs,
+        evaluations=evaluations,
+        judgement=judge(evaluations, study.constraints),
+        height_weight=height_weight,
+        state=state,
+        hypervolume=float(number),
+        seconds=float(number) + 0.5,
+        started=now,
+        ended=now,
+    )
+
+
+def made_database(path, generations=None, study=None, **options):
+    """A study database; returns the study and the stored generations.
+
+    Default: two generations with feasible, infeasible and failed trials.
+    """
+    study = study or made_study()
+    create(path, study, made_meta(study), create_algorithm(study).state())
+    if generations is None:
+        generations = [
+            made_generation(
+                study,
+                0,
+                0,
+                made_evaluations(
+                    [0.8, 0.52, np.nan, 1.1], [9.0, 1.0, np.nan, 30.0], ["ok", "ok", "diverged", "ok"], seed=1
+                ),
+                state={"after": 0},
+            ),
+            made_generation(
+                study, 1, 4, made_evaluations([0.7, 0.9], [8.0, 40.0], seed=2), state={"after": 1}, height_weight=0.25
+            ),
+        ]
+    with Store(path, study, **options) as store:
+        for generation in generations:
+            store.add(generation)
+    return study, generations

@@ -1,0 +1,44 @@
+import numpy as np
+import pytest
+
+from pareto_monoped.study.definition import Constraints
+from pareto_monoped.study.scoring import FAILED_VIOLATION, judge, scores
+from tests.study.support import made_evaluations
+
+
+def test_constraints_are_shares_of_their_limits_feasible_at_zero():
+    judgement = judge(made_evaluations([0.55, 0.5225, 1.1], [5.0, 5.0, 5.0]), Constraints())
+    assert judgement.constraints[:, 0] == pytest.approx([0.0, 0.05, -1.0], abs=1e-15)
+    assert judgement.violation == pytest.approx([0.0, 0.05, 0.0], abs=1e-15)
+    assert judgement.state.tolist() == ["feasible", "infeasible", "feasible"]
+
+
+def test_the_violation_is_graded():
+    heights = np.linspace(0.5, 0.6, 21)
+    violation = judge(made_evaluations(heights, np.full(21, 5.0)), Constraints()).violation
+    below = heights < 0.55
+    assert (np.diff(violation[below]) < 0.0).all()
+    assert (violation[~below] == 0.0).all()
+
+
+def test_violations_of_several_constraints_add_up_and_are_all_named():
+    evaluations = made_evaluations([0.44, 0.8], [24.0, 12.0])
+    judgement = judge(evaluations, Constraints(max_energy_j=16.0))
+    assert judgement.violation == pytest.approx([0.2 + 0.5, 0.0])
+    assert judgement.reason == (
+        "height_m = 0.44 is below the limit of 0.55; energy_j = 24 is above the limit of 16",
+        "",
+    )
+
+
+def test_failed_jumps_keep_their_reason_and_are_farther_off_than_any_real_one():
+    evaluations = made_evaluations([np.nan, 0.5], [np.nan, 1.0], ["no_lift_off", "ok"])
+    judgement = judge(evaluations, Constraints())
+    assert judgement.state.tolist() == ["failed", "infeasible"]
+    assert judgement.reason[0] == "it was no_lift_off"
+    assert judgement.violation[0] == FAILED_VIOLATION > judgement.violation[1]
+    assert np.isfinite(scores(evaluations, judgement).minimised()).all()
+
+
+def test_an_ok_status_without_numbers_is_still_a_failure():
+    assert judge(made_evaluations([np.inf], [1.0]), Constraints()).state.tolist() == ["failed"]
