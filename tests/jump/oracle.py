@@ -108,3 +108,17 @@ def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, los
         mujoco.mj_step(model, data)
         energy += np.maximum(torque * 0.5 * (speeds + data.qvel[hinges]), 0.0) * step
     return Jump(height, energy.sum(), energy[0], lift_off, np.nan, np.nan, False, torques)
+
+
+def motors_of(robots, i, calibration):
+    """The drives of robot ``i``, from its data sheet numbers."""
+    drive, motors = calibration.drive, []
+    for j, transmission in enumerate((1.0, drive.chain_efficiency)):
+        motor = Motor(loss=1.0 - (robots.efficiency[i, j] if drive.mesh_losses else 1.0) * transmission)
+        if drive.voltage_limit:
+            constant = robots.ratio[i, j] * robots.torque_constant_n_m_per_a[i, j]
+            peak = drive.peak_torque_scale * robots.peak_torque_n_m[i, j]
+            motor.no_load_speed = robots.no_load_speed_rad_per_s[i, j]
+            motor.corner_speed = motor.no_load_speed - robots.winding_resistance_ohm[i, j] * peak / constant**2
+        motors.append(motor)
+    return motors

@@ -1,0 +1,126 @@
+"""Speed of the batch evaluation, paired against raw ``mj_step`` and against the naive way.
+
+Raw: the same steps of the same models with the recorded torques, (a) by ``mujoco.rollout``, whose loop over ``mj_step``
+is compiled, and (b) by a Python loop over ``mj_step``. Naive: the XML of each design compiled, and the controller in
+Python and NumPy (the tests' oracle). All are timed in turn in every round, medians are compared, and answers are
+compared before any ratio is printed.
+
+    python benchmarks/jump_speed.py [ROUNDS]
+"""
+
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import mujoco
+import mujoco.rollout
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import LOWER, UPPER
+from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.model import mjcf
+from pareto_monoped.robot import RobotArrays, robot_arrays
+from tests.jump.oracle import jump, motors_of
+
+Floats = NDArray[np.float64]
+FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
+AGREEMENT = 1e-9
+
+
+def main(rounds: int) -> None:
+    """Print one line a batch size; ``of raw`` is against ``mujoco.rollout``, ``of loop`` against the Python loop."""
+    calibration, actuators = load_calibration("reference"), map_for("VT8020")
+    one, two = Evaluator(actuators, calibration, 1), Evaluator(actuators, calibration, 2)
+    print(f"{'batch':>6} {'steps':>7} {'us/step':>8} {'of raw':>7} {'of loop':>8} {'x naive':>8} {'2 threads':>10}")
+    for size in (1, 8, 40, 200):
+        designs = np.random.default_rng(size).uniform(LOWER, UPPER, (size, 7))
+        robots = robot_arrays(designs, actuators, calibration.mass)
+        documents = [mjcf(robots, calibration, i) for i in range(size)]
+        answers = one(designs)
+        recorded = [_naive(documents[i], designs[i], robots, i, calibration) for i in range(size)]
+        _same("naive", np.array([[j.height, j.energy] for j in recorded]), answers.height_m, answers.energy_j)
+        torques = [np.array(j.torques) for j in recorded]
+        raw = Raw(documents, torques)
+        _same("raw", raw.heights(), answers.height_m)
+        few = range(min(size, 8))
+        naive_steps = sum(len(torques[i]) for i in few)
+        ways: dict[str, Callable[[], object]] = {
+            "ours": lambda d=designs: one(d),  # type: ignore[misc]
+            "two": lambda d=designs: two(d),  # type: ignore[misc]
+            "raw": raw.rollout,
+            "python": raw.python_loop,
+            "naive": lambda x=documents, d=designs, r=robots, f=few: [  # type: ignore[misc]
+                _naive(mjcf(r, calibration, i), d[i], r, i, calibration) for i in f
+            ],
+        }
+        times: dict[str, list[float]] = {name: [] for name in ways}
+        for _ in range(rounds):
+            for name, way in ways.items():
+                start = time.perf_counter()
+                way()
+                times[name].append(time.perf_counter() - start)
+        steps = sum(len(t) for t in torques)
+        median = {name: statistics.median(values) for name, values in times.items()}
+        naive = median["naive"] / naive_steps
+        print(
+            f"{size:6d} {steps:7d} {median['ours'] / steps * 1e6:8.2f} {median['raw'] / median['ours']:7.2f} "
+            f"{median['python'] / median['ours']:8.2f} {naive / (median['ours'] / steps):8.1f} "
+            f"{median['ours'] / median['two']:10.2f}"
+        )
+
+
+class Raw:
+    """The recorded jumps, stepped again without a controller."""
+
+    def __init__(self, documents: list[str], torques: list[Floats]) -> None:
+        self.torques = torques
+        self.models = [mujoco.MjModel.from_xml_string(document) for document in documents]
+        self.data = [mujoco.MjData(model) for model in self.models]
+        self.starts = []
+        for model, data in zip(self.models, self.data, strict=True):
+            mujoco.mj_resetDataKeyframe(model, data, 0)
+            state = np.empty(mujoco.mj_stateSize(model, FULL))
+            mujoco.mj_getState(model, data, state, FULL)
+            self.starts.append(state)
+
+    def rollout(self) -> list[Floats]:
+        """Each jump's states, by MuJoCo's compiled loop."""
+        states = []
+        for model, data, start, torque in zip(self.models, self.data, self.starts, self.torques, strict=True):
+            mujoco.mj_resetDataKeyframe(model, data, 0)
+            states.append(mujoco.rollout.rollout(model, data, start, torque)[0])
+        return states
+
+    def heights(self) -> Floats:
+        """Highest base height of each jump, shape (n, 1); the state is time, qpos, qvel."""
+        return np.array([[max(0.5, states[0, :, 2].max())] for states in self.rollout()])
+
+    def python_loop(self) -> None:
+        """The same steps by a Python loop."""
+        for model, data, torque in zip(self.models, self.data, self.torques, strict=True):
+            mujoco.mj_resetDataKeyframe(model, data, 0)
+            ctrl = data.ctrl
+            for values in torque:
+                ctrl[:] = values
+                mujoco.mj_step(model, data)
+
+
+def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibration: Calibration):  # type: ignore[no-untyped-def]
+    return jump(document, *design[4:], motors_of(robots, i, calibration), fade=calibration.gate.length_m)  # type: ignore[union-attr]
+
+
+def _same(name: str, values: Floats, *expected: Floats) -> None:
+    worst = np.max(np.abs(values / np.stack(expected, axis=1) - 1.0))
+    if not worst < AGREEMENT:
+        raise SystemExit(f"{name} disagrees by {worst:.2g}: no ratio is printed")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 7)

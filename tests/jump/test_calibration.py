@@ -1,0 +1,89 @@
+from dataclasses import replace
+
+import pytest
+
+from pareto_monoped.errors import CalibrationError
+from pareto_monoped.jump.calibration import FadeGate, calibration_names, load_calibration
+
+
+def test_three_ship_and_the_default_is_the_well_posed_one():
+    assert calibration_names() == ("reference", "ideal", "paper")
+    assert load_calibration().name == "reference"
+    assert isinstance(load_calibration().gate, FadeGate)
+
+
+@pytest.mark.parametrize("name", calibration_names())
+def test_file_and_record_have_the_same_name(name):
+    calibration = load_calibration(name)
+    assert calibration.name == name
+    assert calibration.label == f"{name}-{calibration.version}"
+
+
+def test_paper_is_literal():
+    paper = load_calibration("paper")
+    assert paper.gate.rule == "contact"
+    assert paper.simulation.timestep_s == 0.002
+    assert not paper.drive.voltage_limit
+
+
+def test_ideal_is_reference_without_losses():
+    reference, ideal = load_calibration("reference"), load_calibration("ideal")
+    assert ideal.joints.damping_n_m_s_per_rad == ideal.joints.friction_n_m == 0.0
+    assert not ideal.drive.mesh_losses
+    assert ideal.drive.chain_efficiency == 1.0
+    same = replace(
+        ideal,
+        name=reference.name,
+        version=reference.version,
+        description=reference.description,
+        joints=replace(
+            ideal.joints,
+            damping_n_m_s_per_rad=reference.joints.damping_n_m_s_per_rad,
+            friction_n_m=reference.joints.friction_n_m,
+        ),
+        drive=reference.drive,
+    )
+    assert same == reference
+
+
+def _text(name="reference"):
+    import pareto_monoped
+
+    folder = pareto_monoped.__path__[0]
+    with open(f"{folder}/data/calibrations/{name}.toml", encoding="utf-8") as stream:
+        return stream.read()
+
+
+def test_a_users_file_is_read_by_its_path(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 1", "version = 7"))
+    assert load_calibration(str(path)).label == "mine-7"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("timestep_s = 0.001", "timestep_s = -0.001", "simulation.timestep_s = -0.001"),
+        ("timestep_s = 0.001", "timestep_s = nan", "simulation.timestep_s = nan"),
+        ("[controller]", "[controller]\nrest_lenght_m = 9.0", "rest_lenght_m"),
+        ('integrator = "Euler"', 'integrator = "Leapfrog"', "simulation.integrator = 'Leapfrog'"),
+        ("friction = 1.0\n", "", "friction is missing"),
+        ('rule = "fade"', 'rule = "latch"', "latch"),
+        ("lower_rad = 0.2618", "lower_rad = 3.0", "lower_rad 3.0 must be below upper_rad"),
+        ("[simulation]", "[simulation", "not valid TOML"),
+    ],
+)
+def test_a_wrong_field_is_named_in_one_line(tmp_path, old, new, said):
+    path = tmp_path / "wrong.toml"
+    assert old in _text()
+    path.write_text(_text().replace(old, new))
+    with pytest.raises(CalibrationError) as caught:
+        load_calibration(str(path))
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["refrence", "missing.toml", "no/such/file"])
+def test_an_unknown_name_or_file_is_an_input_error(name):
+    with pytest.raises(CalibrationError, match=name):
+        load_calibration(name)
