@@ -1,0 +1,1 @@
+"""Stage 1: motors, planetary gear rules, strength, part dimensions and masses; gear ratio -> lightest actuator."""

@@ -1,0 +1,196 @@
+"""One actuator: motor, gearbox, parts, and what it can do."""
+
+from dataclasses import dataclass
+
+from pareto_monoped.actuator.external import external_parts
+from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency
+from pareto_monoped.actuator.internal import internal_parts
+from pareto_monoped.actuator.layout import Family, Layout, layout
+from pareto_monoped.actuator.motors import HolePattern, Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.strength import face_width_mm
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutputInterface:
+    """Output flange, the same on every actuator: its face lies at z = 0 of the actuator frame.
+
+    Attributes:
+        flange_radius_mm: of the turning face.
+        bolts: M3 threads in the flange, the first on the x axis.
+        thread_depth_mm: of those.
+    """
+
+    flange_radius_mm: float
+    bolts: HolePattern
+    thread_depth_mm: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MountInterface:
+    """How the housing is held, the same on every actuator of a motor and family.
+
+    Attributes:
+        housing_radius_mm: largest radius of the housing.
+        opening_radius_mm: radius inside which the face at z = 0 is not the housing's but turns or is open.
+        bolts: M3 threads in the face at z = 0, the first on the x axis.
+        thread_depth_mm: of those.
+        back_bolts: the motor's own mounting pattern in the backplate: threads in the ISSPG's; in the ESSPG's, clearance
+            holes for the screws that reach the motor's base.
+        back_thickness_mm: of the backplate.
+    """
+
+    housing_radius_mm: float
+    opening_radius_mm: float
+    bolts: HolePattern
+    thread_depth_mm: float
+    back_bolts: HolePattern
+    back_thickness_mm: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Actuator:
+    """A motor with a planetary gearbox, and all its parts in the actuator frame (see ``layout``).
+
+    Attributes:
+        motor: the motor.
+        family: ``ISSPG`` or ``ESSPG``.
+        gears: the gear set.
+        face_width_mm: of all gears.
+        ratio: motor speed over output speed, the real one of the gear set.
+        mass_kg: sum over the parts.
+        peak_torque_n_m, continuous_torque_n_m: at the output, ratio times the motor's (paper, section III-A), no loss.
+        no_load_speed_rad_per_s: at the output.
+        efficiency: of the gear mesh.
+        contact_ratio_sun, contact_ratio_ring: of sun with planet, planet with ring.
+        reflected_inertia_kg_m2: of everything that turns with the motor or in the gearbox, at the output.
+        length_mm: from the output face to the back.
+        output, mount: where the links are bolted on.
+        parts: every part.
+    """
+
+    motor: Motor
+    family: Family
+    gears: GearSet
+    face_width_mm: float
+    ratio: float
+    mass_kg: float
+    peak_torque_n_m: float
+    continuous_torque_n_m: float
+    no_load_speed_rad_per_s: float
+    efficiency: float
+    contact_ratio_sun: float
+    contact_ratio_ring: float
+    reflected_inertia_kg_m2: float
+    length_mm: float
+    output: OutputInterface
+    mount: MountInterface
+    parts: tuple[Part, ...]
+
+    def mass_breakdown_kg(self) -> dict[str, float]:
+        """Mass by part, all instances of each."""
+        return {part.name: float(part.mass_kg()) for part in self.parts}
+
+
+def actuator_parts(at: Layout, motor: Motor, family: Family, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """All parts of one actuator, or of many at once."""
+    build = internal_parts if family == "ISSPG" else external_parts
+    return build(at, motor, settings)
+
+
+def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: ActuatorSettings) -> Numbers:
+    """Sum over the parts; the same for one actuator and for many at once."""
+    mass: Numbers = 0.0
+    for part in actuator_parts(at, motor, family, settings):
+        mass = mass + part.mass_kg()
+    return mass
+
+
+def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings) -> Actuator:
+    """The actuator around one gear set, which is taken as it is: no constraint is checked."""
+    width = float(face_width_mm(gears, motor, settings.parts.gears))
+    at = layout(motor, family, gears, width, settings)
+    parts = actuator_parts(at, motor, family, settings)
+    ratio = float(gears.ratio)
+    outer, inner = contact_ratios(gears)
+    data = settings.parts
+    return Actuator(
+        motor=motor,
+        family=family,
+        gears=gears,
+        face_width_mm=width,
+        ratio=ratio,
+        mass_kg=float(sum(part.mass_kg() for part in parts)),
+        peak_torque_n_m=ratio * motor.peak_torque_n_m,
+        continuous_torque_n_m=ratio * motor.continuous_torque_n_m,
+        no_load_speed_rad_per_s=motor.no_load_speed_rad_per_s / ratio,
+        efficiency=float(efficiency(gears, data.gears.mesh_friction_coefficient)),
+        contact_ratio_sun=float(outer),
+        contact_ratio_ring=float(inner),
+        reflected_inertia_kg_m2=reflected_inertia_kg_m2(parts, gears, motor),
+        length_mm=-min(float(prism.z0_mm) for part in parts for prism in part.prisms),
+        output=output_interface(settings),
+        mount=mount_interface(motor, family, settings),
+        parts=parts,
+    )
+
+
+def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:
+    """Inertia at the output of all that moves when the output turns.
+
+    Rotor, sun, coupling and shafts at the square of the ratio; the carrier with all that is fixed to it, once; the
+    planets once on their orbit, and about themselves at the square of their speed against the output's,
+    1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with its own figure, not with its envelope's.
+    """
+    ratio = float(gears.ratio)
+    spin = 1.0 - float(gears.ring_teeth) / float(gears.planet_teeth)
+    total = motor.rotor_inertia_kg_m2 * ratio**2
+    for part in parts:
+        if part.name == "motor_rotor" or part.group == "housing":
+            continue
+        about_axis = float(part.mass_properties().inertia_kg_m2[2, 2])
+        if part.group == "rotor":
+            total += ratio**2 * about_axis
+        elif part.group == "planet":
+            orbit = float(part.mass_kg()) * (1e-3 * float(part.pitch_radius_mm)) ** 2
+            total += orbit + spin**2 * (about_axis - orbit)
+        else:
+            total += about_axis
+    return total
+
+
+def output_interface(settings: ActuatorSettings) -> OutputInterface:
+    """The output flange's bolt pattern."""
+    data = settings.parts
+    return OutputInterface(
+        flange_radius_mm=data.carrier.flange_radius_mm,
+        bolts=HolePattern(
+            pitch_circle_mm=data.interface.output_bolt_circle_mm,
+            diameter_mm=3.0,
+            count=data.interface.output_bolt_count,
+        ),
+        thread_depth_mm=data.carrier.thread_depth_mm,
+    )
+
+
+def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) -> MountInterface:
+    """The housing's bolt patterns."""
+    body = motor.frameless if family == "ISSPG" else motor.framed
+    assert body is not None
+    assert motor.mount_holes is not None
+    case = settings.parts.case
+    radius = 0.5 * body.outer_diameter_mm
+    return MountInterface(
+        housing_radius_mm=radius + case.flange_width_mm,
+        opening_radius_mm=radius + case.motor_clearance_mm,
+        bolts=HolePattern(
+            pitch_circle_mm=2.0 * (radius + case.bolt_offset_mm),
+            diameter_mm=3.0,
+            count=settings.parts.interface.mount_bolt_count,
+        ),
+        thread_depth_mm=case.rim_mm,
+        back_bolts=motor.mount_holes,
+        back_thickness_mm=case.plate_mm,
+    )

@@ -1,0 +1,214 @@
+"""Parts that both families share: gears, carriers, pins, bearings at the front."""
+
+import numpy as np
+
+from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
+from pareto_monoped.actuator.settings import ActuatorSettings, PartData
+from pareto_monoped.geometry.gears import DEDENDUM
+from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
+
+M3_THREAD_MM = 1.25
+"""Radius of a tapping hole for M3 (2.5 mm)."""
+M3_CLEARANCE_MM = 1.6
+"""Radius of a clearance hole for M3, fine (ISO 273: 3.2 mm)."""
+
+_ALUMINIUM_COLOUR = (0.78, 0.80, 0.83)
+_STEEL_COLOUR = (0.45, 0.46, 0.48)
+BEARING_STEEL = Material(name="bearing steel", density_kg_per_m3=7800.0, colour=(0.62, 0.64, 0.68))
+MOTOR_STATOR = Material(name="motor stator", density_kg_per_m3=4680.0, colour=(0.72, 0.45, 0.20))
+MOTOR_ROTOR = Material(name="motor rotor", density_kg_per_m3=7500.0, colour=(0.25, 0.26, 0.30))
+
+
+def aluminium(data: PartData) -> Material:
+    """For all machined parts that are no gears, pins or shafts (paper, section III-A)."""
+    return Material(name="aluminium", density_kg_per_m3=data.density.aluminium_kg_per_m3, colour=_ALUMINIUM_COLOUR)
+
+
+def steel(data: PartData) -> Material:
+    """For pins, shafts and rings."""
+    return Material(name="steel", density_kg_per_m3=data.density.steel_kg_per_m3, colour=_STEEL_COLOUR)
+
+
+def gear_steel(data: PartData) -> Material:
+    """For sun, planets and ring."""
+    return Material(name="gear steel", density_kg_per_m3=data.gears.density_kg_per_m3, colour=(0.55, 0.55, 0.57))
+
+
+def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
+    """One prism between two heights, lower first, from radii or shapes; none if the one described has no height.
+
+    Of an array nothing is left out: a prism without height weighs nothing.
+    """
+    if np.ndim(z0_mm) == 0 and np.ndim(z1_mm) == 0 and float(z1_mm) - float(z0_mm) < 1e-9:
+        return ()
+    shapes = tuple(Circle(radius_mm=hole) if isinstance(hole, float | int | np.ndarray) else hole for hole in holes)
+    disc = Circle(radius_mm=outline) if isinstance(outline, float | int | np.ndarray) else outline
+    return (Prism(outline=disc, z0_mm=z0_mm, z1_mm=z1_mm, holes=shapes),)
+
+
+def tube(z0_mm: Numbers, z1_mm: Numbers, outer_mm: Numbers, inner_mm: Numbers, *holes: Shape) -> tuple[Prism, ...]:
+    """As ``slab``, for a ring; none if the one described has no wall."""
+    if np.ndim(outer_mm) == 0 and np.ndim(inner_mm) == 0 and float(outer_mm) - float(inner_mm) < 1e-9:
+        return ()
+    return slab(z0_mm, z1_mm, outer_mm, inner_mm, *holes)
+
+
+def output_holes(settings: ActuatorSettings, radius_mm: float = M3_THREAD_MM) -> Pattern:
+    """Bolt pattern of the output flange."""
+    data = settings.parts.interface
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
+
+
+def case_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3_THREAD_MM) -> Pattern:
+    """Bolt pattern of the housing's face towards what carries it, and of the backplate."""
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
+
+
+def vents(inner_mm: float, outer_mm: float, wall_mm: float) -> tuple[Pattern, ...]:
+    """As many round holes as fit between two radii, with ``wall_mm`` around each; none if they would be too small."""
+    radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
+    if radius < M3_CLEARANCE_MM:
+        return ()
+    count = int(np.pi / np.arcsin((radius + wall_mm) / middle))
+    return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)
+
+
+def bought_bearing(name: str, bearing: object, z_front_mm: Numbers, group: str, note: str) -> Part:
+    """A ball bearing as the ring it fills, with its catalogue mass."""
+    inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm  # type: ignore[attr-defined]
+    return Part(
+        name=name,
+        material=BEARING_STEEL,
+        prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),  # type: ignore[attr-defined]
+        process="bought",
+        group=group,
+        catalogue_mass_kg=bearing.mass_kg,  # type: ignore[attr-defined]
+        note=note,
+    )
+
+
+def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
+    """A planet: recessed on both faces between hub and rim where there is room for it.
+
+    The rim keeps 1.2 tooth depths (AGMA 2001-D04), the web a share of the face width, which is usual for turned blanks.
+    """
+    data = settings.parts.gears
+    gears = at.gears
+    shape = gears.planet(data.backlash_mm)
+    bore = 0.5 * data.planet_bore_mm
+    hub = bore + data.planet_hub_wall_mm
+    rim = shape.root_radius_mm - 1.2 * (1.0 + DEDENDUM) * gears.module_mm
+    recessed = rim - hub >= data.planet_recess_min_mm
+    low, high = at.z_gear_back, at.z_gear_front
+    if np.ndim(recessed) == 0 and not recessed:
+        return slab(low, high, shape, bore)
+    rim = np.where(recessed, rim, hub)[()]
+    depth = 0.5 * (1.0 - data.planet_web_share) * at.face_width_mm
+    return (
+        *slab(low, low + depth, shape, rim),
+        *tube(low, low + depth, hub, bore),
+        *slab(low + depth, high - depth, shape, bore),
+        *slab(high - depth, high, shape, rim),
+        *tube(high - depth, high, hub, bore),
+    )
+
+
+def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """Planets with bushes and pins, ring."""
+    data = settings.parts
+    carrier, gears = data.carrier, at.gears
+    pin = 0.5 * carrier.pin_diameter_mm
+    material = gear_steel(data)
+    spread = {"count": gears.planets, "pitch_radius_mm": at.r_pins}
+    pin_low = at.z_secondary_front - carrier.pin_depth_mm
+    return (
+        Part(
+            name="planet",
+            material=material,
+            prisms=planet_prisms(at, settings),
+            process="machined",
+            group="planet",
+            note=f"hardened and wire-cut; backlash {data.gears.backlash_mm} mm",
+            **spread,
+        ),
+        Part(
+            name="planet_bush",
+            material=Material(
+                name="bush bronze", density_kg_per_m3=data.density.bush_kg_per_m3, colour=(0.72, 0.53, 0.26)
+            ),
+            prisms=tube(at.z_gear_back, at.z_gear_front, 0.5 * data.gears.planet_bore_mm, pin),
+            process="bought",
+            group="planet",
+            note="PTFE bronze bush, pressed into the planet, cut to its width",
+            **spread,
+        ),
+        Part(
+            name="planet_pin",
+            material=steel(data),
+            prisms=slab(pin_low, z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm), pin),
+            process="machined",
+            group="output",
+            note="hardened dowel, pressed into both carriers, M3 thread in the rear end",
+            **spread,
+        ),
+        Part(
+            name="ring",
+            material=material,
+            prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
+            process="machined",
+            group="housing",
+            note="wire-cut; bonded into its housing",
+        ),
+    )
+
+
+def z_pin_front(thread_depth_mm: float, diaphragm_mm: float) -> float:
+    """Height of the pins' front ends: behind the carrier's diaphragm."""
+    return -(thread_depth_mm + diaphragm_mm)
+
+
+def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """Carrier with output flange, retaining ring, main and end bearing, secondary carrier."""
+    data = settings.parts
+    carrier = data.carrier
+    material = aluminium(data)
+    threads = output_holes(settings)
+    z_diaphragm = -carrier.thread_depth_mm
+    z_pins = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
+    pins = Pattern(radius_mm=0.5 * carrier.pin_diameter_mm, pitch_radius_mm=at.r_pins, count=at.gears.planets)
+    screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=at.r_pins, count=at.gears.planets)
+    seat = 0.5 * at.end_bearing.outer_diameter_mm
+    z_ring = at.z_bearing_front + RETAINING_RING_MM
+    z_split = at.z_secondary_front - carrier.pin_depth_mm
+    body = (
+        *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads),
+        *slab(z_diaphragm, -carrier.flange_thickness_mm, at.r_bore, seat, threads),
+        *slab(z_pins, z_diaphragm, at.r_bore, seat - data.case.lip_mm),
+        *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
+        *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
+    )
+    return (
+        Part(name="carrier", material=material, prisms=body, process="machined", group="output"),
+        Part(
+            name="secondary_carrier",
+            material=material,
+            prisms=(
+                *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins),
+                *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws),
+            ),
+            process="machined",
+            group="output",
+            note="countersunk M3 screws into the pins",
+        ),
+        Part(
+            name="retaining_ring",
+            material=steel(data),
+            prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, at.r_bore),
+            process="bought",
+            group="output",
+            note="as DIN 471, on the carrier in front of the main bearing",
+        ),
+        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, "output", "thin-section ball bearing"),
+        bought_bearing("end_bearing", at.end_bearing, 0.0, "output", "619/6: carries the sun's end in the carrier"),
+    )

@@ -1,0 +1,189 @@
+"""Parts of the ESSPG: gearbox in front of the framed motor."""
+
+import numpy as np
+
+from pareto_monoped.actuator.common import (
+    M3_CLEARANCE_MM,
+    M3_THREAD_MM,
+    MOTOR_ROTOR,
+    MOTOR_STATOR,
+    aluminium,
+    carrier_parts,
+    case_holes,
+    gear_parts,
+    gear_steel,
+    slab,
+    steel,
+    tube,
+    vents,
+)
+from pareto_monoped.actuator.internal import back_holes
+from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Pattern
+
+_END_PLAY_MM = 0.5
+_BORE_RING_MM = 1.5
+"""Thickness of the retaining ring behind the main bearing: DIN 472 has 1.5 to 2.5 mm in the range used."""
+_GROOVE_WALL_MM = 1.0
+"""What is left of the bearing's seat behind that ring's groove."""
+_FLANGE_WIDTH_MM = 5.5
+"""Of the flange between ring housing and casing: an M3 thread with 1.5 mm of metal to either side."""
+_HUB_MM = 4.0
+"""Metal around the sun's shaft in the coupling."""
+
+
+def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """All parts of an ESSPG, or of many at once.
+
+    The motor's base is bolted to the backplate, its turning face carries the coupling with the sun's shaft; the casing
+    is the bridge around the motor from the backplate to the ring housing, which carries ring and main bearing.
+    """
+    data = settings.parts
+    case, coupling = data.case, data.coupling
+    frame = motor.framed
+    assert frame is not None
+    assert motor.output_holes is not None
+    alu = aluminium(data)
+
+    z_coupling = at.z_secondary_back - case.motor_carrier_clearance_mm
+    z_motor = z_coupling - coupling.thickness_mm
+    z_plate = z_motor - frame.length_mm
+    z_end = z_plate - case.plate_mm
+    z_seat_back = at.z_bearing_back - _BORE_RING_MM - _GROOVE_WALL_MM
+    z_web = at.z_gear_back - case.flange_mm
+
+    r_boss = at.r_seat + case.seat_wall_mm
+    r_tube = np.maximum(at.r_ring + case.ring_wall_mm, r_boss)
+    r_tube_in = np.maximum(at.r_ring - case.ring_lip_mm, r_boss)
+    r_flange = r_tube + _FLANGE_WIDTH_MM
+    r_web = np.maximum(r_flange, at.r_case + case.wall_mm)
+    bolts = r_tube + 0.5 * _FLANGE_WIDTH_MM
+    count = data.interface.mount_bolt_count
+    threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=bolts, count=count)
+    screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=bolts, count=count)
+    mount, back = case_holes(at, settings), case_holes(at, settings, M3_CLEARANCE_MM)
+    shaft = 0.5 * data.gears.sun_bore_mm
+
+    output = motor.output_holes
+    rotor_screws = Pattern(
+        radius_mm=0.5 * output.diameter_mm + 0.1, pitch_radius_mm=0.5 * output.pitch_circle_mm, count=output.count
+    )
+    rotor_threads = Pattern(
+        radius_mm=0.5 * output.diameter_mm - 0.25, pitch_radius_mm=0.5 * output.pitch_circle_mm, count=output.count
+    )
+    r_coupling = 0.5 * (output.pitch_circle_mm + output.diameter_mm) + coupling.rim_mm - 1.5
+    # Lightening holes between hub and bolt circle, as large as webs of 2 mm allow.
+    low, high = shaft + _HUB_MM, 0.5 * (output.pitch_circle_mm - output.diameter_mm) - 2.0
+    middle = 0.5 * (low + high)
+    window = min(0.5 * (high - low) - 1.0, middle * np.sin(np.pi / 6.0) - 1.0)
+    windows = (Pattern(radius_mm=window, pitch_radius_mm=middle, count=6),) if window >= 2.0 else ()
+
+    rotor_share = motor.rotor_share()
+    base = frame_base_mm(frame.length_mm)
+    mount_holes = motor.mount_holes
+    assert mount_holes is not None
+    r_mount = 0.5 * (mount_holes.pitch_circle_mm + mount_holes.diameter_mm)
+    back_vents = vents(r_mount + case.vent_wall_mm, at.r_case, case.vent_wall_mm)
+    return (
+        *gear_parts(at, settings),
+        *carrier_parts(at, settings),
+        Part(
+            name="sun",
+            material=gear_steel(data),
+            prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
+            process="machined",
+            group="rotor",
+            note="pressed on its shaft",
+        ),
+        Part(
+            name="sun_shaft",
+            material=steel(data),
+            prisms=slab(z_motor, -_END_PLAY_MM, shaft),
+            process="machined",
+            group="rotor",
+            note="hardened dowel, pressed into the coupling",
+        ),
+        Part(
+            name="coupling",
+            material=alu,
+            prisms=slab(z_motor, z_coupling, r_coupling, shaft, rotor_screws, *windows),
+            process="machined",
+            group="rotor",
+            note="bolted to the motor's turning face",
+        ),
+        Part(
+            name="ring_housing",
+            material=alu,
+            prisms=(
+                *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount),
+                *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
+                *tube(at.z_bearing_front, -case.plate_mm, r_boss, at.r_open),
+                *tube(z_seat_back, at.z_bearing_front, r_boss, at.r_seat),
+                *tube(z_seat_back, -case.plate_mm, r_tube, r_tube_in),
+                *tube(at.z_gear_front, z_seat_back, r_tube, at.r_ring - case.ring_lip_mm),
+                *tube(at.z_gear_back + case.flange_mm, at.z_gear_front, r_tube, at.r_ring),
+                *tube(at.z_gear_back, at.z_gear_back + case.flange_mm, r_flange, at.r_ring, screws),
+            ),
+            process="machined",
+            group="housing",
+            note="carries main bearing and ring",
+        ),
+        Part(
+            name="bore_retaining_ring",
+            material=steel(data),
+            prisms=tube(at.z_bearing_back - _BORE_RING_MM, at.z_bearing_back, at.r_seat, at.r_open),
+            process="bought",
+            group="housing",
+            note="as DIN 472, behind the main bearing",
+        ),
+        Part(
+            name="casing",
+            material=alu,
+            prisms=(
+                *tube(z_web, at.z_gear_back, r_web, at.r_ring - case.ring_lip_mm, threads),
+                *tube(z_plate + case.flange_mm, z_web, at.r_case + case.wall_mm, at.r_case),
+                *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
+            ),
+            process="machined",
+            group="housing",
+        ),
+        Part(
+            name="backplate",
+            material=alu,
+            prisms=slab(z_end, z_plate, at.r_plate, 8.0, back, back_holes(motor, 0.5), *back_vents),
+            process="machined",
+            group="housing",
+        ),
+        Part(
+            name="motor_stator",
+            material=MOTOR_STATOR,
+            prisms=(
+                *slab(z_plate, z_plate + base, at.r_stator_out, back_holes(motor, -0.8)),
+                *tube(z_plate + base, z_motor - base - case.rotor_clearance_mm, at.r_stator_out, at.r_stator_in),
+            ),
+            process="bought",
+            group="housing",
+            catalogue_mass_kg=(1.0 - rotor_share) * frame.mass_kg,
+            note=f"{motor.name}, framed: stator, base and bearings",
+        ),
+        Part(
+            name="motor_rotor",
+            material=MOTOR_ROTOR,
+            prisms=(
+                *slab(z_motor - base, z_motor, at.r_motor, rotor_threads),
+                *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
+            ),
+            process="bought",
+            group="rotor",
+            catalogue_mass_kg=rotor_share * frame.mass_kg,
+            note=f"{motor.name}, framed: rotor with its face",
+        ),
+    )
+
+
+def frame_base_mm(length_mm: float) -> float:
+    """Thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones."""
+    return min(3.0, 0.1 * length_mm)

@@ -1,0 +1,185 @@
+"""Parts of the ISSPG: gearbox inside the stator of the frameless motor."""
+
+import numpy as np
+
+from pareto_monoped.actuator.common import (
+    M3_CLEARANCE_MM,
+    M3_THREAD_MM,
+    MOTOR_ROTOR,
+    MOTOR_STATOR,
+    aluminium,
+    bought_bearing,
+    carrier_parts,
+    case_holes,
+    gear_parts,
+    gear_steel,
+    slab,
+    tube,
+    vents,
+)
+from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Pattern
+
+_END_PLAY_MM = 0.5
+"""From the sun shaft's end to the output face."""
+
+
+def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """All parts of an ISSPG, or of many at once.
+
+    The ring housing is one turned piece, solid between ring and stator: it carries the main bearing, the ring and the
+    stator, takes the stator's torque and its heat. Where the gears need more depth than the stator has, the stator
+    sits further back on it and the case grows.
+    """
+    data = settings.parts
+    case, coupling = data.case, data.coupling
+    kit = motor.frameless
+    assert kit is not None
+    assert kit.stator_height_mm is not None
+    alu = aluminium(data)
+    height, bell = kit.stator_height_mm, kit.bell_thickness_mm
+
+    # Where the main bearing is too large for the stator's bore, its seat stands in front of the stator.
+    fits = at.r_seat + case.ring_wall_mm <= at.r_stator_in
+    r_seat_out = np.where(fits, at.r_stator_in, at.r_seat + case.ring_wall_mm)[()]
+    z_flange = -(case.plate_mm + case.flange_mm)
+    z_lip = at.z_shoulder
+    z_free = np.where(fits, z_flange, z_lip)[()] - case.rotor_clearance_mm
+    # The rotor's cavity is as high as the stator; turned past each other with play at the back.
+    z_bell = np.minimum(
+        z_free - height - case.rotor_clearance_mm, at.z_secondary_back - case.motor_carrier_clearance_mm
+    )
+    z_stator_back = z_bell + case.rotor_clearance_mm
+    z_coupling = z_bell - bell
+    z_seat = z_coupling - coupling.thickness_mm - case.bearing_play_mm
+    z_plate = z_seat - at.rear_bearing.width_mm
+    z_end = z_plate - case.wall_mm
+
+    r_flange = r_seat_out + case.flange_width_mm - 1.0
+    flange_bolts = r_flange - 0.5 * (case.flange_width_mm - 1.0)
+    count = data.interface.mount_bolt_count
+    flange_threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=flange_bolts, count=count)
+    flange_screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=flange_bolts, count=count)
+    mount, back = case_holes(at, settings), case_holes(at, settings, M3_CLEARANCE_MM)
+    bell_circle = 0.5 * coupling.bolt_circle_mm
+    bell_screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=bell_circle, count=coupling.bolt_count)
+    bell_threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=bell_circle, count=coupling.bolt_count)
+
+    # Opening of the lip behind the main bearing: holds its outer ring and the ring gear, clears the carrier's shoulder.
+    r_lip = np.maximum(
+        np.minimum(at.r_seat - case.lip_mm, at.r_ring - 0.5 * case.ring_lip_mm),
+        at.r_bore + data.carrier.shoulder_height_mm + case.rotor_clearance_mm,
+    )
+    shaft, journal = coupling.shaft_radius_mm, 0.5 * at.end_bearing.inner_diameter_mm
+    rear_seat = 0.5 * at.rear_bearing.outer_diameter_mm
+    rotor_share = motor.rotor_share()
+    mount_holes = motor.mount_holes
+    assert mount_holes is not None
+    r_mount = 0.5 * (mount_holes.pitch_circle_mm + mount_holes.diameter_mm)
+    back_vents = vents(r_mount + case.vent_wall_mm, at.r_case, case.vent_wall_mm)
+    return (
+        *gear_parts(at, settings),
+        *carrier_parts(at, settings),
+        Part(
+            name="sun",
+            material=gear_steel(data),
+            prisms=(
+                *slab(at.z_gear_front, -_END_PLAY_MM, journal),
+                *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
+                *slab(z_plate, at.z_gear_back, shaft),
+            ),
+            process="machined",
+            group="rotor",
+            note="one piece with its shaft",
+        ),
+        Part(
+            name="coupling",
+            material=alu,
+            prisms=slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
+            process="machined",
+            group="rotor",
+            note="pressed on the sun's shaft, bolted to the bell",
+        ),
+        Part(
+            name="casing",
+            material=alu,
+            prisms=(
+                *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws),
+                *tube(at.z_bearing_front, -case.plate_mm, at.r_seat, at.r_open),
+                *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
+                *tube(z_plate + case.flange_mm, -case.rim_mm, at.r_case + case.wall_mm, at.r_case),
+                *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
+            ),
+            process="machined",
+            group="housing",
+        ),
+        Part(
+            name="ring_housing",
+            material=alu,
+            prisms=(
+                *tube(z_flange, -case.plate_mm, r_flange, at.r_seat, flange_threads),
+                *tube(at.z_bearing_back, z_flange, r_seat_out, at.r_seat),
+                *tube(z_lip, at.z_bearing_back, r_seat_out, r_lip),
+                *tube(at.z_gear_front, z_lip, at.r_stator_in, r_lip),
+                *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
+                *tube(
+                    np.minimum(z_stator_back, at.z_gear_back),
+                    at.z_gear_back,
+                    at.r_stator_in,
+                    at.r_stator_in - case.ring_wall_mm,
+                ),
+            ),
+            process="machined",
+            group="housing",
+            note="carries main bearing, ring and stator; the stator is bonded on",
+        ),
+        Part(
+            name="backplate",
+            material=alu,
+            prisms=(
+                *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_holes(motor, -0.8), *back_vents),
+                *tube(z_plate, z_seat, rear_seat + case.seat_wall_mm, rear_seat),
+            ),
+            process="machined",
+            group="housing",
+        ),
+        bought_bearing("rear_bearing", at.rear_bearing, z_seat, "housing", "6800: carries the rotor"),
+        Part(
+            name="motor_stator",
+            material=MOTOR_STATOR,
+            prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
+            process="bought",
+            group="housing",
+            catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
+            note=f"{motor.name}, frameless",
+        ),
+        Part(
+            name="motor_rotor",
+            material=MOTOR_ROTOR,
+            prisms=(
+                *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
+                *slab(z_coupling, z_bell, at.r_motor, shaft + 1.0, bell_screws),
+            ),
+            process="bought",
+            group="rotor",
+            catalogue_mass_kg=rotor_share * kit.mass_kg,
+            note=f"{motor.name}, frameless",
+        ),
+    )
+
+
+def back_holes(motor: Motor, play_mm: float) -> Pattern:
+    """The motor's own mounting pattern in the backplate.
+
+    Args:
+        motor: which one.
+        play_mm: added to the diameter: 0.5 for clearance holes, -0.8 for threads.
+    """
+    holes = motor.mount_holes
+    assert holes is not None
+    return Pattern(
+        radius_mm=0.5 * (holes.diameter_mm + play_mm), pitch_radius_mm=0.5 * holes.pitch_circle_mm, count=holes.count
+    )

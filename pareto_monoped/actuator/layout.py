@@ -1,0 +1,126 @@
+"""Radii and heights of an actuator: where every part begins and ends, for one gear set or for arrays of them.
+
+Actuator frame: z is the gearbox axis, z = 0 the face by which the housing is bolted to what carries it, and the output
+flange is flush with it and points to +z; everything lies at z <= 0. Both families have the same front. From the front:
+
+    output flange, main bearing around the carrier | planets between sun and ring | secondary carrier | coupling, motor
+
+In the ISSPG the stator sits on the ring housing, around the gears; in the ESSPG the motor follows behind them.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from pareto_monoped.actuator.bearings import Bearing, main_bearing, small_bearing
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.motors import AIR_GAP_MM, Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.shapes import Numbers
+
+Family = Literal["ISSPG", "ESSPG"]
+FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
+
+RETAINING_RING_MM = 1.75
+"""Thickness of the retaining ring in front of the main bearing: DIN 471 for 40 mm; 1.5 to 2.5 mm in the range used."""
+RING_GROOVE_WALL_MM = 0.75
+"""What is left of the carrier in front of that ring's groove; the flange in front of it carries the rest."""
+END_BEARING_BORE_MM = 6.0
+"""Bearing that carries the sun's end in the carrier."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """All that parts have in common; z values are negative, r values radii, in mm."""
+
+    gears: GearSet
+    face_width_mm: Numbers
+    bearing: Bearing
+    end_bearing: Bearing
+    rear_bearing: Bearing
+    # Radii.
+    r_plate: float
+    r_case: float
+    r_bolts: float
+    r_motor: float
+    r_stator_in: float
+    r_stator_out: float
+    r_rotor_in: float
+    r_bore: Numbers
+    r_seat: Numbers
+    r_open: Numbers
+    r_pins: Numbers
+    r_ring: Numbers
+    r_carrier_in: Numbers
+    r_secondary_in: Numbers
+    r_secondary_out: Numbers
+    # Heights, from the front.
+    z_bearing_front: float
+    z_bearing_back: Numbers
+    z_shoulder: Numbers
+    z_gear_front: Numbers
+    z_gear_back: Numbers
+    z_secondary_front: Numbers
+    z_secondary_back: Numbers
+
+
+def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> float:
+    """D_GB, the largest diameter of the gearbox (paper, after eq. 5)."""
+    if family == "ISSPG":
+        assert motor.frameless is not None
+        return motor.frameless.stator_inner_diameter_mm - settings.diameter_clearance_mm
+    assert motor.framed is not None
+    return motor.framed.outer_diameter_mm - settings.diameter_clearance_mm
+
+
+def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers, settings: ActuatorSettings) -> Layout:
+    """The common layout of an actuator."""
+    data = settings.parts
+    carrier, case = data.carrier, data.case
+    r_pins = gears.carrier_radius_mm
+    least_bore = np.maximum(
+        2.0 * r_pins + carrier.bearing_clearance_mm, 2.0 * carrier.flange_radius_mm + carrier.flange_clearance_mm
+    )
+    bearing = main_bearing(least_bore, settings.bearings)
+    body = motor.frameless if family == "ISSPG" else motor.framed
+    assert body is not None
+    r_motor = 0.5 * body.outer_diameter_mm
+    stator_in, stator_out = motor.stator_diameters_mm
+    ring_width = data.gears.ring_width_internal_mm if family == "ISSPG" else data.gears.ring_width_external_mm
+    z_bearing_front = -(carrier.flange_thickness_mm + RING_GROOVE_WALL_MM + RETAINING_RING_MM)
+    z_bearing_back = z_bearing_front - bearing.width_mm
+    z_shoulder = z_bearing_back - carrier.shoulder_thickness_mm
+    z_gear_front = z_shoulder - carrier.planet_clearance_mm
+    z_gear_back = z_gear_front - face_width_mm
+    z_secondary_front = z_gear_back - carrier.planet_clearance_mm
+    pin_reach = 0.5 * carrier.pin_diameter_mm + carrier.pin_wall_mm
+    return Layout(
+        gears=gears,
+        face_width_mm=face_width_mm,
+        bearing=bearing,
+        end_bearing=small_bearing(END_BEARING_BORE_MM),
+        rear_bearing=small_bearing(2.0 * data.coupling.shaft_radius_mm),
+        r_plate=r_motor + case.flange_width_mm,
+        r_case=r_motor + case.motor_clearance_mm,
+        r_bolts=r_motor + case.bolt_offset_mm,
+        r_motor=r_motor,
+        r_stator_in=0.5 * stator_in,
+        r_stator_out=0.5 * stator_out,
+        r_rotor_in=0.5 * stator_out + AIR_GAP_MM,
+        r_bore=0.5 * bearing.inner_diameter_mm,
+        r_seat=0.5 * bearing.outer_diameter_mm,
+        r_open=0.5 * bearing.outer_diameter_mm - case.lip_mm,
+        r_pins=r_pins,
+        r_ring=gears.ring_pitch_radius_mm + ring_width,
+        r_carrier_in=r_pins - pin_reach,
+        r_secondary_in=np.maximum(r_pins - pin_reach, gears.sun().tip_radius_mm + carrier.sun_clearance_mm),
+        r_secondary_out=r_pins + pin_reach,
+        z_bearing_front=z_bearing_front,
+        z_bearing_back=z_bearing_back,
+        z_shoulder=z_shoulder,
+        z_gear_front=z_gear_front,
+        z_gear_back=z_gear_back,
+        z_secondary_front=z_secondary_front,
+        z_secondary_back=z_secondary_front - carrier.secondary_thickness_mm,
+    )

@@ -1,0 +1,139 @@
+"""The result of stage 1: for every ratio interval the lightest actuator, or what forbids one."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.layout import Family
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.errors import DesignError
+
+RATIO_LOW = 4
+RATIO_HIGH = 15
+"""The map covers the half-open intervals [4.0, 4.1) to [14.9, 15.0) (paper, section III-A)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A gear set in a family, weighed."""
+
+    family: Family
+    gears: GearSet
+    face_width_mm: float
+    mass_kg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FamilyResult:
+    """What the search found for one family in one interval.
+
+    Attributes:
+        best, runner_up: the lightest set and the next, or None.
+        in_the_way: names of constraints (``rules.CONSTRAINTS``). With a best: each of them alone keeps out a lighter
+            set. Without: what the sets closest to being allowed break; empty if no integer tooth set lies there.
+    """
+
+    best: Candidate | None
+    runner_up: Candidate | None
+    in_the_way: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapEntry:
+    """One half-open interval [ratio_low, ratio_low + 0.1).
+
+    Attributes:
+        ratio_low: lower end.
+        actuator: the lightest of both families, or None.
+        runner_up: the second lightest of both families, or None.
+        families: what was found for each family that the motor has.
+    """
+
+    ratio_low: float
+    actuator: Actuator | None
+    runner_up: Candidate | None
+    families: Mapping[Family, FamilyResult]
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """The constraints that alone keep out a lighter set of the chosen family."""
+        return () if self.actuator is None else self.families[self.actuator.family].in_the_way
+
+    @property
+    def forbidden_by(self) -> Mapping[Family, tuple[str, ...]]:
+        """For each family without a gearbox here, the constraints in the way."""
+        return {name: found.in_the_way for name, found in self.families.items() if found.best is None}
+
+    def why_not(self) -> str:
+        """One sentence on why there is no gearbox."""
+        reasons = [
+            f"{family}: {' or '.join(names) if names else 'no integer tooth set'}"
+            for family, names in self.forbidden_by.items()
+        ]
+        return f"no gearbox in [{self.ratio_low:.1f}, {self.ratio_low + 0.1:.1f}), forbidden by " + "; ".join(reasons)
+
+
+# Compared by identity: a map is made once a motor and settings, and keys what is derived from it.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ActuatorMap:
+    """Ratio -> lightest actuator, for one motor.
+
+    Stage 2 searches over a continuous ratio. It gets the gearbox of the interval the ratio lies in, and simulates the
+    ratio which that gearbox really has, up to 0.1 higher than the one asked for: a gearbox with the searched ratio does
+    not exist.
+    """
+
+    motor: Motor
+    settings: ActuatorSettings
+    entries: tuple[MapEntry, ...]
+
+    def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
+        """Index into ``entries`` for each ratio, shape (n,) -> (n,); -1 where the map has no gearbox.
+
+        A ratio within 1e-9 below an interval's end counts to the next one: 8.7 is what a user means by 8.7.
+        """
+        values = np.asarray(ratios, dtype=np.float64)
+        tenths = np.floor(np.round(10.0 * np.where(np.isfinite(values), values, -1.0), 8))
+        index = tenths.astype(np.intp) - 10 * RATIO_LOW
+        inside = (index >= 0) & (index < len(self.entries))
+        present = np.array([entry.actuator is not None for entry in self.entries])
+        return np.where(inside & present[np.where(inside, index, 0)], index, -1)
+
+    def lookup(self, ratio: float) -> Actuator:
+        """The actuator of the interval that the ratio lies in.
+
+        Raises:
+            DesignError: the ratio lies outside the map, or no gearbox exists there; the message names the constraint.
+        """
+        index = int(self.interval_index([ratio])[0])
+        if index >= 0:
+            actuator = self.entries[index].actuator
+            assert actuator is not None
+            return actuator
+        raise DesignError(f"gear ratio = {ratio!r}: {self.why_not(ratio)}; choose {self._existing()}")
+
+    def why_not(self, ratio: float) -> str:
+        """Why there is no gearbox for a ratio."""
+        if not RATIO_LOW <= ratio < RATIO_HIGH:
+            return (
+                f"outside the map of {self.motor.name}, which covers {RATIO_LOW} up to but not including {RATIO_HIGH}"
+            )
+        index = int(np.floor(np.round(10.0 * ratio, 8))) - 10 * RATIO_LOW
+        return f"{self.motor.name} has {self.entries[min(index, len(self.entries) - 1)].why_not()}"
+
+    def _existing(self) -> str:
+        lows = [round(10 * entry.ratio_low) for entry in self.entries if entry.actuator is not None]
+        if not lows:
+            return "another motor"
+        runs: list[list[int]] = []
+        for low in lows:
+            if runs and runs[-1][1] == low:
+                runs[-1][1] = low + 1
+            else:
+                runs.append([low, low + 1])
+        return " or ".join(f"[{start / 10:.1f}, {stop / 10:.1f})" for start, stop in runs)

@@ -1,0 +1,184 @@
+"""The rules a gear set must obey: the paper's, and those that engineering adds, each with its name and source."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.actuator.gearset import GearSet, contact_ratios
+from pareto_monoped.actuator.layout import Family, Layout, radial_room_mm
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.shapes import Numbers
+
+TOLERANCE_MM = 1e-9
+"""Rounding must not decide: 0.5 x 158 is 79 and allowed where 79 is the limit."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """What the rules look at: gear sets, with what was laid out around them."""
+
+    gears: GearSet
+    face_width_mm: Numbers
+    at: Layout
+    motor: Motor
+    family: Family
+    settings: ActuatorSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraint:
+    """One rule: what it says, where it comes from, and its margin, which must not be negative."""
+
+    says: str
+    source: str
+    margin: Callable[[Case], Numbers]
+
+
+def _meshing(case: Case) -> Numbers:
+    gears = case.gears
+    return -((gears.sun_teeth + gears.ring_teeth) % gears.planets)
+
+
+def _no_interference(case: Case) -> Numbers:
+    gears = case.gears
+    reach = 4.0 * gears.carrier_radius_mm * np.sin(np.pi / gears.planets)
+    return reach - 2.0 * gears.module_mm * gears.planet_teeth - case.settings.planet_gap_mm
+
+
+def _sun_rim(case: Case) -> Numbers:
+    if case.family == "ISSPG":
+        return np.zeros(np.shape(case.gears.sun_teeth))
+    bore = 0.5 * case.settings.parts.gears.sun_bore_mm
+    return case.gears.sun().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * case.gears.module_mm
+
+
+def _planet_rim(case: Case) -> Numbers:
+    bore = 0.5 * case.settings.parts.gears.planet_bore_mm
+    return case.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * case.gears.module_mm
+
+
+def _ring_rim(case: Case) -> Numbers:
+    return case.at.r_ring - case.gears.ring_root_radius_mm - 3.5 * case.gears.module_mm
+
+
+def _ring_interference(case: Case) -> Numbers:
+    planet, ring = case.gears.planet(), case.gears.ring()
+    reach = case.gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
+    return ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
+
+
+def _contact_ratio(case: Case) -> Numbers:
+    outer, inner = contact_ratios(case.gears)
+    return np.minimum(outer, inner) - case.settings.contact_ratio_min
+
+
+def _within_stator(case: Case) -> Numbers:
+    if case.family == "ESSPG":
+        return np.zeros(np.shape(case.gears.sun_teeth))
+    kit = case.motor.frameless
+    assert kit is not None
+    assert kit.stator_height_mm is not None
+    return kit.stator_height_mm - case.face_width_mm
+
+
+def _bearing(case: Case) -> Numbers:
+    return np.where(np.isfinite(case.at.r_bore), 0.0, -1.0)
+
+
+def _bearing_room(case: Case) -> Numbers:
+    if case.family == "ISSPG":
+        # The seat in front of the stator and its flange must stay inside the casing's bolts and rim.
+        data = case.settings.parts.case
+        return case.at.r_case - (case.at.r_seat + data.ring_wall_mm + data.flange_width_mm)
+    return case.at.r_ring - case.settings.parts.case.ring_lip_mm - case.at.r_seat
+
+
+CONSTRAINTS: Mapping[str, Constraint] = {
+    "meshing": Constraint(
+        says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh",
+        source="paper, III (eq. 3)",
+        margin=_meshing,
+    ),
+    "no_interference": Constraint(
+        says="2 m (Ns + Np) sin(pi / n_p) - 2 m Np >= delta_p, so that planets keep clear of each other",
+        source="paper, IV (eq. 4)",
+        margin=_no_interference,
+    ),
+    "teeth_min": Constraint(
+        says="Ns, Np >= N_min, against undercutting",
+        source="paper, V (eq. 5)",
+        margin=lambda case: np.minimum(case.gears.sun_teeth, case.gears.planet_teeth) - case.settings.teeth_min,
+    ),
+    "gearbox_diameter": Constraint(
+        says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",
+        source="paper, V (eq. 5)",
+        margin=lambda case: (
+            radial_room_mm(case.motor, case.family, case.settings) - 2.0 * case.gears.ring_pitch_radius_mm
+        ),
+    ),
+    "ring_root": Constraint(
+        says="m (Nr + 2.5) <= D_GB: so does the ring's root circle",
+        source="implied by the paper's section IV-A: the families end at 6:1 and 8.7:1; root circle after ISO 53",
+        margin=lambda case: (
+            radial_room_mm(case.motor, case.family, case.settings) - 2.0 * case.gears.ring_root_radius_mm
+        ),
+    ),
+    "sun_rim": Constraint(
+        says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG; the ISSPG's sun has no bore)",
+        source="AGMA 2001-D04, rim thickness factor 1",
+        margin=_sun_rim,
+    ),
+    "planet_rim": Constraint(
+        says="wall between the planet's bore and its roots >= 1.2 tooth depths",
+        source="AGMA 2001-D04, rim thickness factor 1",
+        margin=_planet_rim,
+    ),
+    "ring_rim": Constraint(
+        says="wall behind the ring's roots >= 3.5 modules",
+        source="ISO 6336-3, rim thickness factor 1 of internal gears",
+        margin=_ring_rim,
+    ),
+    "ring_interference": Constraint(
+        says="the ring's tips meet the planet's flanks outside its base circle",
+        source="involute interference of internal gears: Colbourne, The Geometry of Involute Gears, ch. 8",
+        margin=_ring_interference,
+    ),
+    "contact_ratio": Constraint(
+        says="contact ratio of either mesh at least 1.2",
+        source="Shigley, section 13-8",
+        margin=_contact_ratio,
+    ),
+    "within_stator": Constraint(
+        says="face width <= height of the stator that the gears sit in (ISSPG)",
+        source="paper, section II-A: the ISSPG is integrated within the stator",
+        margin=_within_stator,
+    ),
+    "bearing": Constraint(
+        says="the catalogue has a main bearing of the bore needed",
+        source="bearing catalogue, ISO 15",
+        margin=_bearing,
+    ),
+    "bearing_room": Constraint(
+        says="the main bearing passes the ring's shoulder (ESSPG), its seat stays inside the casing (ISSPG)",
+        source="assembly",
+        margin=_bearing_room,
+    ),
+}
+"""Name -> rule. Of the paper's others, I (ratio) picks the interval and II (Nr = Ns + 2 Np) is built in, as are the
+ranges of module and planets in V, which are enumerated."""
+
+
+def violations(case: Case) -> tuple[tuple[str, ...], NDArray[np.bool_]]:
+    """Which of the constraints that are on each gear set breaks.
+
+    Returns:
+        The names, and an array of shape (names, sets), True where broken.
+    """
+    names = tuple(name for name in CONSTRAINTS if name not in case.settings.constraints_off)
+    shape = np.shape(case.gears.sun_teeth)
+    broken = [np.broadcast_to(CONSTRAINTS[name].margin(case), shape) < -TOLERANCE_MM for name in names]
+    return names, np.array(broken, dtype=bool).reshape(len(names), *shape)

@@ -1,0 +1,187 @@
+"""What stage 1 takes as given: limits, standard modules, strength figures, dimensions; every one can be changed."""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib import resources
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.errors import InputError
+from pareto_monoped.records import checked, read_toml
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+_STRICT = ConfigDict(extra="forbid")
+
+ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
+ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
+"""Modules of ISO 54 (and DIN 780) between 0.5 and 1.2 mm: first choice, and the values of its second series."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearData:
+    """Material, strength and fixed proportions of the gears; sources in ``data/actuator_parts.toml``."""
+
+    __pydantic_config__ = _STRICT
+
+    pressure_angle_deg: Positive
+    density_kg_per_m3: Positive
+    allowable_stress_mpa: Positive
+    factor_of_safety: Positive
+    service_factor: Positive
+    mesh_friction_coefficient: Positive
+    backlash_mm: Annotated[float, Field(ge=0.0)]
+    ring_width_internal_mm: Positive
+    ring_width_external_mm: Positive
+    planet_bore_mm: Positive
+    sun_bore_mm: Positive
+    planet_hub_wall_mm: Positive
+    planet_recess_min_mm: Positive
+    planet_web_share: Annotated[float, Field(gt=0.0, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarrierData:
+    """Carrier, secondary carrier and pins, in mm."""
+
+    __pydantic_config__ = _STRICT
+
+    bearing_clearance_mm: Positive
+    flange_clearance_mm: Positive
+    flange_radius_mm: Positive
+    flange_thickness_mm: Positive
+    thread_depth_mm: Positive
+    diaphragm_mm: Positive
+    shoulder_height_mm: Positive
+    shoulder_thickness_mm: Positive
+    pin_diameter_mm: Positive
+    pin_wall_mm: Positive
+    pin_depth_mm: Positive
+    planet_clearance_mm: Positive
+    secondary_thickness_mm: Positive
+    sun_clearance_mm: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaseData:
+    """Casing, backplate and ring housing, in mm."""
+
+    __pydantic_config__ = _STRICT
+
+    plate_mm: Positive
+    rim_mm: Positive
+    wall_mm: Positive
+    vent_wall_mm: Positive
+    motor_clearance_mm: Positive
+    flange_mm: Positive
+    flange_width_mm: Positive
+    bolt_offset_mm: Positive
+    lip_mm: Positive
+    seat_wall_mm: Positive
+    ring_wall_mm: Positive
+    ring_lip_mm: Positive
+    rotor_clearance_mm: Positive
+    motor_carrier_clearance_mm: Positive
+    bearing_play_mm: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CouplingData:
+    """Coupling between motor and sun, in mm."""
+
+    __pydantic_config__ = _STRICT
+
+    radius_mm: Positive
+    thickness_mm: Positive
+    bolt_circle_mm: Positive
+    bolt_count: int
+    shaft_radius_mm: Positive
+    rim_mm: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InterfaceData:
+    """Bolt patterns towards the links."""
+
+    __pydantic_config__ = _STRICT
+
+    output_bolt_circle_mm: Positive
+    output_bolt_count: int
+    mount_bolt_count: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Densities:
+    """Of everything but the gears."""
+
+    __pydantic_config__ = _STRICT
+
+    aluminium_kg_per_m3: Positive
+    steel_kg_per_m3: Positive
+    bush_kg_per_m3: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartData:
+    """Everything in ``data/actuator_parts.toml``."""
+
+    __pydantic_config__ = _STRICT
+
+    gears: GearData
+    carrier: CarrierData
+    case: CaseData
+    coupling: CouplingData
+    interface: InterfaceData
+    density: Densities
+
+
+@lru_cache(maxsize=1)
+def default_parts() -> PartData:
+    """The shipped part data."""
+    with resources.as_file(resources.files("pareto_monoped") / "data" / "actuator_parts.toml") as path:
+        values = read_toml(path, what="part data")
+    return checked(PartData, values, source="part data")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ActuatorSettings:
+    """Settings of stage 1.
+
+    Attributes:
+        modules_mm: from which the module is chosen.
+        planets_min, planets_max: of n_p (paper, eq. 5).
+        teeth_min: N_min of sun and planet (paper, eq. 5).
+        planet_gap_mm: delta_p of the no-interference constraint (paper, eq. 4).
+        diameter_clearance_mm: delta_clr between D_GB and the motor (paper, section III-A).
+        contact_ratio_min: of either mesh (Shigley, section 13-8).
+        constraints_off: names of constraints not to apply, see ``rules.CONSTRAINTS``.
+        bearings: mass of the main bearing from the catalogue, or from the paper's regression over its bore.
+        parts: dimensions, materials, strength.
+    """
+
+    modules_mm: tuple[float, ...] = tuple(sorted(ISO_54_SERIES_1_MM + ISO_54_SERIES_2_MM))
+    planets_min: int = 2
+    planets_max: int = 7
+    teeth_min: int = 18
+    planet_gap_mm: float = 5.0
+    diameter_clearance_mm: float = 10.0
+    contact_ratio_min: float = 1.2
+    constraints_off: frozenset[str] = frozenset()
+    bearings: Literal["catalogue", "regression"] = "catalogue"
+    parts: PartData = field(default_factory=default_parts)
+
+    def __post_init__(self) -> None:
+        from pareto_monoped.actuator.rules import CONSTRAINTS
+
+        for name in sorted(self.constraints_off):
+            if name not in CONSTRAINTS:
+                raise InputError(
+                    f"constraints_off = {name!r}: must be one of {', '.join(CONSTRAINTS)}; correct the name"
+                )
+        if not self.modules_mm or min(self.modules_mm) <= 0.0:
+            raise InputError(f"modules_mm = {self.modules_mm!r}: must be one or more positive numbers; correct it")
+        if not 2 <= self.planets_min <= self.planets_max:
+            raise InputError(
+                f"planets_min, planets_max = {self.planets_min}, {self.planets_max}: must be 2 or more, in order; "
+                "correct them"
+            )

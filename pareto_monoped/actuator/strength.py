@@ -1,0 +1,41 @@
+"""Face width from the strength of the sun's teeth: Lewis with Barth's velocity factor."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import GearData
+from pareto_monoped.geometry.shapes import Numbers
+
+# Lewis form factor Y for 20 degree full-depth teeth over the number of teeth: Shigley, table 14-2.
+_TEETH = np.array([12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 24, 26, 28, 30, 34, 38, 43, 50, 60, 75, 100, 150, 300])
+_FORM = np.array(
+    [0.245, 0.261, 0.277, 0.290, 0.296, 0.303, 0.309, 0.314, 0.322, 0.328, 0.331, 0.337]
+    + [0.346, 0.353, 0.359, 0.371, 0.384, 0.397, 0.409, 0.422, 0.435, 0.447, 0.460, 0.472]
+)
+
+
+def lewis_form_factor(teeth: Numbers) -> NDArray[np.float64]:
+    """Y, interpolated linearly; constant beyond the table's ends."""
+    return np.asarray(np.interp(teeth, _TEETH, _FORM))
+
+
+def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
+    """Barth's factor for milled or hobbed teeth, (6.1 + v) / 6.1 (Shigley, eq. 14-6b)."""
+    return (6.1 + speed_m_per_s) / 6.1
+
+
+def face_width_mm(gears: GearSet, motor: Motor, data: GearData) -> Numbers:
+    """Least face width at which the sun's teeth carry the motor's peak torque.
+
+    Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all sets have ratios
+    of 4 and more, so no planet has fewer. The speed is that of the pitch point against the carrier, which is what makes
+    teeth strike each other, at the motor's no-load speed: the fastest it can turn, an upper bound.
+    """
+    radius_m = 0.5e-3 * gears.module_mm * gears.sun_teeth
+    force_n = data.service_factor * motor.peak_torque_n_m / (radius_m * gears.planets)
+    speed = motor.no_load_speed_rad_per_s * (1.0 - 1.0 / gears.ratio) * radius_m
+    stress_mpa = data.allowable_stress_mpa / data.factor_of_safety
+    weakest = np.minimum(gears.sun_teeth, gears.planet_teeth)
+    return velocity_factor(speed) * force_n / (stress_mpa * gears.module_mm * lewis_form_factor(weakest))
