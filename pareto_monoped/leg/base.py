@@ -4,7 +4,7 @@ import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
-from pareto_monoped.leg.common import M3, M4, M4_HEAD, M4_HEAD_HEIGHT, M4_HOLE, Place, holes_at
+from pareto_monoped.leg.common import M3, M4, M5, Place, holes_at
 from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, STEEL, LegDimensions
 
 # Our own layout, mm: the rods stand above the hip, outside the reach of the thigh's round hip end and, up to the end
@@ -14,7 +14,8 @@ _RODS: tuple[Place, ...] = ((-32.0, 60.0, 0.0), (32.0, 60.0, 0.0), (-18.0, 90.0,
 _ROD_RADIUS = 5.0
 _ROD_THREAD = 10.0
 _JOURNAL_FLANGE = 4.0
-_JOURNAL_STEP = 1.5
+_JOURNAL_STEP = 6.5  # room for the screws' heads
+_BACK_THREAD = 5.0
 _SHOULDER = 11.8  # radius that touches the bearing's inner ring only
 
 
@@ -37,7 +38,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
     near0, near1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
     _, far0, far1 = _far_z(knee_actuator_length_m, d)
     seat1 = far0 + d.bearing_width_mm
-    rods = holes_at(_RODS, M4_HOLE)
+    rods = holes_at(_RODS, M4.hole)
     window = hull(top_radius_mm=10.0, bottom_radius_mm=10.0, length_mm=14.0, y_mm=76.0)
     outer_race = Circle(radius_mm=d.bearing_outer_radius_mm)
     rim = d.mount_pitch_radius_mm + 6.0
@@ -45,7 +46,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
     def cheek(bottom_radius_mm: float) -> Path:
         return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=_TOP_Y, y_mm=_TOP_Y)
 
-    rod_bolt = Circle(radius_mm=M4)
+    thread = Circle(radius_mm=M4.core)
     return (
         Part(
             name="base_near_cheek",
@@ -59,7 +60,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
                     holes=(
                         Circle(radius_mm=d.coupler_radius_mm + 1.0),
                         Pattern(
-                            radius_mm=d.mount_hole_radius_mm,
+                            radius_mm=M3.hole,
                             pitch_radius_mm=d.mount_pitch_radius_mm,
                             count=d.mount_holes,
                         ),
@@ -76,7 +77,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             name="hip_mount_screw",
             material=STEEL,
             process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=near0 - d.mount_thread_mm, z1_mm=near1),),
+            prisms=M3.flush(seat_mm=near1, grip_mm=d.cheek_mm, thread_mm=d.mount_thread_mm, direction=-1.0),
             count=d.mount_holes,
             pitch_radius_mm=d.mount_pitch_radius_mm,
             note="M3 countersunk (ISO 10642) 10.9, flush, into the hip actuator's case",
@@ -115,7 +116,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             name="base_rod",
             material=ALUMINIUM,
             process="machined",
-            prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(rod_bolt,)),),
+            prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(thread,)),),
             places_mm=_RODS,
             note="10 mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
         ),
@@ -123,10 +124,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             name="base_rod_screw_near",
             material=STEEL,
             process="bought",
-            prisms=(
-                Prism(outline=Circle(radius_mm=M4), z0_mm=near0, z1_mm=near1 + _ROD_THREAD),
-                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=near0 - M4_HEAD_HEIGHT, z1_mm=near0),
-            ),
+            prisms=M4.prisms(seat_mm=near0, grip_mm=d.cheek_mm, thread_mm=_ROD_THREAD, direction=1.0),
             places_mm=_RODS,
             note="M4 x 16 cap screw (ISO 4762) 8.8",
         ),
@@ -134,10 +132,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             name="base_rod_screw_far",
             material=STEEL,
             process="bought",
-            prisms=(
-                Prism(outline=Circle(radius_mm=M4), z0_mm=far0 - _ROD_THREAD, z1_mm=far1),
-                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=far1, z1_mm=far1 + M4_HEAD_HEIGHT),
-            ),
+            prisms=M4.prisms(seat_mm=far1, grip_mm=d.far_cheek_mm, thread_mm=_ROD_THREAD, direction=-1.0),
             places_mm=_RODS,
             note="M4 x 18 cap screw (ISO 4762) 8.8",
         ),
@@ -155,7 +150,7 @@ def journal_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -
     flange = back + _JOURNAL_FLANGE
     seat1 = far0 + d.bearing_width_mm
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - 3.0)
-    holes = Pattern(radius_mm=d.back_hole_radius_mm + 0.15, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
+    holes = Pattern(radius_mm=M5.hole, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
     return (
         Part(
             name="journal",
@@ -172,5 +167,14 @@ def journal_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -
                 Prism(outline=Circle(radius_mm=d.bearing_bore_radius_mm), z0_mm=far0, z1_mm=seat1, holes=(bore,)),
             ),
             note="EN AW-7075; seat 20 h6; the bore takes the knee actuator's cables",
+        ),
+        Part(
+            name="journal_screw",
+            material=STEEL,
+            process="bought",
+            prisms=M5.prisms(seat_mm=flange, grip_mm=_JOURNAL_FLANGE, thread_mm=_BACK_THREAD, direction=-1.0),
+            count=d.back_holes,
+            pitch_radius_mm=d.back_pitch_radius_mm,
+            note="M5 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
         ),
     )

@@ -29,14 +29,14 @@ class LegDimensions:
     The others are our own design, sized so that a link weighs what the reference link does.
 
     Attributes:
-        mount_pitch_radius_mm, mount_holes, mount_hole_radius_mm: bolts between housing and plate (M3).
+        mount_pitch_radius_mm, mount_holes: bolts between housing and plate (M3).
         housing_radius_mm: of the actuator's case.
         output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3).
         coupler_radius_mm: of the output flange.
         coupler_height_mm: of the output flange's face above the housing's mounting face.
         coupler_thread_mm: depth of the thread in the output flange.
         mount_thread_mm: depth of the thread in the housing.
-        back_pitch_radius_mm, back_holes, back_hole_radius_mm: bolts of the motor's own mounting pattern, at the back.
+        back_pitch_radius_mm, back_holes: bolts (M5) of the motor's own mounting pattern, at the back.
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
         gap_mm: distance of the thigh's plates.
@@ -58,7 +58,6 @@ class LegDimensions:
 
     mount_pitch_radius_mm: float = 46.0
     mount_holes: int = 6
-    mount_hole_radius_mm: float = 1.6
     housing_radius_mm: float = 50.0
     output_pitch_radius_mm: float = 12.0
     output_holes: int = 6
@@ -68,7 +67,6 @@ class LegDimensions:
     mount_thread_mm: float = 5.0
     back_pitch_radius_mm: float = 25.5
     back_holes: int = 4
-    back_hole_radius_mm: float = 2.5
 
     plate_mm: float = 2.5
     shank_plate_mm: float = 3.0

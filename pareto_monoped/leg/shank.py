@@ -7,11 +7,7 @@ from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, hull, recta
 from pareto_monoped.leg.common import (
     BRIDGE,
     M3,
-    M3_HOLE,
     M4,
-    M4_HEAD,
-    M4_HEAD_HEIGHT,
-    M4_HOLE,
     WINDOW_CORNER,
     bolts_at,
     holes_at,
@@ -42,9 +38,9 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
     flat = d.foot_flat_mm - length
     block_top = flat + _FOOT_BLOCK
     bridges = (-d.fork_mm - BRIDGE, block_top + 1.0 + BRIDGE)
-    bolts = holes_at(bolts_at(bridges), M3_HOLE)
+    bolts = holes_at(bolts_at(bridges), M3.hole)
     foot_bolts = tuple((0.0, flat + up, 0.0) for up in (7.0, _FOOT_BLOCK - 7.0))
-    foot_holes = holes_at(foot_bolts, M4_HOLE)
+    foot_holes = holes_at(foot_bolts, M4.hole)
     return (
         Part(
             name="shank_plate",
@@ -98,7 +94,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
             name="shank_bolt",
             material=STEEL,
             process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-face, z1_mm=face),),
+            prisms=(Prism(outline=Circle(radius_mm=M3.shank), z0_mm=-face, z1_mm=face),),
             places_mm=bolts_at(bridges),
             note="M3 x 40 countersunk (ISO 10642) with flush sleeve nut",
         ),
@@ -122,7 +118,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
             name="foot_bolt",
             material=STEEL,
             process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M4), z0_mm=-face, z1_mm=face),),
+            prisms=(Prism(outline=Circle(radius_mm=M4.shank), z0_mm=-face, z1_mm=face),),
             places_mm=foot_bolts,
             note="M4 x 40 countersunk (ISO 10642) with flush sleeve nut",
         ),
@@ -156,7 +152,7 @@ def _tongue(flat_mm: Numbers) -> Prism:
 
 
 def _axle_holes() -> Pattern:
-    return Pattern(radius_mm=M4_HOLE, pitch_radius_mm=_AXLE_BOLT_PITCH, count=4, phase_rad=np.pi / 4)
+    return Pattern(radius_mm=M4.hole, pitch_radius_mm=_AXLE_BOLT_PITCH, count=4, phase_rad=np.pi / 4)
 
 
 def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
@@ -167,7 +163,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
     shoulder = half_thigh_gap - d.bearing_width_mm
     flange = shoulder - 0.6
     bolts = _axle_holes()
-    threads = Pattern(radius_mm=M3, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+    threads = Pattern(radius_mm=M3.core, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
 
     def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
         return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=z0_mm, z1_mm=z1_mm, holes=(bolts, *holes))
@@ -221,7 +217,9 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             name="knee_sprocket_screw",
             material=STEEL,
             process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-half_tooth, z1_mm=flange),),
+            prisms=M3.flush(
+                seat_mm=-half_tooth, grip_mm=2.0 * half_tooth, thread_mm=flange - half_tooth, direction=1.0
+            ),
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             note="M3 x 6 countersunk (ISO 10642) 10.9, flush",
@@ -231,9 +229,9 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             material=STEEL,
             process="bought",
             prisms=(
-                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=-face - M4_HEAD_HEIGHT, z1_mm=-face),
-                Prism(outline=Circle(radius_mm=M4), z0_mm=-face, z1_mm=face),
-                Prism(outline=Circle(radius_mm=M4_HEAD), z0_mm=face, z1_mm=face + M4_HEAD_HEIGHT),
+                Prism(outline=Circle(radius_mm=M4.head), z0_mm=-face - M4.head_height, z1_mm=-face),
+                Prism(outline=Circle(radius_mm=M4.shank), z0_mm=-face, z1_mm=face),
+                Prism(outline=Circle(radius_mm=M4.head), z0_mm=face, z1_mm=face + M4.head_height),
             ),
             count=4,
             pitch_radius_mm=_AXLE_BOLT_PITCH,

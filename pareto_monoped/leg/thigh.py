@@ -7,9 +7,8 @@ from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, hull
 from pareto_monoped.leg.common import (
     BRIDGE,
     M3,
-    M3_HOLE,
+    M25,
     bolts_at,
-    cap_screw,
     holes_at,
     sprocket_prism,
     windows_between,
@@ -21,6 +20,7 @@ from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm, waisted
 _FIRST_BRIDGE = 60.0  # below the hip axis, clear of the actuator's case
 _KNEE_END = 32.0  # core above the knee axis, clear of the sprocket's teeth
 _STANDOFF_RADIUS, _STANDOFF_PITCH = 3.5, 36.5
+_CUP_THREAD = 4.5
 
 
 def bridges_of(length_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
@@ -48,18 +48,18 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bridges = bridges_of(length)
     windows = windows_between(bridges, d.thigh_window_half_width_mm)
-    bolts = holes_at(bolts_at(bridges), M3_HOLE)
+    bolts = holes_at(bolts_at(bridges), M3.hole)
     knee_hole = Circle(radius_mm=d.bearing_outer_radius_mm - 2.0, y_mm=-length)
     cup_pitch = d.bearing_outer_radius_mm + 2.5
-    cup_holes = Pattern(radius_mm=1.25, pitch_radius_mm=cup_pitch, count=4, phase_rad=np.pi / 4, y_mm=-length)
+    cup_holes = Pattern(radius_mm=M25.hole, pitch_radius_mm=cup_pitch, count=4, phase_rad=np.pi / 4, y_mm=-length)
     # On top of the hip, outside the chain's turn: at 30, 90 and 150 degrees.
     standoffs = tuple(
         (_STANDOFF_PITCH * float(np.cos(a)), _STANDOFF_PITCH * float(np.sin(a)), 0.0)
         for a in (np.pi / 6, np.pi / 2, 5 * np.pi / 6)
     )
-    standoff_holes = holes_at(standoffs, M3_HOLE)
-    output = Pattern(radius_mm=M3_HOLE, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
-    mount = Pattern(radius_mm=d.mount_hole_radius_mm, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
+    standoff_holes = holes_at(standoffs, M3.hole)
+    output = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+    mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - 2.5)
     common = (*windows, *bolts, knee_hole, cup_holes, *standoff_holes)
 
@@ -86,7 +86,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                     holes=(*common, bore, output, Pattern(radius_mm=5.5, pitch_radius_mm=25.5, count=6)),
                 ),
             ),
-            note="2.5 mm sheet EN AW-6082 T6; countersink the standoff holes outside",
+            note="2.5 mm sheet EN AW-6082 T6; countersink the bolt holes outside",
         ),
         Part(
             name="thigh_plate_outer",
@@ -105,7 +105,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                     ),
                 ),
             ),
-            note="2.5 mm sheet EN AW-6082 T6; carries the knee actuator; countersink the standoff holes outside",
+            note="2.5 mm sheet EN AW-6082 T6; carries the knee actuator; countersink the bolt holes outside",
         ),
         Part(
             name="thigh_core",
@@ -129,16 +129,23 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             name="thigh_standoff",
             material=ALUMINIUM,
             process="machined",
-            prisms=(Prism(outline=Circle(radius_mm=_STANDOFF_RADIUS), z0_mm=-half_gap, z1_mm=half_gap),),
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=_STANDOFF_RADIUS),
+                    z0_mm=-half_gap,
+                    z1_mm=half_gap,
+                    holes=(Circle(radius_mm=M3.hole),),
+                ),
+            ),
             places_mm=standoffs,
-            note="7 mm rod, tapped M3 at both ends; M3 countersunk screws from outside",
+            note="7 x 3.2 mm tube",
         ),
         Part(
             name="thigh_bolt",
             material=STEEL,
             process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3), z0_mm=-face, z1_mm=face),),
-            places_mm=bolts_at(bridges),
+            prisms=(Prism(outline=Circle(radius_mm=M3.shank), z0_mm=-face, z1_mm=face),),
+            places_mm=(*bolts_at(bridges), *standoffs),
             note="M3 x 30 countersunk (ISO 10642) with flush sleeve nut",
         ),
     )
@@ -152,7 +159,7 @@ def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
     half_tooth = 0.5 * d.sprocket_width_mm
     coupling_holes = (
         Circle(radius_mm=d.bearing_bore_radius_mm - 2.5),
-        Pattern(radius_mm=M3_HOLE, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
     )
     return (
         Part(
@@ -170,8 +177,11 @@ def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             name="hip_coupling_screw",
             material=STEEL,
             process="bought",
-            prisms=cap_screw(
-                seat_mm=-half_gap, length_mm=-half_gap - coupler_face + d.coupler_thread_mm, direction=-1.0
+            prisms=M3.prisms(
+                seat_mm=-half_gap,
+                grip_mm=-half_gap - coupler_face,
+                thread_mm=d.coupler_thread_mm,
+                direction=-1.0,
             ),
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
@@ -181,7 +191,7 @@ def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             name="knee_mount_screw",
             material=STEEL,
             process="bought",
-            prisms=cap_screw(seat_mm=half_gap, length_mm=d.plate_mm + d.mount_thread_mm, direction=1.0),
+            prisms=M3.prisms(seat_mm=half_gap, grip_mm=d.plate_mm, thread_mm=d.mount_thread_mm, direction=1.0),
             count=d.mount_holes,
             pitch_radius_mm=d.mount_pitch_radius_mm,
             note="M3 cap screw (ISO 4762) 12.9, from inside the thigh into the knee actuator's case",
@@ -213,8 +223,8 @@ def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             name="drive_screw",
             material=STEEL,
             process="bought",
-            prisms=cap_screw(
-                seat_mm=-half_tooth, length_mm=drive_face + half_tooth + d.coupler_thread_mm, direction=1.0
+            prisms=M3.prisms(
+                seat_mm=-half_tooth, grip_mm=drive_face + half_tooth, thread_mm=d.coupler_thread_mm, direction=1.0
             ),
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
@@ -280,12 +290,23 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                     z1_mm=d.bearing_width_mm,
                     holes=(
                         Circle(radius_mm=d.bearing_outer_radius_mm),
-                        Pattern(radius_mm=1.25, pitch_radius_mm=pitch, count=4, phase_rad=np.pi / 4),
+                        Pattern(radius_mm=M25.core, pitch_radius_mm=pitch, count=4, phase_rad=np.pi / 4),
                     ),
                 ),
             ),
             places_mm=places,
-            note="seat 32 J7; the plate's lip holds the bearing outwards; four M2.5 countersunk screws",
+            note="seat 32 J7, threads M2.5; the plate's lip holds the bearing outwards",
+        ),
+        Part(
+            name="knee_cup_screw",
+            material=STEEL,
+            process="bought",
+            prisms=(Prism(outline=Circle(radius_mm=M25.core), z0_mm=0.0, z1_mm=d.plate_mm + _CUP_THREAD),),
+            count=4,
+            pitch_radius_mm=pitch,
+            phase_rad=np.pi / 4,
+            places_mm=((0.0, -length, half_gap - _CUP_THREAD), (0.0, -length, -half_gap - d.plate_mm)),
+            note="M2.5 x 7 countersunk (ISO 10642), flush, from outside",
         ),
         Part(
             name="knee_bearing",
