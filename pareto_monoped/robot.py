@@ -9,22 +9,20 @@ A continuous gear ratio gets the gearbox of its interval of 0.1 (stage 1), and t
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.leg.dimensions import DEFAULT
 from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
-
-if TYPE_CHECKING:
-    from pareto_monoped.actuator.record import Actuator
-    from pareto_monoped.actuator.search import ActuatorMap
 
 Floats = NDArray[np.float64]
 
@@ -97,8 +95,8 @@ class Robot:
     """
 
     design: Design
-    hip: "Actuator"
-    knee: "Actuator"
+    hip: Actuator
+    knee: Actuator
     units: tuple[Unit, ...]
 
     def body_mass_properties(self) -> Mapping[str, MassProperties]:
@@ -111,7 +109,7 @@ class Robot:
         return float(sum(unit.mass_properties().mass_kg for unit in self.units))
 
 
-def build_robot(design: Design, actuator_map: "ActuatorMap") -> Robot:
+def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
     """The robot of a design, part by part.
 
     Raises:
@@ -124,11 +122,11 @@ def build_robot(design: Design, actuator_map: "ActuatorMap") -> Robot:
     hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
     shank_length_m = design.shank_length_m
     units = (
-        Unit(name="base_frame", body="base", parts=base_parts(_length_m(knee)), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="base_frame", body="base", parts=base_parts(1e-3 * knee.length_mm), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=DEFAULT.hip_mount_mm),
         Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=DEFAULT.knee_mount_mm),
-        Unit(name="journal", body="thigh", parts=journal_parts(_length_m(knee)), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="journal", body="thigh", parts=journal_parts(1e-3 * knee.length_mm), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="shank", body="shank", parts=shank_parts(shank_length_m), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="foot", body="shank", parts=(foot_part(shank_length_m),), turn=_UPRIGHT, z_mm=0.0),
     )
@@ -177,7 +175,7 @@ class RobotArrays:
         return len(self.thigh_length_m)
 
 
-def robot_arrays(designs: ArrayLike, actuator_map: "ActuatorMap", options: MassOptions = PARTS_ONLY) -> RobotArrays:
+def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOptions = PARTS_ONLY) -> RobotArrays:
     """Weigh many robots at once, with the same part functions as ``build_robot``.
 
     Args:
@@ -258,7 +256,7 @@ class _ActuatorTable:
 
 
 @lru_cache(maxsize=16)
-def _actuator_table(actuator_map: "ActuatorMap") -> _ActuatorTable:
+def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     masses = [total(part.mass_properties() for part in actuator.parts) for actuator in actuators]
@@ -269,7 +267,7 @@ def _actuator_table(actuator_map: "ActuatorMap") -> _ActuatorTable:
             first_kg_m=np.array([m.first_kg_m for m in masses]),
             second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
         ),
-        length_m=np.array([_length_m(a) for a in actuators]),
+        length_m=np.array([1e-3 * a.length_mm for a in actuators]),
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
@@ -279,14 +277,12 @@ def _actuator_table(actuator_map: "ActuatorMap") -> _ActuatorTable:
     )
 
 
-def _missing(actuator_map: "ActuatorMap", intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
+def _missing(actuator_map: ActuatorMap, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
+    """Why robot i has no gearbox, empty if it has both."""
     for joint in JOINTS:
         if intervals[joint][i] < 0:
-            name = f"{joint}_ratio"
-            try:
-                actuator_map.lookup(float(values[i, NAMES.index(name)]))
-            except DesignError as error:
-                return f"{name}: {error}"
+            ratio = float(values[i, NAMES.index(f"{joint}_ratio")])
+            return f"{joint}_ratio = {ratio:g}: {actuator_map.why_not(ratio)}"
     return ""
 
 
@@ -299,8 +295,3 @@ def _in_body(properties: MassProperties, turn: Floats, z_mm: Numbers) -> MassPro
     """From a unit's frame to the body frame."""
     move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * float(z_mm)])
     return properties.placed(PART_TO_BODY @ turn, move)
-
-
-def _length_m(actuator: "Actuator") -> float:
-    """From the mounting face (z = 0) to the back of an actuator, which lies on the side of negative z."""
-    return -1e-3 * min(float(prism.z0_mm) for part in actuator.parts for prism in part.prisms)

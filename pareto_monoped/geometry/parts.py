@@ -140,8 +140,8 @@ class MassProperties:
         """The same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
         turn = np.eye(3) if rotation is None else rotation
         move = np.zeros(3) if translation_m is None else np.asarray(translation_m, dtype=np.float64)
-        first = self.first_kg_m @ turn.T
-        second = turn @ self.second_kg_m2 @ turn.T
+        first = _turned(self.first_kg_m, turn)
+        second = np.swapaxes(_turned(np.swapaxes(_turned(self.second_kg_m2, turn), -1, -2), turn), -1, -2)
         cross = first[..., :, None] * move[..., None, :]
         mass = self.mass_kg
         return MassProperties(
@@ -165,6 +165,18 @@ class MassProperties:
         central = self.second_kg_m2 - self.mass_kg[..., None, None] * (com[..., :, None] * com[..., None, :])
         trace = np.trace(central, axis1=-2, axis2=-1)
         return trace[..., None, None] * np.eye(3) - central
+
+
+def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Every vector along the last axis, rotated.
+
+    Written out, as a matrix product may add up in another order for another number of rows, and a robot must weigh the
+    same to the last bit in any population.
+    """
+    return np.stack(
+        [turn[i, 0] * vectors[..., 0] + turn[i, 1] * vectors[..., 1] + turn[i, 2] * vectors[..., 2] for i in range(3)],
+        axis=-1,
+    )
 
 
 def total(parts: Iterable[MassProperties]) -> MassProperties:

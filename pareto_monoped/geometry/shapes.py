@@ -152,7 +152,7 @@ class Path:
             x, y, dx, dy = _samples(piece)
 
             def along(values: NDArray[np.float64]) -> Numbers:
-                return np.asarray(values @ _WEIGHTS)[()]
+                return np.asarray(np.sum(values * _WEIGHTS, axis=-1))[()]
 
             total = total + Moments(
                 along(0.5 * (x * dy - y * dx)),

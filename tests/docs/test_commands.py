@@ -1,0 +1,90 @@
+"""Every command shown in README and docs runs, and prints what is shown there.
+
+A block that starts with ```console holds lines ``$ command``, each followed by what it prints on stdout. The blocks of
+one file are run in order in one folder that has the repository's ``studies``. Numbers may differ by 2 percent, as the
+last digits of a simulation may between machines; ``...`` stands for lines left out.
+"""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "studies").glob("*.md")])
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def commands(page: Path) -> list[tuple[str, list[str]]]:
+    """Command and expected lines, in the order of the page."""
+    found: list[tuple[str, list[str]]] = []
+    for block in re.findall(r"^```console\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M):
+        for line in block.splitlines():
+            if line.startswith("$ "):
+                found.append((line[2:], []))
+            else:
+                found[-1][1].append(line)
+    return found
+
+
+def same(shown: str, printed: str) -> bool:
+    """Whether two lines agree, numbers to 2 percent, blanks and rules ignored."""
+    if NUMBER.sub("#", shown).split() != NUMBER.sub("#", printed).split():
+        return False
+    pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
+    return all(abs(float(a) - float(b)) <= 0.02 * max(abs(float(a)), abs(float(b))) for a, b in pairs)
+
+
+def missing(shown: list[str], printed: list[str]) -> str:
+    """The first shown line that the output does not have in its place; empty if all are there."""
+    position = 0
+    free = False
+    for line in (line for line in shown if line.strip()):
+        if line.strip() == "...":
+            free = True
+            continue
+        rest = [i for i in range(position, len(printed)) if printed[i].strip()]
+        rest = rest if free else rest[:1]
+        match = next((i for i in rest if same(line, printed[i])), None)
+        if match is None:
+            return line
+        position, free = match + 1, False
+    return ""
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: str(p.relative_to(ROOT)))
+@pytest.mark.xdist_group("docs")
+def test_commands_of_the_page_run_and_print_what_it_shows(page, tmp_path):
+    shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
+    (tmp_path / "reports").mkdir()
+    environment = os.environ | {
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "COLUMNS": "80",
+    }
+    for command, shown in commands(page):
+        program = shlex.split(command)[0]
+        if program == "make":
+            # The targets themselves are what CI runs; here only that they exist.
+            subprocess.run(["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, check=True, capture_output=True)
+            continue
+        done = subprocess.run(
+            command, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=300
+        )
+        assert done.returncode == 0, f"{command}: {done.stderr}"
+        absent = missing(shown, done.stdout.splitlines())
+        assert not absent, f"{command} no longer prints:\n{absent}\nbut:\n{done.stdout}"
+
+
+def test_the_pages_exist_and_the_readme_shows_commands():
+    assert commands(ROOT / "README.md")
+
+
+def test_no_link_is_broken():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+            assert (page.parent / target).exists(), f"{page.name} links to {target}, which does not exist"
