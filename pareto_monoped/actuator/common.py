@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.actuator.bearings import Bearing
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.settings import ActuatorSettings, PartData
 from pareto_monoped.geometry.gears import DEDENDUM
@@ -74,16 +75,16 @@ def vents(inner_mm: float, outer_mm: float, wall_mm: float) -> tuple[Pattern, ..
     return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)
 
 
-def bought_bearing(name: str, bearing: object, z_front_mm: Numbers, group: str, note: str) -> Part:
+def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str, note: str) -> Part:
     """A ball bearing as the ring it fills, with its catalogue mass."""
-    inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm  # type: ignore[attr-defined]
+    inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
     return Part(
         name=name,
         material=BEARING_STEEL,
-        prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),  # type: ignore[attr-defined]
+        prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),
         process="bought",
         group=group,
-        catalogue_mass_kg=bearing.mass_kg,  # type: ignore[attr-defined]
+        catalogue_mass_kg=bearing.mass_kg,
         note=note,
     )
 
@@ -120,7 +121,6 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     carrier, gears = data.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     material = gear_steel(data)
-    spread = {"count": gears.planets, "pitch_radius_mm": at.r_pins}
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     return (
         Part(
@@ -130,7 +130,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             process="machined",
             group="planet",
             note=f"hardened and wire-cut; backlash {data.gears.backlash_mm} mm",
-            **spread,
+            count=gears.planets,
+            pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="planet_bush",
@@ -141,7 +142,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             process="bought",
             group="planet",
             note="PTFE bronze bush, pressed into the planet, cut to its width",
-            **spread,
+            count=gears.planets,
+            pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="planet_pin",
@@ -150,7 +152,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             process="machined",
             group="output",
             note="hardened dowel, pressed into both carriers, M3 thread in the rear end",
-            **spread,
+            count=gears.planets,
+            pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="ring",

@@ -123,7 +123,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *tube(z_flange, -case.plate_mm, r_flange, at.r_seat, flange_threads),
                 *tube(at.z_bearing_back, z_flange, r_seat_out, at.r_seat),
                 *tube(z_lip, at.z_bearing_back, r_seat_out, r_lip),
-                *tube(at.z_gear_front, z_lip, at.r_stator_in, r_lip),
+                *tube(at.z_gear_front, z_lip, at.r_stator_in, at.r_ring - 0.5 * case.ring_lip_mm),
                 *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
                 *tube(
                     np.minimum(z_stator_back, at.z_gear_back),

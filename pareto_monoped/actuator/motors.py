@@ -155,8 +155,8 @@ class Motor:
             raise ValueError("framed and frameless are both missing; give at least one of them")
         if self.framed and self.frameless and self.frameless.mass_kg > self.framed.mass_kg:
             raise ValueError(
-                f"frameless.mass_kg = {self.frameless.mass_kg}: must be at most framed.mass_kg = {self.framed.mass_kg}; "
-                "correct one of them"
+                f"frameless.mass_kg = {self.frameless.mass_kg}: must be at most "
+                f"framed.mass_kg = {self.framed.mass_kg}; correct one of them"
             )
         fill("torque_constant_n_m_per_a", 60.0 / (2.0 * math.pi * self.kv_rpm_per_v))
         fill("continuous_torque_n_m", self.torque_constant_n_m_per_a * self.max_continuous_current_a)

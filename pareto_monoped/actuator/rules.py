@@ -66,7 +66,7 @@ def _ring_rim(case: Case) -> Numbers:
 
 
 def _ring_interference(case: Case) -> Numbers:
-    planet, ring = case.gears.planet(), case.gears.ring()
+    ring = case.gears.ring()
     reach = case.gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
     return ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
 

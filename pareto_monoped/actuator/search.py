@@ -1,6 +1,7 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,16 +36,24 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
         ring_most = int((room_mm + _BEYOND_MM) / module)
         least = min(_TEETH_LEAST, settings.teeth_min)
         sun, planet = np.meshgrid(
-            np.arange(least, ring_most, dtype=np.int64), np.arange(least, ring_most // 2 + 1), indexing="ij"
+            np.arange(least, ring_most, dtype=np.int64),
+            np.arange(least, ring_most // 2 + 1, dtype=np.int64),
+            indexing="ij",
         )
         ring = sun + 2 * planet
         tenths = interval_tenths(sun, ring)
         keep = (ring <= ring_most) & (tenths >= intervals[0]) & (tenths < intervals[1])
         for planets in range(settings.planets_min, settings.planets_max + 1):
-            count = int(keep.sum())
-            sets.append((sun[keep], planet[keep], ring[keep], np.full(count, module), np.full(count, planets)))
-    sun, planet, ring, module, planets = (np.concatenate(column) for column in zip(*sets, strict=True))
-    return GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=ring, module_mm=module, planets=planets)
+            shape = int(keep.sum())
+            sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
+    columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
+    return GearSet(
+        sun_teeth=columns[0],
+        planet_teeth=columns[1],
+        ring_teeth=columns[2],
+        module_mm=columns[3],
+        planets=columns[4],
+    )
 
 
 def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -67,11 +76,11 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     chosen = gears.where(near)
     mass[near] = actuator_mass_kg(layout(motor, family, chosen, width[near], settings), motor, family, settings)
     mass[np.isnan(mass)] = np.inf
-    tenths = interval_tenths(np.asarray(gears.sun_teeth), np.asarray(gears.ring_teeth))
+    tenths = interval_tenths(np.asarray(gears.sun_teeth, dtype=np.int64), np.asarray(gears.ring_teeth, dtype=np.int64))
     found = {}
     order = np.argsort(tenths, kind="stable")
     bounds = np.searchsorted(tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
-    for low, (start, stop) in enumerate(zip(bounds[:-1], bounds[1:], strict=True), 10 * RATIO_LOW):
+    for low, (start, stop) in enumerate(pairwise(bounds), 10 * RATIO_LOW):
         inside = order[start:stop]
         allowed = inside[count[inside] == 0]
         ranked = allowed[np.argsort(mass[allowed], kind="stable")][:2]

@@ -8,17 +8,22 @@ from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import GearData
 from pareto_monoped.geometry.shapes import Numbers
 
-# Lewis form factor Y for 20 degree full-depth teeth over the number of teeth: Shigley, table 14-2.
-_TEETH = np.array([12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 24, 26, 28, 30, 34, 38, 43, 50, 60, 75, 100, 150, 300])
-_FORM = np.array(
-    [0.245, 0.261, 0.277, 0.290, 0.296, 0.303, 0.309, 0.314, 0.322, 0.328, 0.331, 0.337]
-    + [0.346, 0.353, 0.359, 0.371, 0.384, 0.397, 0.409, 0.422, 0.435, 0.447, 0.460, 0.472]
-)
+# Lewis form factor Y of 20 degree full-depth teeth over the number of teeth: Shigley, table 14-2.
+_LEWIS = np.array(
+    [
+        (12, 0.245), (13, 0.261), (14, 0.277), (15, 0.290), (16, 0.296), (17, 0.303), (18, 0.309), (19, 0.314),
+        (20, 0.322), (21, 0.328), (22, 0.331), (24, 0.337), (26, 0.346), (28, 0.353), (30, 0.359), (34, 0.371),
+        (38, 0.384), (43, 0.397), (50, 0.409), (60, 0.422), (75, 0.435), (100, 0.447), (150, 0.460), (300, 0.472),
+    ]
+)  # fmt: skip
+
+LEAST_WIDTH_MODULES = 6.0
+"""Face width is at least this many modules (Niemann/Winter: 6 to 10 for narrow gears), where strength asks for less."""
 
 
 def lewis_form_factor(teeth: Numbers) -> NDArray[np.float64]:
     """Y, interpolated linearly; constant beyond the table's ends."""
-    return np.asarray(np.interp(teeth, _TEETH, _FORM))
+    return np.asarray(np.interp(teeth, _LEWIS[:, 0], _LEWIS[:, 1]))
 
 
 def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
@@ -38,4 +43,5 @@ def face_width_mm(gears: GearSet, motor: Motor, data: GearData) -> Numbers:
     speed = motor.no_load_speed_rad_per_s * (1.0 - 1.0 / gears.ratio) * radius_m
     stress_mpa = data.allowable_stress_mpa / data.factor_of_safety
     weakest = np.minimum(gears.sun_teeth, gears.planet_teeth)
-    return velocity_factor(speed) * force_n / (stress_mpa * gears.module_mm * lewis_form_factor(weakest))
+    strong = velocity_factor(speed) * force_n / (stress_mpa * gears.module_mm * lewis_form_factor(weakest))
+    return np.maximum(strong, LEAST_WIDTH_MODULES * gears.module_mm)

@@ -4,8 +4,8 @@ Millimetres. Proportions of the basic rack ISO 53: addendum 1.0 m, dedendum 1.25
 degrees. Every number may be an array of shape (n,), so the same formula weighs one gear or all candidates.
 
 The half angle of a tooth at radius r is psi(r) = pi/(2z) + inv(alpha) - inv(alpha_r) with cos(alpha_r) = r_b / r (any
-textbook on involute gears, e.g. Shigley, ch. 13); below the base circle the flanks are radial. Integrated by parts, with
-t = tan(alpha_r) and d(inv) = tan^2 d(alpha), the tooth's area and polar moment between two radii are
+textbook on involute gears, e.g. Shigley, ch. 13); below the base circle the flanks are radial. Integrated by parts,
+with t = tan(alpha_r) and d(inv) = tan^2 d(alpha), the tooth's area and polar moment between two radii are
 
     area   = [psi r^2]     + r_b^2 [t^3 / 3]
     polar  = [psi r^4 / 2] + r_b^4 / 2 [t^3 / 3 + t^5 / 5]

@@ -1,0 +1,137 @@
+"""Whether the parts of an actuator fit together, from radii and heights alone: rings of material in r and z."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
+
+# Pairs that touch or mesh by design, checked in other ways.
+MESHING = {frozenset(pair) for pair in (("planet", "sun"), ("planet", "ring"))}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    """Material between two radii and two heights."""
+
+    part: str
+    group: str
+    r0: float
+    r1: float
+    z0: float
+    z1: float
+
+
+def outer_mm(shape: Shape) -> float:
+    if isinstance(shape, Circle):
+        return float(shape.radius_mm)
+    assert isinstance(shape, ExternalGear)
+    return float(shape.tip_radius_mm)
+
+
+def inner_mm(holes: tuple[Shape, ...]) -> float:
+    """Radius of the central hole; patterns of holes are left out, which is on the safe side."""
+    centred = [hole.radius_mm for hole in holes if isinstance(hole, Circle)]
+    centred += [hole.tip_radius_mm for hole in holes if isinstance(hole, InternalGear)]
+    assert len(centred) <= 1
+    return float(centred[0]) if centred else 0.0
+
+
+def rings(part: Part) -> list[Ring]:
+    """A part's material; of parts on a circle, all of the annulus that they sweep."""
+    found = []
+    for prism in part.prisms:
+        r0, r1 = inner_mm(prism.holes), outer_mm(prism.outline)
+        if part.pitch_radius_mm:
+            r0, r1 = part.pitch_radius_mm - r1, part.pitch_radius_mm + r1
+        found.append(Ring(part=part.name, group=part.group, r0=r0, r1=r1, z0=float(prism.z0_mm), z1=float(prism.z1_mm)))
+    return found
+
+
+def gap_mm(a: Ring, b: Ring) -> float:
+    """How far two rings are apart, in r or in z, whichever is more; negative if they share material."""
+    return max(a.r0 - b.r1, b.r0 - a.r1, a.z0 - b.z1, b.z0 - a.z1)
+
+
+def holes_for_pins(carrier: Part, pin: Part) -> bool:
+    """Whether every prism of a carrier that a pin runs through has holes just where the pins are."""
+    (body,) = pin.prisms
+    for prism in carrier.prisms:
+        if prism.z1_mm <= body.z0_mm + 1e-9 or prism.z0_mm >= body.z1_mm - 1e-9:
+            continue
+        fitting = [
+            hole
+            for hole in prism.holes
+            if isinstance(hole, Pattern)
+            and hole.count == pin.count
+            and abs(hole.pitch_radius_mm - pin.pitch_radius_mm) < 1e-9
+            and abs(hole.radius_mm - body.outline.radius_mm) < 1e-9
+            and hole.phase_rad == pin.phase_rad
+        ]
+        if not fitting:
+            return False
+    return True
+
+
+def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
+    """Every pair of parts that share material, or turn past each other with less than the clearance."""
+    parts = {part.name: part for part in actuator.parts}
+    found = []
+    for a, b in combinations(actuator.parts, 2):
+        pair = frozenset((a.name, b.name))
+        if pair in MESHING:
+            continue
+        if a.pitch_radius_mm and b.pitch_radius_mm:
+            # Planet, bush and pin on one axis: nested, seen from that axis.
+            rings_a, rings_b = (rings_about_own_axis(part) for part in (a, b))
+        elif "planet_pin" in pair and pair & {"carrier", "secondary_carrier"}:
+            carrier = parts["carrier"] if "carrier" in pair else parts["secondary_carrier"]
+            if not holes_for_pins(carrier, parts["planet_pin"]):
+                found.append(f"{carrier.name} has no holes for the pins")
+            continue
+        else:
+            rings_a, rings_b = rings(a), rings(b)
+        turning = a.group != b.group and not any("bearing" in name or "bush" in name for name in pair)
+        needed = clearance_mm if turning else 0.0
+        least = min(gap_mm(x, y) for x in rings_a for y in rings_b)
+        if least < needed - 1e-9:
+            found.append(f"{a.name} and {b.name}: {least:.3f} mm, {needed} needed")
+    return found
+
+
+def rings_about_own_axis(part: Part) -> list[Ring]:
+    return [
+        Ring(
+            part=part.name,
+            group=part.group,
+            r0=inner_mm(prism.holes),
+            r1=outer_mm(prism.outline),
+            z0=float(prism.z0_mm),
+            z1=float(prism.z1_mm),
+        )
+        for prism in part.prisms
+    ]
+
+
+def overlaps_within(part: Part) -> list[str]:
+    """Prisms of one part that share material, and holes that are not inside their outline."""
+    own = rings_about_own_axis(part)
+    found = [f"{part.name}: prisms overlap" for a, b in combinations(own, 2) if gap_mm(a, b) < -1e-9]
+    for prism in part.prisms:
+        r0, r1 = inner_mm(prism.holes), outer_mm(prism.outline)
+        if isinstance(prism.outline, ExternalGear):
+            r1 = float(prism.outline.root_radius_mm)
+        if r1 <= r0:
+            found.append(f"{part.name}: no wall between {r0} and {r1}")
+        patterns = [hole for hole in prism.holes if isinstance(hole, Pattern)]
+        for hole in patterns:
+            if hole.pitch_radius_mm - hole.radius_mm < r0 or hole.pitch_radius_mm + hole.radius_mm > r1:
+                found.append(f"{part.name}: holes {hole.pitch_radius_mm}+-{hole.radius_mm} not between {r0} and {r1}")
+        discs = [(centre, float(hole.radius_mm)) for hole in patterns for centre in hole.centres_mm()]
+        for (c, r), (d, s) in combinations(discs, 2):
+            if ((c[0] - d[0]) ** 2 + (c[1] - d[1]) ** 2) ** 0.5 < r + s - 1e-9:
+                found.append(f"{part.name}: two holes overlap")
+                break
+    return found
