@@ -193,11 +193,11 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
     reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
     hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
 
-    frame = _upright(base_parts(table.length_m[knee]))
+    frame = table.frame.rows(knee)
     if options.base_structure_mass_kg is not None:
         frame = frame.scaled(options.base_structure_mass_kg / frame.mass_kg)
     thigh, shank = _upright(thigh_parts(thigh_m)), _upright(shank_parts(shank_m))
-    journal = _upright(journal_parts(table.length_m[knee]))
+    journal = table.journal.rows(knee)
     foot = _upright((foot_part(shank_m),))
     if options.foot_mass_kg is not None:
         foot = foot.scaled(options.foot_mass_kg / foot.mass_kg)
@@ -233,11 +233,15 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _ActuatorTable:
-    """The map's actuators as arrays of k rows; ``row`` leads from an interval of the map to its row."""
+    """The map's k actuators as arrays, and the parts of the base whose size follows from the knee actuator's length.
+
+    ``row`` leads from an interval of the map to its actuator's row.
+    """
 
     row: NDArray[np.intp]
     mass: MassProperties
-    length_m: Floats
+    frame: MassProperties
+    journal: MassProperties
     ratio: Floats
     armature_kg_m2: Floats
     peak_torque_n_m: Floats
@@ -247,18 +251,14 @@ class _ActuatorTable:
 
     def placed(self, rows: NDArray[np.intp], turn: Floats, z_mm: float) -> MassProperties:
         """The chosen actuators in a body frame, a row a design."""
-        chosen = MassProperties(
-            mass_kg=self.mass.mass_kg[rows],
-            first_kg_m=self.mass.first_kg_m[rows],
-            second_kg_m2=self.mass.second_kg_m2[rows],
-        )
-        return _in_body(chosen, turn, z_mm)
+        return _in_body(self.mass.rows(rows), turn, z_mm)
 
 
 @lru_cache(maxsize=16)
 def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
+    length_m = np.array([1e-3 * a.length_mm for a in actuators])
     masses = [total(part.mass_properties() for part in actuator.parts) for actuator in actuators]
     return _ActuatorTable(
         row=np.maximum(row, 0),
@@ -267,7 +267,8 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
             first_kg_m=np.array([m.first_kg_m for m in masses]),
             second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
         ),
-        length_m=np.array([1e-3 * a.length_mm for a in actuators]),
+        frame=_upright(base_parts(length_m)),
+        journal=_upright(journal_parts(length_m)),
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),

@@ -6,8 +6,9 @@ CAD builds its solid from the same description. Lengths in millimetres, results 
 Local frame: x and y in the plane of the shapes, z along the extrusion, which is a joint or gearbox axis.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,6 +126,12 @@ class MassProperties:
             second_kg_m2=self.second_kg_m2 + other.second_kg_m2,
         )
 
+    def rows(self, chosen: NDArray[np.intp]) -> "MassProperties":
+        """Some rows of properties that have a leading axis."""
+        return MassProperties(
+            mass_kg=self.mass_kg[chosen], first_kg_m=self.first_kg_m[chosen], second_kg_m2=self.second_kg_m2[chosen]
+        )
+
     def scaled(self, factor: Numbers) -> "MassProperties":
         """The same distribution with its density times ``factor``."""
         scale = np.asarray(factor, dtype=np.float64)
@@ -138,19 +145,26 @@ class MassProperties:
         self, rotation: NDArray[np.float64] | None = None, translation_m: NDArray[np.float64] | None = None
     ) -> "MassProperties":
         """The same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
-        turn = np.eye(3) if rotation is None else rotation
-        move = np.zeros(3) if translation_m is None else np.asarray(translation_m, dtype=np.float64)
-        first = _turned(self.first_kg_m, turn)
-        second = np.swapaxes(_turned(np.swapaxes(_turned(self.second_kg_m2, turn), -1, -2), turn), -1, -2)
-        cross = first[..., :, None] * move[..., None, :]
-        mass = self.mass_kg
+        first, second = self.first_kg_m, self.second_kg_m2
+        if rotation is not None:
+            first = _turned(first, rotation)
+            second = np.swapaxes(_turned(np.swapaxes(_turned(second, rotation), -1, -2), rotation), -1, -2)
+        turned = MassProperties(mass_kg=self.mass_kg, first_kg_m=first, second_kg_m2=second)
+        return turned if translation_m is None else turned.repeated([np.asarray(translation_m, dtype=np.float64)])
+
+    def repeated(self, places_m: Sequence[NDArray[np.float64]]) -> "MassProperties":
+        """The same body at several places, each a translation of shape (..., 3)."""
+        mass, moved = self.mass_kg, reduce(np.add, places_m)
+        squares = reduce(np.add, [place[..., :, None] * place[..., None, :] for place in places_m])
+        cross = self.first_kg_m[..., :, None] * moved[..., None, :]
+        count = len(places_m)
         return MassProperties(
-            mass_kg=mass + np.zeros(move.shape[:-1]),
-            first_kg_m=first + mass[..., None] * move,
-            second_kg_m2=second
+            mass_kg=count * mass + np.zeros(moved.shape[:-1]),
+            first_kg_m=count * self.first_kg_m + mass[..., None] * moved,
+            second_kg_m2=count * self.second_kg_m2
             + cross
             + np.swapaxes(cross, -1, -2)
-            + mass[..., None, None] * (move[..., :, None] * move[..., None, :]),
+            + mass[..., None, None] * squares,
         )
 
     @property
@@ -187,6 +201,9 @@ def total(parts: Iterable[MassProperties]) -> MassProperties:
     return result
 
 
+_HERE: tuple[tuple[Numbers, Numbers, Numbers], ...] = ((0.0, 0.0, 0.0),)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
     """One kind of part of a unit (an actuator, a link, the base), in the unit's frame.
@@ -213,7 +230,7 @@ class Part:
     count: Numbers = 1
     pitch_radius_mm: Numbers = 0.0
     phase_rad: float = 0.0
-    places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = ((0.0, 0.0, 0.0),)
+    places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = _HERE
     balls: tuple[Ball, ...] = ()
     group: str = "fixed"
     catalogue_mass_kg: Numbers | None = None
@@ -242,9 +259,17 @@ class Part:
 
         Instances on a circle are taken as evenly spread, exact for three and more (for two, about the z axis).
         """
+        try:
+            return _remembered(self)
+        except TypeError:  # arrays have no hash
+            return self._everywhere()
+
+    def _everywhere(self) -> MassProperties:
+        """The instances of all places, about the origin of the unit's frame."""
         circle = self._circle()
-        moves = (np.stack(np.broadcast_arrays(*place), axis=-1) * 1e-3 for place in self.places_mm)
-        return total(circle.placed(translation_m=move) for move in moves)
+        if self.places_mm is _HERE:
+            return circle
+        return circle.repeated([np.stack(np.broadcast_arrays(*place), axis=-1) * 1e-3 for place in self.places_mm])
 
     def _circle(self) -> MassProperties:
         """The instances of one place, about the centre of their circle."""
@@ -267,16 +292,20 @@ class Part:
         return MassProperties(mass_kg=everything.mass_kg, first_kg_m=first, second_kg_m2=second + around)
 
 
+@lru_cache(maxsize=1024)
+def _remembered(part: Part) -> MassProperties:
+    """Most parts do not depend on a link's length, and are weighed once."""
+    return part._everywhere()
+
+
 def _uniform(solids: tuple[Prism | Ball, ...], density_kg_per_m3: float) -> MassProperties:
     """Mass properties of solids of one density about the origin, in SI."""
-    result = MassProperties.zero()
-    for solid in solids:
-        entries = np.broadcast_arrays(*(np.asarray(e, dtype=np.float64) for e in solid.integrals()))
-        m, mx, my, mz, xx, yy, zz, xy, xz, yz = entries
-        rho = density_kg_per_m3 * 1e-9  # kg per mm3; each length in a moment adds 1e-3
-        result = result + MassProperties(
-            mass_kg=m * rho,
-            first_kg_m=np.stack([mx, my, mz], axis=-1) * (rho * 1e-3),
-            second_kg_m2=np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).reshape(*m.shape, 3, 3) * (rho * 1e-6),
-        )
-    return result
+    columns = zip(*(solid.integrals() for solid in solids), strict=True)
+    sums = [np.asarray(reduce(np.add, column), dtype=np.float64) for column in columns]
+    m, mx, my, mz, xx, yy, zz, xy, xz, yz = np.broadcast_arrays(*sums)
+    rho = density_kg_per_m3 * 1e-9  # kg per mm3; each length in a moment adds 1e-3
+    return MassProperties(
+        mass_kg=m * rho,
+        first_kg_m=np.stack([mx, my, mz], axis=-1) * (rho * 1e-3),
+        second_kg_m2=np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).reshape(*m.shape, 3, 3) * (rho * 1e-6),
+    )
