@@ -95,12 +95,16 @@ class _File:
     constraints: Constraints = field(default_factory=Constraints)
     reference_point: _Reference = field(default_factory=_Reference)
     stop: Stop = field(default_factory=Stop)
+    audit: bool = True
     algorithm: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """One study, complete: every variable is free within ``Bounds`` or fixed to a number, in the order of ``NAMES``."""
+    """One study, complete: every variable is free within ``Bounds`` or fixed to a number, in the order of ``NAMES``.
+
+    ``audit`` says whether the front is audited when the study ends, and ill-conditioned designs leave it.
+    """
 
     name: str
     description: str
@@ -114,6 +118,7 @@ class Study:
     constraints: Constraints
     reference_point: ReferencePoint
     stop: Stop
+    audit: bool
     algorithm: AlgorithmSettings
 
     @property
@@ -191,6 +196,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         constraints=file.constraints,
         reference_point=ReferencePoint(height_m=file.reference_point.height_m, energy_j=file.reference_point.energy_j),
         stop=file.stop,
+        audit=file.audit,
         algorithm=_algorithm(file.algorithm, source),
     )
 

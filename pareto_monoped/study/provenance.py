@@ -11,8 +11,8 @@ from pareto_monoped import __version__
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.settings import EvolutionSettings, OptunaSettings, WeightedSettings
 
-_NOT_RESULTS = ("description", "evaluations", "stop")
-"""Keys of a study that say when it ends or what it is for, not which trials it has."""
+_NOT_RESULTS = ("audit", "description", "evaluations", "stop")
+"""Keys of a study that say when it ends or what follows, not which trials it has."""
 
 
 def versions(study: Study) -> dict[str, str]:

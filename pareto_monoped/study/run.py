@@ -208,7 +208,7 @@ def _go_on(
         with Interrupt(notify) as interrupt:
             reason = loop.go(interrupt)
         finished = reason != "interrupted"
-        if finished:
+        if finished and study.audit:
             audit_front(db, store, physics, notify)
         store.set_meta({"finished": finished, "stop_reason": reason})
     after = read_study(db)
