@@ -66,12 +66,13 @@ def case_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3_THR
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 
-def vents(inner_mm: float, outer_mm: float, wall_mm: float) -> tuple[Pattern, ...]:
+def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern, ...]:
     """As many round holes as fit between two radii, with ``wall_mm`` around each; none if they would be too small."""
     radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
-    if radius < M3_CLEARANCE_MM:
+    count = np.floor(np.pi / np.arcsin(np.clip((radius + wall_mm) / middle, 0.01, 1.0)))
+    count = np.where(radius >= M3_CLEARANCE_MM, count, 0.0)[()]
+    if np.ndim(count) == 0 and count == 0.0:
         return ()
-    count = int(np.pi / np.arcsin((radius + wall_mm) / middle))
     return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)
 
 

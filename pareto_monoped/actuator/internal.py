@@ -79,6 +79,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
     mount_holes = motor.mount_holes
     assert mount_holes is not None
     r_mount = 0.5 * (mount_holes.pitch_circle_mm + mount_holes.diameter_mm)
+    front_vents = vents(r_flange, at.r_case, case.vent_wall_mm)
     back_vents = vents(r_mount + case.vent_wall_mm, at.r_case, case.vent_wall_mm)
     return (
         *gear_parts(at, settings),
@@ -107,7 +108,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="casing",
             material=alu,
             prisms=(
-                *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws),
+                *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws, *front_vents),
                 *tube(at.z_bearing_front, -case.plate_mm, at.r_seat, at.r_open),
                 *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
                 *tube(z_plate + case.flange_mm, -case.rim_mm, at.r_case + case.wall_mm, at.r_case),

@@ -117,6 +117,22 @@ class ActuatorMap:
             return actuator
         raise DesignError(f"gear ratio = {ratio!r}: {self.why_not(ratio)}; choose {self._existing()}")
 
+    def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
+        """Least mass in every interval, of one family or of both, NaN where there is none: the paper's figure.
+
+        Shape (intervals,), to be drawn over ``ratios_low``.
+        """
+        masses = np.full(len(self.entries), np.nan)
+        for index, entry in enumerate(self.entries):
+            bests = [found.best for name, found in entry.families.items() if family in (None, name)]
+            masses[index] = min((best.mass_kg for best in bests if best is not None), default=np.nan)
+        return masses
+
+    @property
+    def ratios_low(self) -> NDArray[np.float64]:
+        """Lower ends of the intervals, shape (intervals,)."""
+        return np.array([entry.ratio_low for entry in self.entries])
+
     def why_not(self, ratio: float) -> str:
         """Why there is no gearbox for a ratio."""
         if not RATIO_LOW <= ratio < RATIO_HIGH:
