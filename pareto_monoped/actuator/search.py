@@ -82,7 +82,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     bounds = np.searchsorted(tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
     for low, (start, stop) in enumerate(pairwise(bounds), 10 * RATIO_LOW):
         inside = order[start:stop]
-        allowed = inside[count[inside] == 0]
+        allowed = inside[(count[inside] == 0) & np.isfinite(mass[inside])]
         ranked = allowed[np.argsort(mass[allowed], kind="stable")][:2]
         if len(ranked):
             rivals = inside[(count[inside] == 1) & (mass[inside] < mass[ranked[0]])]
