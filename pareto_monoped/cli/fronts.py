@@ -120,10 +120,10 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> 
 
 def _print_table(rows: "DataFrame") -> None:
     symbols = [variable.symbol for variable in VARIABLES]
-    click.echo(f"{'trial':>7} {'height m':>9} {'energy J':>9} " + " ".join(f"{symbol:>7}" for symbol in symbols))
+    click.echo(f"{'trial':>6} {'height m':>8} {'energy J':>8} " + " ".join(f"{symbol:>7}" for symbol in symbols))
     for _, row in rows.iterrows():
         values = " ".join(f"{row[name]:7.3f}" for name in NAMES)
-        click.echo(f"{int(row['trial']):7d} {row['height_m']:9.4f} {row['energy_j']:9.3f} {values}")
+        click.echo(f"{int(row['trial']):6d} {row['height_m']:8.4f} {row['energy_j']:8.3f} {values}")
 
 
 @click.command()

@@ -1,0 +1,83 @@
+"""``front`` and ``pick`` as a user types them."""
+
+import csv
+import json
+
+import pytest
+
+from pareto_monoped.cli import _run as cli
+from pareto_monoped.design import NAMES
+from tests.study.support import made_database
+
+
+@pytest.fixture
+def db(tmp_path):
+    """Its front: trials 4 (0.7 m, 8 J), 0 (0.8 m, 9 J), 3 (1.1 m, 30 J)."""
+    made_database(tmp_path / "s.db")
+    return str(tmp_path / "s.db")
+
+
+def test_front_as_json(db, capsys):
+    assert cli(["front", db, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["trial"] for row in rows] == [4, 0, 3]
+    assert [list(row) for row in rows] == [["trial", "height_m", "energy_j", *NAMES]] * 3
+    assert (rows[0]["height_m"], rows[0]["energy_j"]) == (0.7, 8.0)
+
+
+def test_front_as_csv_and_table(db, tmp_path, capsys):
+    assert cli(["front", db, "--csv", str(tmp_path / "f.csv")]) == 0
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "f.csv (3 designs)" in said.err
+    with (tmp_path / "f.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert cli(["front", db, "--json"]) == 0
+    exact = json.loads(capsys.readouterr().out)
+    assert [{name: float(value) for name, value in row.items()} for row in rows] == exact
+    assert cli(["front", db]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 4
+    assert max(map(len, lines)) <= 80
+
+
+@pytest.mark.parametrize(
+    ("selector", "trial", "word"),
+    [
+        (["--min-height", "0.75"], 0, "least energy"),
+        (["--max-energy", "29"], 0, "highest jump"),
+        (["--knee"], 0, "knee"),
+        (["--weights", "1,0"], 3, "weighted sum"),
+        (["--trial", "4"], 4, "by its number"),
+    ],
+)
+def test_pick(db, capsys, selector, trial, word):
+    assert cli(["pick", db, *selector, "--json"]) == 0
+    picked = json.loads(capsys.readouterr().out)
+    assert list(picked) == ["trial", "height_m", "energy_j", *NAMES, "why"]
+    assert picked["trial"] == trial
+    assert word in picked["why"]
+    assert cli(["pick", db, *selector]) == 0
+    assert picked["why"] in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("selector", "word"),
+    [
+        ([], "no selector given"),
+        (["--knee", "--trial", "4"], "2 selectors given"),
+        (["--weights", "1"], "two numbers"),
+        (["--weights", "a,b"], "two numbers"),
+        (["--weights", "nan,1"], "nan,1"),
+        (["--min-height", "nan"], "finite"),
+        (["--min-height", "2"], "1.1000 m"),
+        (["--trial", "1"], "must be on the front"),
+        (["--trial", "-1"], "-1"),
+    ],
+)
+def test_a_bad_selector_gets_one_line(db, capsys, selector, word):
+    assert cli(["pick", db, *selector]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert word in said.err

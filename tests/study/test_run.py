@@ -1,0 +1,272 @@
+"""The run loop with the real evaluator, on small budgets."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import optuna
+import pytest
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import DatabaseError, StudyError
+from pareto_monoped.jump.evaluate import MEASURES
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.study.definition import Bounds, Constraints, Stop, study_from_dict
+from pareto_monoped.study.physics import load_physics
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.status import status
+from pareto_monoped.study.store import Store
+
+ROOT = Path(__file__).parents[2]
+
+
+def made(**more):
+    settings = {"name": "s", "evaluations": 60, "audit": False, "algorithm": {"name": "nsga2", "population": 20}}
+    return study_from_dict(settings | more, source="test")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study run in one go by one worker: path, summary, data and what progress said."""
+    path = tmp_path_factory.mktemp("whole") / "s.db"
+    seen = []
+    summary = run(made(), path, workers=1, progress=seen.append)
+    return path, summary, read_study(path), seen
+
+
+def test_stores_what_the_evaluator_gives(whole):
+    _, summary, data, _ = whole
+    assert summary.evaluations == summary.new_evaluations == len(data.trials) == 60
+    assert summary.stop_reason == "budget"
+    again = load_physics(made(), workers=1).evaluator(data.trials[list(NAMES)].to_numpy())
+    for name in MEASURES:
+        assert np.array_equal(data.trials[name].to_numpy(), getattr(again, name), equal_nan=True), name
+    assert data.trials["status"].tolist() == again.status.tolist()
+
+
+def test_progress_and_history_tell_what_is_stored(whole):
+    _, summary, data, seen = whole
+    assert [p.evaluations for p in seen] == data.history["evaluations"].tolist() == [20, 40, 60]
+    assert [p.hypervolume for p in seen] == data.history["hypervolume"].tolist()
+    assert (data.history["hypervolume"].diff().dropna() >= 0.0).all()
+    feasible = data.trials[data.trials["state"] == "feasible"]
+    points = feasible[["height_m", "energy_j"]].to_numpy()
+    assert summary.hypervolume == pytest.approx(hypervolume(points, data.reference_point), rel=1e-12)
+    assert summary.front_size == len(data.front())
+    high = points[points[:, 0] >= 0.8, 1]
+    assert seen[-1].least_energy_j == high.min()
+
+
+def test_every_evaluated_design_counts_for_the_front(whole):
+    data = whole[2]
+    ok = (data.trials["state"] == "feasible").to_numpy()
+    mask = front_mask(data.trials["height_m"].to_numpy(), data.trials["energy_j"].to_numpy(), ok)
+    assert set(data.front()["trial"]) == set(data.trials["trial"][mask])
+
+
+@pytest.mark.parametrize("workers", [2, 3])
+def test_workers_do_not_change_the_trials(whole, tmp_path, workers):
+    run(made(), tmp_path / "s.db", workers=workers)
+    assert read_study(tmp_path / "s.db").trials.equals(whole[2].trials)
+
+
+def test_stopped_within_a_generation_and_gone_on_with_it_ends_the_same(whole, tmp_path):
+    path = tmp_path / "s.db"
+    for budget in (7, 13, 20, 21, 50):
+        assert run(made(), path, evaluations=budget).evaluations == budget
+    assert resume(path, evaluations=60).new_evaluations == 10
+    data = read_study(path)
+    assert data.trials.equals(whole[2].trials)
+    assert data.checkpoint == whole[2].checkpoint
+    assert data.history["evaluations"].tolist() == [20, 40, 60]
+
+
+def test_a_study_that_is_done_is_not_run_again(whole):
+    path = whole[0]
+    summary = run(made(), path)
+    assert (summary.new_evaluations, summary.stop_reason) == (0, "budget")
+    assert read_study(path).trials.equals(whole[2].trials)
+
+
+def test_the_seed_decides_the_trials(whole, tmp_path):
+    run(made(), tmp_path / "s.db", seed=2, evaluations=20)
+    assert not read_study(tmp_path / "s.db").trials["hip_ratio"].equals(whole[2].trials["hip_ratio"][:20])
+
+
+def test_optuna_loads_it(whole):
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    loaded = optuna.load_study(study_name="s", storage=f"sqlite:///{whole[0]}")
+    assert {trial.number for trial in loaded.best_trials} == set(whole[2].front()["trial"])
+
+
+def test_fixed_variables_stay_fixed(tmp_path):
+    study = made(case="A", variables={"stiffness_n_per_m": {"lower": 20.0, "upper": 30.0}})
+    run(study, tmp_path / "s.db", evaluations=20)
+    trials = read_study(tmp_path / "s.db").trials
+    assert (trials[["thigh_length_m", "shank_length_m"]] == 0.4).all(axis=None)
+    assert trials["stiffness_n_per_m"].between(20.0, 30.0).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"seed": 2}, "study.seed: 1 -> 2"),
+        ({"variables": {"hip_ratio": 5.0}}, "study.variables.hip_ratio: (none) -> 5.0"),
+        ({"constraints": {"min_height_m": 0.6}}, "study.constraints.min_height_m: 0.55 -> 0.6"),
+        ({"algorithm": {"name": "nsga2", "population": 10}}, "study.algorithm.population: 20 -> 10"),
+        ({"calibration": "ideal"}, "calibration.name"),
+        ({"motor": "U8"}, 'motor.name: "VT8020" -> "U8"'),
+        ({"evaluations": 50}, "study.evaluations: 60 -> 50 (only more is allowed)"),
+    ],
+)
+def test_a_changed_study_is_refused_with_the_difference(whole, change, words):
+    before = whole[0].read_bytes()
+    with pytest.raises(StudyError) as caught:
+        run(made(**change), whole[0])
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert whole[0].read_bytes() == before
+
+
+def test_other_results_of_the_same_settings_are_refused(whole, tmp_path):
+    path = tmp_path / "s.db"
+    path.write_bytes(whole[0].read_bytes())
+    data = read_study(path)
+    probe = data.meta["probe"]
+    probe[0][0] += 1e-15
+    with Store(path, data.study) as store:
+        store.set_meta({"probe": probe})
+    with pytest.raises(StudyError, match="probe designs"):
+        resume(path, evaluations=80)
+
+
+def test_goes_on_without_the_users_own_files(tmp_path):
+    """Motor and calibration files are in the database: it is enough to go on from."""
+    from importlib import resources
+
+    folder = resources.files("pareto_monoped") / "data" / "calibrations"
+    (tmp_path / "mine.toml").write_text((folder / "reference.toml").read_text().replace('"reference"', '"mine"'))
+    (tmp_path / "s.toml").write_text('name = "s"\nevaluations = 20\naudit = false\ncalibration = "mine.toml"\n')
+    from pareto_monoped.study.definition import load_study
+
+    run(load_study(tmp_path / "s.toml"), tmp_path / "s.db")
+    (tmp_path / "mine.toml").unlink()
+    assert resume(tmp_path / "s.db", evaluations=30).new_evaluations == 10
+    assert read_study(tmp_path / "s.db").meta["calibration"].startswith("mine")
+
+
+def test_stops_on_a_plateau(tmp_path):
+    """Random search in a corner too small to find anything better in."""
+    corner = {name: {"lower": 0.4, "upper": 0.4 + 1e-9} for name in NAMES[:1]} | dict.fromkeys(NAMES[2:4], 6.0)
+    study = made(
+        algorithm={"name": "random", "population": 5},
+        stop={"plateau_evaluations": 10, "plateau_growth": 0.5},
+        variables=corner,
+    )
+    summary = run(study, tmp_path / "s.db")
+    assert summary.stop_reason == "plateau"
+    assert 10 < summary.evaluations < 60
+
+
+def test_stops_on_wall_time_over_all_sessions(tmp_path):
+    study = made(evaluations=10_000, stop={"wall_time_s": 0.05})
+    first = run(study, tmp_path / "s.db")
+    assert first.stop_reason == "wall_time"
+    assert first.evaluations < 10_000
+    assert run(study, tmp_path / "s.db").new_evaluations == 0
+    longer = replace(study, stop=Stop(wall_time_s=1e6))
+    assert run(longer, tmp_path / "s.db", evaluations=first.evaluations + 20).new_evaluations == 20
+
+
+def test_a_weighted_sweep_ends_by_itself(tmp_path):
+    study = made(evaluations=1000, algorithm={"name": "weighted_cmaes", "height_weights": [0.2, 0.8], "iterations": 2})
+    summary = run(study, tmp_path / "s.db")
+    assert (summary.stop_reason, summary.evaluations) == ("exhausted", 32)
+    assert read_study(tmp_path / "s.db").trials["height_weight"].tolist() == [0.2] * 16 + [0.8] * 16
+
+
+def test_infeasible_trials_are_kept_and_off_the_front(tmp_path):
+    study = replace(made(), constraints=Constraints(max_energy_j=25.0))
+    run(study, tmp_path / "s.db", evaluations=40)
+    data = read_study(tmp_path / "s.db")
+    infeasible = data.trials[data.trials["state"] == "infeasible"]
+    assert len(infeasible) > 0
+    assert infeasible["reason"].str.contains("energy_j").all()
+    assert (data.front()["energy_j"] <= 25.0).all()
+
+
+def test_the_front_is_audited_at_the_end_and_only_once(tmp_path):
+    path = tmp_path / "s.db"
+    said = []
+    run(made(audit=True, evaluations=20), path, notify=said.append)
+    data = read_study(path)
+    assert set(data.audits["trial"]) >= set(data.front()["trial"])
+    assert data.front()["trial"].isin(data.audits.loc[data.audits["well_conditioned"], "trial"]).all()
+    assert "spread_energy" in data.audits.columns
+    assert len(said) >= 1
+    said.clear()
+    run(made(audit=True, evaluations=20), path, notify=said.append)
+    assert said == []
+
+
+def test_status_says_how_far_it_is(whole):
+    facts = status(whole[0])
+    assert (facts["state"], facts["evaluations"], facts["budget"], facts["process"]) == ("finished", 60, 60, None)
+    assert facts["feasible"] + facts["infeasible"] + facts["failed"] == 60
+    assert facts["hypervolume"] == whole[1].hypervolume
+    assert facts["evaluations_per_second"] > 0.0
+
+
+def test_trials_that_do_not_follow_from_the_checkpoint_are_refused(tmp_path):
+    import sqlite3
+
+    run(made(), tmp_path / "s.db", evaluations=25)
+    connection = sqlite3.connect(tmp_path / "s.db")
+    connection.execute("UPDATE monoped_trials SET hip_ratio = hip_ratio + 0.01 WHERE trial = 22")
+    connection.commit()
+    connection.close()
+    with pytest.raises(DatabaseError, match="trials 20 to 24 do not follow"):
+        resume(tmp_path / "s.db", evaluations=60)
+
+
+def test_bounds_beyond_the_papers_work(tmp_path):
+    study = made(variables={"stiffness_n_per_m": {"lower": 0.5, "upper": 5.0}})
+    assert study.variables["stiffness_n_per_m"] == Bounds(lower=0.5, upper=5.0)
+    run(study, tmp_path / "s.db", evaluations=20)
+    assert (read_study(tmp_path / "s.db").trials["state"] == "feasible").any()
+
+
+def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_path):
+    """One real process: refused to others while it runs, interrupted once, gone on with after."""
+    toml = tmp_path / "s.toml"
+    toml.write_text('name = "s"\nevaluations = 100000\naudit = false\n')
+    command = [sys.executable, "-m", "pareto_monoped", "run", str(toml), "--workers", "1"]
+    process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    try:
+        db = tmp_path / "s.db"
+        deadline = time.monotonic() + 60.0
+        while time.monotonic() < deadline and not (db.exists() and len(read_study(db).trials)):
+            time.sleep(0.05)
+        with pytest.raises(DatabaseError, match=f"process {process.pid};"):
+            resume(db)
+        facts = status(db)
+        assert (facts["state"], facts["process"]) == ("running", process.pid)
+        os.kill(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130
+    assert "ending after this generation; press Ctrl-C again to end at once" in said
+    assert "Traceback" not in said
+    data = read_study(db)
+    assert data.meta["stop_reason"] == "interrupted"
+    assert len(data.trials) == data.checkpoint.told > 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["s.db", "s.toml"]
