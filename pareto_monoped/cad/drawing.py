@@ -29,7 +29,23 @@ def dxf(part: Part) -> str:
     ]
     head = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1009", "9", "$INSUNITS", "70", "4", "0", "ENDSEC"]
     layer = ["0", "LAYER", "2", LAYER, "70", "0", "62", "7", "6", "CONTINUOUS"]
-    tables = ["0", "SECTION", "2", "TABLES", "0", "TABLE", "2", "LAYER", "70", "1", *layer, "0", "ENDTAB", "0", "ENDSEC"]
+    tables = [
+        "0",
+        "SECTION",
+        "2",
+        "TABLES",
+        "0",
+        "TABLE",
+        "2",
+        "LAYER",
+        "70",
+        "1",
+        *layer,
+        "0",
+        "ENDTAB",
+        "0",
+        "ENDSEC",
+    ]
     body = ["0", "SECTION", "2", "ENTITIES", *entities, "0", "ENDSEC", "0", "EOF"]
     return "\n".join([*head, *tables, *body]) + "\n"
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.outlines import all_polygons
+from pareto_monoped.cad.stacks import regrouped
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 TOLERANCE_MM = 0.01
@@ -39,7 +40,8 @@ class Mesh:
 def mesh_of(part: Part, tolerance_mm: float = TOLERANCE_MM) -> Mesh:
     """The mesh of one instance of a part in its own frame."""
     body = m3.Manifold.batch_boolean(
-        [_extruded(prism, tolerance_mm) for prism in part.prisms] + [_ball(ball, tolerance_mm) for ball in part.balls],
+        [_extruded(prism, tolerance_mm) for prism in regrouped(part.prisms)]
+        + [_ball(ball, tolerance_mm) for ball in part.balls],
         m3.OpType.Add,
     )
     return mesh_from(body)

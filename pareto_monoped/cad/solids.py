@@ -10,6 +10,7 @@ from OCP.collections import List_TopoDS_Shape
 
 from pareto_monoped.cad.curves import Loop, Spline, ends, on_arc
 from pareto_monoped.cad.outlines import loops
+from pareto_monoped.cad.stacks import regrouped
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Line
 
@@ -21,7 +22,7 @@ def solid_of(part: Part) -> Solid:
 
     The part's numbers must be floats, not arrays.
     """
-    pieces = [piece for prism in part.prisms for piece in _extruded(prism)]
+    pieces = [piece for prism in regrouped(part.prisms) for piece in _extruded(prism)]
     pieces += [_ball(ball) for ball in part.balls]
     return pieces[0] if len(pieces) == 1 else _fused(pieces)
 
@@ -70,7 +71,10 @@ def _ball(ball: Ball) -> bd.Solid:
 
 
 def _fused(pieces: list[bd.Solid]) -> Solid:
-    """Everything that touches as one solid; the pieces share faces but no volume, so that glueing is enough."""
+    """Everything that touches as one solid; the pieces share faces but no volume, so that glueing is enough.
+
+    Called without the simplification that build123d adds, which costs more than the operation.
+    """
     arguments, tools = List_TopoDS_Shape(), List_TopoDS_Shape()
     arguments.Append(pieces[0].wrapped)
     for piece in pieces[1:]:

@@ -69,7 +69,7 @@ def glb(product: Product) -> bytes:
         mesh = trimesh.Trimesh(kind.mesh.points_mm.astype(np.float32), kind.mesh.triangles, process=False)
         material = trimesh.visual.material.PBRMaterial(
             name=kind.part.material.name,
-            baseColorFactor=[*(int(round(255 * c)) for c in kind.part.material.colour), 255],
+            baseColorFactor=[*(round(255 * c) for c in kind.part.material.colour), 255],
             metallicFactor=0.2,
             roughnessFactor=0.6,
         )

@@ -56,15 +56,15 @@ class LegDimensions:
         far_cheek_mm: thickness of the base's far cheek.
     """
 
-    mount_pitch_radius_mm: float = 46.0
+    mount_pitch_radius_mm: float = 49.0
     mount_holes: int = 6
-    housing_radius_mm: float = 50.0
+    housing_radius_mm: float = 51.5
     output_pitch_radius_mm: float = 12.0
     output_holes: int = 6
     coupler_radius_mm: float = 16.5
     coupler_height_mm: float = 0.0
-    coupler_thread_mm: float = 3.0
-    mount_thread_mm: float = 5.0
+    coupler_thread_mm: float = 4.5
+    mount_thread_mm: float = 4.5
     back_pitch_radius_mm: float = 25.5
     back_holes: int = 4
 

@@ -101,7 +101,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                         *common,
                         Circle(radius_mm=d.coupler_radius_mm + 1.0),
                         mount,
-                        Pattern(radius_mm=8.0, pitch_radius_mm=31.0, count=6),
+                        Pattern(radius_mm=11.0, pitch_radius_mm=33.0, count=6),
                     ),
                 ),
             ),
