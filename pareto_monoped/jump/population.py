@@ -97,7 +97,7 @@ class Population:
         import mujoco
 
         texts = [self.errors.get(i, "") for i in range(len(self.status))]
-        for i, kind in np.argwhere(self.batch.warning > 0):
+        for i, kind in np.argwhere(self.batch.warning[:, :, 1] > 0):
             texts[i] = texts[i] or f"MuJoCo warned: {mujoco.mjtWarning(int(kind)).name.removeprefix('mjWARN_')}"
         return texts
 

@@ -1,0 +1,110 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import MEASURES, STATUSES, Evaluator
+from tests.jump.robots import random_designs
+
+GOOD = PAPER_CASES["C"].design.as_array()
+
+
+@pytest.fixture(scope="module")
+def evaluator():
+    return Evaluator(map_for("VT8020"), load_calibration())
+
+
+def changed(**values):
+    design = GOOD.copy()
+    for name, value in values.items():
+        design[NAMES.index(name)] = value
+    return design
+
+
+BAD = {
+    "not a number": (changed(thigh_length_m=np.nan), "bad_input", "thigh_length_m"),
+    "infinite": (changed(stiffness_n_per_m=np.inf), "bad_input", "stiffness_n_per_m"),
+    "negative length": (changed(shank_length_m=-0.4), "bad_input", "shank_length_m"),
+    "no length": (changed(shank_length_m=0.0), "bad_input", "shank_length_m"),
+    "negative damping": (changed(damping_n_s_per_m=-1.0), "bad_input", "damping_n_s_per_m"),
+    "no such gearbox": (changed(knee_ratio=40.0), "no_gearbox", "knee_ratio"),
+    "too short": (changed(thigh_length_m=0.2, shank_length_m=0.2), "cannot_stand", "shorter than"),
+    "too long": (changed(thigh_length_m=1.5), "cannot_stand", "cannot fold"),
+    "too weak": (changed(stiffness_n_per_m=0.0, damping_n_s_per_m=1e4), "no_lift_off", "foot|sank"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_every_failure_has_a_name_and_a_reason(evaluator, name):
+    design, status, said = BAD[name]
+    result = evaluator(design[None])
+    assert result.status[0] == status
+    assert status in STATUSES
+    assert any(word in result.reason[0] for word in said.split("|"))
+    assert np.isnan(result.height_m[0])
+    assert np.isnan(result.energy_j[0])
+
+
+def test_failures_do_not_touch_their_neighbours(evaluator):
+    bad = [design for design, _, _ in BAD.values()]
+    mixed = np.array([row for design in bad for row in (design, GOOD)])
+    result = evaluator(mixed)
+    alone = evaluator(GOOD[None])
+    assert list(result.status[0::2]) == [status for _, status, _ in BAD.values()]
+    assert set(result.status[1::2]) == {"ok"}
+    for name in MEASURES:
+        assert set(result.as_columns()[name][1::2]) == {alone.as_columns()[name][0]}
+
+
+def test_a_simulation_that_blows_up_is_diverged_and_alone(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes its warnings to a log file in the working folder
+    reference = load_calibration()
+    wild = replace(
+        reference,
+        contact=replace(reference.contact, stiffness_n_per_m=1e15, damping_n_s_per_m=1e9),
+        simulation=replace(reference.simulation, timestep_s=0.02),
+    )
+    result = Evaluator(map_for("VT8020"), wild)(np.array([GOOD, GOOD]))
+    assert list(result.status) == ["diverged"] * 2
+    assert all(result.reason)
+    assert np.isnan(result.height_m).all()
+
+
+def test_what_is_physically_certain_holds_for_random_designs(evaluator):
+    result = evaluator(random_designs(50, seed=5))
+    assert result.ok.all()
+    gained = result.mass_kg * 9.81 * (result.height_m - 0.5)
+    # The motors' net work exceeds what the base alone gains by what the leg weighs and gains, and by the losses.
+    assert np.all(result.energy_j > 0.5 * gained)
+    assert np.all(result.energy_j == pytest.approx(result.energy_hip_j + result.energy_knee_j))
+    assert np.all(result.efficiency == pytest.approx(gained / result.energy_j))
+    assert np.all((result.saturation_hip >= 0.0) & (result.saturation_knee <= 1.0))
+    assert np.all(result.foot_clearance_m > 0.01)
+    assert np.all((result.lift_off_s > 0.0) & (result.lift_off_s < result.apex_s))
+    assert np.all(result.joule_heat_j > 0.0)
+
+
+def test_peaks_respect_the_motor(evaluator):
+    designs = random_designs(20, seed=6)
+    result = evaluator(designs)
+    # 5.5 N m times a ratio that is at most the interval's upper end
+    assert np.all(result.peak_torque_knee_n_m <= 5.5 * (designs[:, 2] + 0.1))
+    assert np.all(result.peak_torque_hip_n_m <= 5.5 * (designs[:, 3] + 0.1))
+
+
+def test_bits_do_not_depend_on_batch_order_or_workers(evaluator):
+    designs = np.random.default_rng(9).uniform(LOWER, UPPER, (25, 7))
+    whole = evaluator(designs).as_columns()
+    order = np.random.default_rng(1).permutation(25)
+    shuffled = Evaluator(evaluator.actuator_map, evaluator.calibration, workers=2)(designs[order]).as_columns()
+    one = evaluator(designs[17:18]).as_columns()
+    for name in MEASURES:
+        np.testing.assert_array_equal(shuffled[name], whole[name][order], err_msg=name)
+        np.testing.assert_array_equal(one[name][0], whole[name][17], err_msg=name)
+
+
+def test_no_designs_give_no_rows(evaluator):
+    assert len(evaluator(np.empty((0, 7)))) == 0

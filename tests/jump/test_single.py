@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.single import TRACE_COLUMNS, energy_balance, simulate
+from pareto_monoped.robot import robot_arrays
+
+MAP = map_for("VT8020")
+
+
+@pytest.fixture(scope="module", params=["reference", "paper"])
+def jump(request):
+    return simulate(PAPER_CASES["B"].design, MAP, load_calibration(request.param), trace=True)
+
+
+def test_trace_and_measures_are_the_same_jump(jump):
+    trace, measures = jump.trace, jump.measures
+    assert tuple(trace) == TRACE_COLUMNS
+    assert trace["base_z_m"].max() == measures["height_m"]
+    assert trace["time_s"][-1] == pytest.approx(measures["apex_s"])
+    assert trace["foot_clearance_m"][-1] == pytest.approx(measures["foot_clearance_m"])
+    assert np.abs(trace["knee_motor_torque_n_m"]).max() == measures["peak_torque_knee_n_m"]
+    step = trace["time_s"][1]
+    work = 0.0
+    for joint in ("hip", "knee"):
+        torque, speed = trace[f"{joint}_motor_torque_n_m"][:-1], trace[f"{joint}_rad_per_s"]
+        work += np.maximum(torque * 0.5 * (speed[1:] + speed[:-1]), 0.0).sum() * step
+    assert work == pytest.approx(measures["energy_j"])
+
+
+def test_trace_begins_at_rest_and_ends_at_the_apex(jump):
+    trace = jump.trace
+    assert trace["base_z_m"][0] == 0.5
+    assert trace["base_z_m_per_s"][0] == 0.0
+    assert trace["base_z_m_per_s"][-1] <= 0.0 < trace["base_z_m_per_s"][-2]
+    assert trace["contact_z_n"].min() >= 0.0
+
+
+def test_energy_and_momentum_of_the_flight_follow_gravity(jump):
+    """While nothing touches and no torque acts, the centre of mass falls freely."""
+    trace, mass = jump.trace, jump.measures["mass_kg"]
+    free = trace["time_s"] > jump.measures["lift_off_s"] + 0.02
+    height = trace["potential_j"][free] / (mass * 9.81)
+    fit = np.polyfit(trace["time_s"][free], height, 2)
+    assert 2.0 * fit[0] == pytest.approx(-9.81, rel=1e-3)
+
+
+@pytest.mark.parametrize("case", PAPER_CASES)
+def test_energy_balance_closes_within_one_percent(case):
+    calibration = load_calibration()
+    values = PAPER_CASES[case].design.as_array()[None]
+    robots = robot_arrays(values, MAP, calibration.mass)
+    balance = energy_balance(robots, values[:, 4:], calibration)
+    measures = simulate(PAPER_CASES[case].design, MAP, calibration).measures
+    net = measures["energy_j"] - measures["absorbed_j"] - measures["drive_loss_j"]
+    assert balance.actuator_work_j == pytest.approx(net, rel=1e-9)
+    assert balance.error < 0.01
+    for part in ("damping_j", "friction_j", "stops_j", "contact_j", "kinetic_j", "potential_j"):
+        assert getattr(balance, part) > 0.0
+
+
+def test_without_losses_the_joints_lose_nothing():
+    calibration = load_calibration("ideal")
+    values = PAPER_CASES["C"].design.as_array()[None]
+    balance = energy_balance(robot_arrays(values, MAP, calibration.mass), values[:, 4:], calibration)
+    assert balance.damping_j == balance.friction_j == 0.0
+    assert simulate(PAPER_CASES["C"].design, MAP, calibration).measures["drive_loss_j"] == 0.0
+
+
+def test_a_design_that_cannot_stand_has_no_trace():
+    design = PAPER_CASES["C"].design.replace({"thigh_length_m": 1.5})
+    result = simulate(design, MAP, load_calibration(), trace=True)
+    assert result.status == "cannot_stand"
+    assert result.trace == {}
+    assert np.isnan(result.measures["height_m"])
