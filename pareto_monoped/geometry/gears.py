@@ -61,17 +61,31 @@ def _teeth_integrals(
     return gear.teeth * area, gear.teeth * polar
 
 
-def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers) -> Numbers:
+def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers, outwards: float) -> Numbers:
     """Area of the rounded corners between flanks and root circle, two a tooth.
 
-    A circle of radius rho in a corner of angle theta leaves rho^2 (cot(theta/2) - (pi - theta)/2). Between root circle
-    and flank theta is a right angle, wider by the flank's pressure angle where the root lies outside the base circle.
-    Sides are taken as straight over the fillet: the error is of second order in rho over r.
+    Exact for radial flanks: the fillet's centre lies rho off the root circle, and rho off the flank. Where the flank is
+    an involute it leans by the pressure angle there; a corner of angle theta with straight sides keeps
+    rho^2 (cot(theta/2) - (pi - theta)/2) filled, and the exact area is scaled by the proportion of that to the right
+    angle's, with the lean taken half way up the fillet. Within 6 percent of a drawn fillet, 2e-4 of a gear's area.
+
+    Args:
+        gear: which gear.
+        root_mm: radius of the root circle.
+        outwards: 1 if the spaces lie outside the root circle (external gear), -1 if inside.
     """
-    cosine = np.minimum(_array(gear.base_radius_mm) / _array(root_mm), 1.0)
-    theta = 0.5 * np.pi + np.arccos(cosine)
-    rho = FILLET * _array(gear.module_mm)
-    return 2.0 * gear.teeth * rho**2 * (1.0 / np.tan(0.5 * theta) - 0.5 * (np.pi - theta))
+    rho, root = FILLET * _array(gear.module_mm), _array(root_mm)
+    centre = root + outwards * rho
+    beta = np.arcsin(rho / centre)
+    triangle = 0.5 * rho * np.sqrt(centre**2 - rho**2)
+    radial = outwards * (triangle - 0.5 * root**2 * beta) - 0.5 * rho**2 * (0.5 * np.pi - outwards * beta)
+
+    def straight(theta: Numbers) -> Numbers:
+        return 1.0 / np.tan(0.5 * theta) - 0.5 * (np.pi - theta)
+
+    half_way = root + 0.5 * outwards * rho
+    lean = np.arccos(np.minimum(_array(gear.base_radius_mm) / half_way, 1.0))
+    return 2.0 * gear.teeth * radial * straight(0.5 * np.pi + lean) / straight(0.5 * np.pi)
 
 
 def _round_moments(area: Numbers, polar: Numbers) -> Moments:
@@ -116,10 +130,10 @@ class ExternalGear:
         return self.pitch_radius_mm - DEDENDUM * self.module_mm
 
     def moments(self) -> Moments:
-        """Exact for the teeth and the root disc; fillets as corners with straight sides."""
+        """Exact for the teeth and the root disc; for the fillets see ``_fillets_mm2``."""
         root = self.root_radius_mm
         area, polar = _teeth_integrals(self, root, self.tip_radius_mm, self.backlash_mm)
-        fillets = _fillets_mm2(self, root)
+        fillets = _fillets_mm2(self, root, 1.0)
         return _round_moments(
             np.pi * np.square(root) + area + fillets,
             0.5 * np.pi * np.square(root) ** 2 + polar + fillets * np.square(root),
@@ -169,7 +183,7 @@ class InternalGear:
         """As of ``ExternalGear``; the fillets at the root make the hole smaller."""
         tip, root = self.tip_radius_mm, self.root_radius_mm
         area, polar = _teeth_integrals(self, tip, root, -_array(self.backlash_mm))
-        fillets = _fillets_mm2(self, root)
+        fillets = _fillets_mm2(self, root, -1.0)
         return _round_moments(
             np.pi * np.square(tip) + area - fillets,
             0.5 * np.pi * np.square(tip) ** 2 + polar - fillets * np.square(root),
