@@ -1,0 +1,1 @@
+"""Study databases -> one self-contained HTML page, and figures for print."""

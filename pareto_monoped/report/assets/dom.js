@@ -1,0 +1,63 @@
+// Small helpers: elements, numbers, colours. Text from a study only ever becomes textContent, never markup.
+
+const SVG = "http://www.w3.org/2000/svg";
+const page = JSON.parse(document.getElementById("payload").textContent);
+const quantity = Object.fromEntries(page.quantities.map((q) => [q.name, q]));
+
+function byId(id) { return document.getElementById(id); }
+
+function make(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value !== null && value !== undefined) node.setAttribute(key, value);
+  }
+  node.append(...children);
+  return node;
+}
+
+function draw(tag, attributes = {}, ...children) {
+  const node = document.createElementNS(SVG, tag);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  node.append(...children);
+  return node;
+}
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+function studyColour(index) { return colour(`c${index % 6}`); }
+
+// A number of a known quantity with its unit, as the page shows it.
+function shown(name, value, withUnit = true) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const q = quantity[name];
+  const text = (value * q.scale).toFixed(q.decimals);
+  return withUnit ? `${text} ${q.unit}` : text;
+}
+
+function round(value, digits = 3) { return Number(value).toFixed(digits); }
+
+// Plotly reads a few tags in its texts: with < escaped there are none.
+function plain(text) { return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;"); }
+
+function extent(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) {
+    if (value === null || value === undefined || Number.isNaN(value)) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+function ticks(low, high, count = 5) {
+  const raw = (high - low) / Math.max(count, 1) || 1;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 2.5, 5, 10].find((s) => s * power >= raw * 0.999) * power;
+  const result = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) result.push(k * step);
+  return result;
+}
+
+function tickText(value) { return String(Number(value.toPrecision(6))); }

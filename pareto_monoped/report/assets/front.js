@@ -1,0 +1,316 @@
+// The front: energy to the right, height upward; click a point to select it.
+
+const CELL_PX = 3; // of the many trials in the cloud, one in each cell of this size is drawn
+const MOST_DRAWN = 4000;
+const show = { cloud: true, infeasible: false, front: true, published: true, simulated: true, floor: true, picks: true };
+const gd = byId("front-chart");
+const ring = make("div", { class: "ring", "aria-hidden": "true" });
+let points = []; // of each trace, what its points stand for: [study, row] or [study, case name]
+
+function startRange() {
+  let energy = 0, low = Infinity, high = 0.6;
+  const see = (e, h) => {
+    if (e === null || h === null || e === undefined || h === undefined) return;
+    energy = Math.max(energy, e);
+    low = Math.min(low, h);
+    high = Math.max(high, h);
+  };
+  for (const study of page.studies) {
+    const { energy_j: e, height_m: h } = study.trials.columns;
+    for (const row of study.front) see(e[row], h[row]);
+    for (const made of study.cases) see(made.energy_j, made.height_m);
+    if (!study.front.length) study.trials.trial.forEach((_, row) => see(e[row], h[row]));
+  }
+  for (const made of page.published) see(made.energy_j, made.height_m);
+  const room = 0.06 * (high - Math.min(low, 0.55));
+  return { x: [0, energy * 1.06], y: [Math.min(low, 0.55) - room, high + room] };
+}
+
+const home = startRange();
+
+function viewRange() {
+  const full = gd._fullLayout;
+  return full ? { x: full.xaxis.range, y: full.yaxis.range } : home;
+}
+
+// One row for each small cell of the view, so that as many are drawn as can be told apart.
+function thinned(study, letter, skip) {
+  const { state: letters, columns: { energy_j: e, height_m: h } } = page.studies[study].trials;
+  const { x, y } = viewRange();
+  const columns = Math.max(Math.floor((gd.clientWidth - 72) / CELL_PX), 50);
+  const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
+  const seen = new Set();
+  const kept = [];
+  let within = 0;
+  for (let row = 0; row < letters.length; row += 1) {
+    if (letters[row] !== letter || skip.has(row) || e[row] === null || h[row] === null) continue;
+    const u = (e[row] - x[0]) / (x[1] - x[0]), v = (h[row] - y[0]) / (y[1] - y[0]);
+    if (u < 0 || u > 1 || v < 0 || v > 1) continue;
+    within += 1;
+    const cell = Math.floor(u * columns) * rows + Math.floor(v * rows);
+    if (seen.has(cell)) continue;
+    seen.add(cell);
+    kept.push(row);
+  }
+  const every = Math.max(Math.ceil(kept.length / MOST_DRAWN), 1);
+  return { rows: every === 1 ? kept : kept.filter((_, i) => i % every === 0), within };
+}
+
+function hoverText(study, row) {
+  const card = page.studies[study];
+  const { columns, trial } = card.trials;
+  const lines = [`<b>trial ${trial[row]}</b>${page.studies.length > 1 ? `, ${plain(card.label)}` : ""}`];
+  lines.push(`${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}`);
+  for (const variable of page.variables) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
+  return lines.join("<br>");
+}
+
+function trace(name, entries, marker, more = {}) {
+  // entries: { x, y, text, stands }
+  points.push(entries.map((entry) => entry.stands));
+  return {
+    type: "scatter", mode: "markers", name, x: entries.map((p) => p.x), y: entries.map((p) => p.y),
+    text: entries.map((p) => p.text), hovertemplate: "%{text}<extra></extra>", marker, ...more,
+  };
+}
+
+function rowsOf(study, rows) {
+  const { energy_j: e, height_m: h } = page.studies[study].trials.columns;
+  return rows.map((row) => ({ x: e[row], y: h[row], text: hoverText(study, row), stands: [study, row] }));
+}
+
+function traces() {
+  points = [];
+  const list = [];
+  const ranged = Object.keys(state.ranges).length > 0;
+  const several = page.studies.length > 1;
+  let drawn = 0, within = 0;
+  const each = [...state.visible];
+  for (const study of each) {
+    const card = page.studies[study];
+    const onFront = new Set(card.front);
+    const tint = several ? studyColour(study) : colour("cloud");
+    for (const [letter, wanted] of [["f", show.cloud], ["i", show.infeasible]]) {
+      if (!wanted) continue;
+      const cloud = thinned(study, letter, onFront);
+      drawn += cloud.rows.length;
+      within += cloud.within;
+      const opacity = cloud.rows.map((row) => (!ranged || inRanges(study, row) ? (ranged ? 0.75 : 0.38) : 0.06));
+      const marker = letter === "f"
+        ? { size: 4.5, color: tint, opacity }
+        : { size: 6, symbol: "x-thin", line: { width: 1.2, color: colour("bad") }, opacity };
+      list.push(trace(letter === "f" ? "dominated" : "infeasible", rowsOf(study, cloud.rows), marker));
+    }
+  }
+  if (show.floor) {
+    const masses = each.map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
+    if (masses.length) {
+      const mass = Math.min(...masses), end = viewRange().x[1] * 4;
+      const line = [0, end].map((e) => ({ x: e, y: 0.5 + e / (mass * 9.81), text: "", stands: null }));
+      list.push(trace("floor", line, {}, { mode: "lines", hoverinfo: "skip", hovertemplate: undefined, line: { color: colour("faint"), width: 1.5, dash: "dot" } }));
+    }
+  }
+  for (const study of each) {
+    const card = page.studies[study];
+    if (!show.front) continue;
+    const tint = studyColour(study);
+    const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
+    const symbol = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"][study % 6];
+    list.push(trace("front", rowsOf(study, card.front), { size: 7.5, symbol, color: tint, opacity, line: { width: 0.8, color: colour("card") } },
+      { mode: "lines+markers", line: { shape: "vh", width: 1.2, color: tint } }));
+    if (card.weighted.length) {
+      const rows = rowsOf(study, card.weighted.map(([, row]) => row));
+      rows.forEach((entry, i) => { entry.text = `weighted search, height weight ${card.weighted[i][0]}<br>${entry.text}`; });
+      list.push(trace("weighted", rows, { size: 12, symbol: "square-open", color: tint, line: { width: 2, color: tint } }));
+    }
+  }
+  if (show.picks) {
+    for (const study of each) {
+      const picks = page.studies[study].picks.filter((p) => p.name === "knee");
+      const entries = rowsOf(study, picks.map((p) => p.row));
+      entries.forEach((entry, i) => { entry.text = `<b>knee</b><br>${entry.text}`; entry.label = picks[i].name; });
+      list.push(trace("picks", entries, { size: 15, symbol: "star", color: colour("c4"), line: { width: 1, color: colour("ink") } }));
+    }
+  }
+  const paper = (entries, name, symbol) => list.push(trace(name, entries,
+    { size: 11, symbol, color: colour("paper"), line: { width: 1.8, color: colour("paper") } },
+    { mode: "markers", customdata: entries.map((p) => p.label) }));
+  if (show.published) {
+    paper(page.published.map((c) => ({
+      x: c.energy_j, y: c.height_m, label: c.name, stands: null,
+      text: `<b>paper, ${c.name}</b>, as published<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J`,
+    })), "published", "diamond-open");
+  }
+  if (show.simulated) {
+    const seen = new Set();
+    const entries = [];
+    for (const study of each) {
+      const card = page.studies[study];
+      const key = `${card.motor} ${card.calibration}`;
+      if (seen.has(key)) continue;
+      seen.add(key);
+      for (const c of card.cases) {
+        if (c.height_m === null || c.energy_j === null) continue;
+        entries.push({
+          x: c.energy_j, y: c.height_m, label: c.name, stands: [study, c.name],
+          text: `<b>paper, ${c.name}</b>, simulated here<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J<br>motor ${plain(card.motor)}, calibration ${plain(card.calibration)}`,
+        });
+      }
+    }
+    paper(entries, "simulated", "diamond");
+  }
+  const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
+  let note = within > drawn ? `${drawn} of the ${within} dominated or infeasible designs in view are drawn, one in every ${CELL_PX} px; zoom in to see more.` : "";
+  if (left) note += ` ${left} dominated trials are left out of this page to keep it small; every count includes them.`;
+  byId("front-note").textContent = note;
+  return list;
+}
+
+// Names beside the paper's diamonds and the knee, moved apart where they would overlap.
+function labels(list) {
+  const { x, y } = viewRange();
+  const width = Math.max(gd.clientWidth - 72, 100), height = Math.max(gd.clientHeight - 60, 100);
+  const taken = [];
+  const found = [];
+  for (const one of list) {
+    const names = one.name === "picks" ? one.x.map(() => "knee") : one.customdata;
+    if (!names) continue;
+    names.forEach((text, i) => {
+      const px = (one.x[i] - x[0]) / (x[1] - x[0]) * width, py = (one.y[i] - y[0]) / (y[1] - y[0]) * height;
+      const size = 8 * text.length + 4;
+      const spots = [[14, 0, "left"], [-14, 0, "right"], [0, 17, "center"], [0, -17, "center"], [14, 15, "left"], [14, -15, "left"], [-14, -15, "right"]];
+      const spot = spots.find(([dx, dy, anchor]) => {
+        const start = px + dx - (anchor === "right" ? size : anchor === "center" ? size / 2 : 0);
+        return start >= 0 && start + size <= width && !taken.some((t) => start < t[1] && start + size > t[0] && Math.abs(py + dy - t[2]) < 14);
+      }) ?? spots[0];
+      const start = px + spot[0] - (spot[2] === "right" ? size : spot[2] === "center" ? size / 2 : 0);
+      taken.push([start, start + size, py + spot[1]], [px - 8, px + 8, py]);
+      found.push({ x: one.x[i], y: one.y[i], text, showarrow: false, xshift: spot[0], yshift: spot[1], xanchor: spot[2], font: { size: 12, color: colour("ink") }, bgcolor: "rgba(0,0,0,0)" });
+    });
+  }
+  return found;
+}
+
+function drawFront() {
+  const list = traces();
+  const x = axis("energy from start to apex, J", { range: [...home.x], constraintoward: "left" });
+  const y = axis("jump height of the base, m", { range: [...home.y] });
+  const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
+  const shape = layout(x, y, { annotations: labels(list), dragmode: "zoom" });
+  const done = Plotly.react(gd, list, shape, config);
+  if (!gd.contains(ring)) gd.append(ring);
+  placeRing();
+  return done;
+}
+
+// The ring lies over the chart: moving it costs nothing, whereas redrawing thousands of points would.
+function placeRing() {
+  const chosen = subject();
+  const full = gd._fullLayout;
+  const e = chosen && chosen.measures.energy_j, h = chosen && chosen.measures.height_m;
+  if (!full || !chosen || e === null || h === null || e === undefined) { ring.hidden = true; return; }
+  const { xaxis, yaxis } = full;
+  const left = xaxis._offset + xaxis.d2p(e), top = yaxis._offset + yaxis.d2p(h);
+  ring.hidden = left < xaxis._offset || left > xaxis._offset + xaxis._length || top < yaxis._offset || top > yaxis._offset + yaxis._length;
+  ring.style.left = `${left}px`;
+  ring.style.top = `${top}px`;
+}
+
+function describeFront() {
+  const { front, trials } = current();
+  const at = place();
+  gd.setAttribute("aria-valuemin", front.length ? 1 : 0);
+  gd.setAttribute("aria-valuemax", front.length);
+  gd.setAttribute("aria-valuenow", at + 1);
+  const chosen = subject();
+  gd.setAttribute("aria-valuetext", chosen
+    ? `${chosen.kind === "case" ? `paper's ${chosen.name}` : `trial ${trials.trial[state.row]}`}, ${shown("height_m", chosen.measures.height_m)} on ${shown("energy_j", chosen.measures.energy_j)}`
+    : "no design");
+}
+
+function startFront() {
+  let waiting = 0;
+  drawFront().then(() => {
+    gd.on("plotly_click", (event) => {
+      const stands = points[event.points[0].curveNumber][event.points[0].pointIndex];
+      if (!stands) return;
+      if (typeof stands[1] === "number") select(...stands);
+      else selectCase(...stands);
+    });
+    gd.on("plotly_relayout", () => {
+      placeRing();
+      clearTimeout(waiting);
+      // A new view shows other trials of the cloud.
+      waiting = setTimeout(() => { if (gd._fullLayout) redrawView(); }, 60);
+    });
+    placeRing();
+  });
+  gd.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10, Home: -1e9, End: 1e9 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    moveAlongFront(step);
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.target.closest("input, select, textarea, button, canvas, summary, a") || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.key === "ArrowRight") moveAlongFront(1);
+    if (event.key === "ArrowLeft") moveAlongFront(-1);
+  });
+  on("selection", () => { placeRing(); describeFront(); });
+  on("view", drawFront);
+  charts.push(drawFront);
+}
+
+let lastView = "";
+function redrawView() {
+  const { x, y } = viewRange();
+  const key = JSON.stringify([x, y, gd.clientWidth]);
+  if (key === lastView) return;
+  lastView = key;
+  drawFront();
+}
+
+const SYMBOLS = {
+  cloud: '<circle cx="7" cy="7" r="2.5" fill="var(--cloud)"/>',
+  infeasible: '<path d="M4 4L10 10M10 4L4 10" stroke="var(--bad)" stroke-width="1.5"/>',
+  front: '<path d="M0 7H14" stroke="var(--c0)"/><circle cx="7" cy="7" r="3.8" fill="var(--c0)"/>',
+  published: '<path d="M7 2L12 7L7 12L2 7Z" fill="none" stroke="var(--paper)" stroke-width="1.6"/>',
+  simulated: '<path d="M7 2L12 7L7 12L2 7Z" fill="var(--paper)"/>',
+  floor: '<path d="M0 11L14 3" stroke="var(--faint)" stroke-width="1.6" stroke-dasharray="2 2.5"/>',
+  picks: '<path d="M7 1L8.8 5.2L13.3 5.5L9.8 8.4L11 12.9L7 10.4L3 12.9L4.2 8.4L.7 5.5L5.2 5.2Z" fill="var(--c4)" stroke="var(--ink)" stroke-width=".7"/>',
+};
+
+function startSwitches() {
+  const names = {
+    front: "front", cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
+    simulated: "paper, simulated here", picks: "knee", floor: "floor m g (H − 0.5 m)",
+  };
+  const box = byId("switches");
+  const mass = page.studies.map((s) => s.floor_mass_kg).filter((m) => m !== null);
+  for (const [key, text] of Object.entries(names)) {
+    const input = make("input", { type: "checkbox", "data-show": key });
+    input.checked = show[key];
+    input.addEventListener("change", () => { show[key] = input.checked; tell("view"); });
+    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" });
+    symbol.innerHTML = SYMBOLS[key]; // constant text from above
+    const label = make("label", {}, input, symbol, text);
+    if (key === "floor" && mass.length) {
+      label.append(` of the lightest robot, ${round(Math.min(...mass), 2)} kg`);
+      label.title = "The work of raising that robot's weight. A leg that stretches in flight rises a little less than the base.";
+    }
+    box.append(label);
+  }
+  if (page.studies.length < 2) return;
+  page.studies.forEach((study, i) => {
+    const input = make("input", { type: "checkbox", "data-study": i });
+    input.checked = true;
+    input.addEventListener("change", () => {
+      if (input.checked) state.visible.add(i);
+      else state.visible.delete(i);
+      tell("view");
+    });
+    const symbol = make("span", { class: "swatch", style: `background: var(--c${i % 6})` });
+    box.append(make("label", {}, input, symbol, study.label));
+  });
+}

@@ -1,0 +1,184 @@
+// Small line charts in plain SVG, light enough to be redrawn at every selection.
+
+// A chart of series {x, y, colour, dash, mark}; returns its node with functions from values to pixels.
+function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18, bottom = 30, x, y, xTitle, title, series = [], label }) {
+  const w = width - left - right, h = height - top - bottom;
+  const toX = (value) => left + (value - x[0]) / (x[1] - x[0] || 1) * w;
+  const toY = (value) => top + h - (value - y[0]) / (y[1] - y[0] || 1) * h;
+  const svg = draw("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label ?? title });
+  for (const value of ticks(y[0], y[1], 3)) {
+    svg.append(draw("line", { x1: left, x2: left + w, y1: toY(value), y2: toY(value), class: "gridline" }));
+    svg.append(text(left - 5, toY(value) + 4, tickText(value), "end"));
+  }
+  for (const value of ticks(x[0], x[1], 4)) svg.append(text(toX(value), top + h + 14, tickText(value), "middle"));
+  svg.append(draw("rect", { x: left, y: top, width: w, height: h, class: "frame" }));
+  svg.append(text(left, 11, title, "start", "strong"));
+  if (xTitle) svg.append(text(left + w, height - 3, xTitle, "end"));
+  for (const one of series) {
+    if (one.mark) {
+      one.x.forEach((value, i) => {
+        if (one.y[i] !== null) svg.append(marker(one.mark[i], toX(value), toY(one.y[i]), one.colour, one.opacity ? one.opacity[i] : 1));
+      });
+    } else {
+      const d = one.x.map((value, i) => `${toX(value).toFixed(1)} ${toY(one.y[i]).toFixed(1)}`).join("L");
+      svg.append(draw("path", { d: `M${d}`, fill: "none", stroke: one.colour, "stroke-width": one.thick ?? 1.6, "stroke-dasharray": one.dash ?? "none" }));
+    }
+  }
+  return { svg, toX, toY, left, top, w, h };
+}
+
+function text(x, y, content, anchor = "start", kind = "") {
+  const node = draw("text", { x, y, "text-anchor": anchor, class: kind });
+  node.textContent = content;
+  return node;
+}
+
+function marker(kind, x, y, fill, opacity = 1) {
+  if (kind === "diamond") return draw("path", { d: `M${x} ${y - 4}l4 4l-4 4l-4 -4z`, fill, "fill-opacity": opacity });
+  return draw("circle", { cx: x, cy: y, r: 3, fill, "fill-opacity": opacity });
+}
+
+function padded([low, high], share = 0.06) {
+  const room = share * (high - low) || Math.max(Math.abs(high) * 0.05, 1e-3);
+  return [low - room, high + room];
+}
+
+// Torque, speed and height of the selected jump, with a line at the moment the picture shows.
+let cursors = [];
+
+function drawTimes() {
+  const box = byId("time-charts");
+  box.replaceChildren();
+  cursors = [];
+  const chosen = subject();
+  const j = player.jump;
+  if (!j) {
+    box.append(make("p", { class: "small" }, noJump(chosen)));
+    return;
+  }
+  const x = [0, endTime()];
+  const legend = make("p", { class: "small" });
+  for (const [name, tint] of [["hip", "--hip"], ["knee", "--knee"]]) {
+    legend.append(make("span", { class: "swatch", style: `background: var(${tint})` }), `${name}   `);
+  }
+  legend.append(`dashed: limits of the gearboxes; vertical: lift-off at ${round(chosen.jump.lift_off_s)} s`);
+  const limit = (value) => [{ x, y: [value, value] }, { x, y: [-value, -value] }];
+  const limits = (key) => ["hip", "knee"].flatMap((side) => (chosen[side] ? limit(chosen[side][key]).map((s) => ({ ...s, colour: `var(--${side})`, dash: "3 3", thick: 1 })) : []));
+  const pair = (suffix) => ["hip", "knee"].map((side) => ({ x: j.time_s, y: j[side + suffix], colour: `var(--${side})` }));
+  const rows = [
+    { title: "motor torque at the joint, N m", series: [...pair("_motor_torque_n_m"), ...limits("peak_torque_n_m")] },
+    { title: "joint speed, rad/s", series: pair("_rad_per_s") },
+    { title: "height of base and (thin) foot, m", series: [{ x: j.time_s, y: j.base_z_m, colour: "var(--ink)" }, { x: j.time_s, y: j.foot_z_m, colour: "var(--ink)", thick: 0.9 }] },
+  ];
+  rows.forEach((row, i) => {
+    const y = padded(extent(row.series.flatMap((s) => s.y)));
+    const chart = smallChart({ x, y, title: row.title, series: row.series, xTitle: i === 2 ? "time, s" : "", bottom: i === 2 ? 32 : 20, height: i === 2 ? 146 : 134, label: `${row.title}, over ${round(x[1], 2)} s` });
+    const at = chart.toX(chosen.jump.lift_off_s);
+    chart.svg.append(draw("line", { x1: at, x2: at, y1: chart.top, y2: chart.top + chart.h, stroke: "var(--faint)" }));
+    const cursor = draw("line", { y1: chart.top, y2: chart.top + chart.h, stroke: "var(--c4)", "stroke-width": 1.5 });
+    chart.svg.append(cursor);
+    cursors.push({ cursor, toX: chart.toX });
+    box.append(chart.svg);
+  });
+  box.prepend(legend);
+  moveCursors();
+}
+
+function moveCursors() {
+  for (const { cursor, toX } of cursors) {
+    cursor.setAttribute("x1", toX(player.time));
+    cursor.setAttribute("x2", toX(player.time));
+  }
+}
+
+function noJump(chosen) {
+  if (!chosen) return "Nothing is selected.";
+  if (chosen.kind === "case") return `This design does not jump here: ${chosen.measures.reason || chosen.measures.status}.`;
+  if (chosen.at < 0) return "Jumps are kept for designs on the front; the commands below simulate this one.";
+  return `This page keeps the jumps of ${Object.keys(chosen.study.jumps).length} of the ${chosen.study.front.length} designs on the front; the commands below simulate this one.`;
+}
+
+// Each variable against height along the front.
+let dots = [];
+
+function drawAlong() {
+  const box = byId("along-charts");
+  box.replaceChildren();
+  dots = [];
+  const shownStudies = [...state.visible].filter((i) => page.studies[i].front.length);
+  const heights = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns.height_m[row])));
+  const x = padded(heights, 0.03);
+  const several = page.studies.length > 1;
+  for (const variable of page.variables) {
+    const q = quantity[variable.name];
+    const joint = variable.name.endsWith("_ratio") ? variable.name.replace("_ratio", "_gearbox") : null;
+    const limits = extent(page.studies.flatMap((s) => s.bounds[variable.name]));
+    const y = padded(limits.map((v) => v * q.scale), 0.08);
+    const series = shownStudies.map((i) => {
+      const { front, trials } = page.studies[i];
+      const family = (row) => (joint ? page.gearboxes[trials.columns[joint][row]]?.family : "ISSPG");
+      return {
+        x: front.map((row) => trials.columns.height_m[row]), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
+        mark: front.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), opacity: front.map((row) => (inRanges(i, row) ? 0.8 : 0.12)),
+        colour: several ? `var(--c${i % 6})` : "var(--c0)",
+      };
+    });
+    const title = `${q.label}${q.unit === ": 1" ? "" : `, ${q.unit}`}`;
+    const chart = smallChart({ width: 300, height: 190, x, y, title, xTitle: "height, m", series, label: `${title}, against height along the front` });
+    for (const bound of limits) chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(bound * q.scale), y2: chart.toY(bound * q.scale), stroke: "var(--faint)", "stroke-dasharray": "2 3" }));
+    const change = joint ? switchRatio() : null;
+    if (change !== null && change > y[0] && change < y[1]) {
+      chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(change), y2: chart.toY(change), stroke: "var(--c4)", "stroke-width": 1.4 }));
+      chart.svg.append(text(chart.left + chart.w - 3, chart.toY(change) - 4, "ESSPG", "end"), text(chart.left + chart.w - 3, chart.toY(change) + 12, "ISSPG", "end"));
+    }
+    const dot = draw("circle", { r: 6, fill: "none", stroke: "var(--c1)", "stroke-width": 2.5 });
+    chart.svg.append(dot);
+    dots.push({ dot, chart, variable, q });
+    box.append(chart.svg);
+  }
+  moveDots();
+  byId("along-note").textContent = shownStudies.length
+    ? `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`
+    : "There is no front to follow.";
+}
+
+// Least ratio at which only the external family is left or lighter.
+function switchRatio() {
+  const points = page.maps[current().map].points.filter((p) => p.gearbox !== null);
+  const at = points.findIndex((p) => page.gearboxes[p.gearbox].family === "ESSPG");
+  return at > 0 ? points[at].ratio_low : null;
+}
+
+function switchesText() {
+  const { front, trials } = current();
+  const parts = ["hip", "knee"].map((side) => {
+    const families = front.map((row) => page.gearboxes[trials.columns[`${side}_gearbox`][row]]?.family);
+    const external = families.filter((f) => f === "ESSPG").length;
+    if (!external) return `the ${side} stays with ISSPG`;
+    if (external === families.length) return `the ${side} stays with ESSPG`;
+    const changes = families.flatMap((f, i) => (i && f !== families[i - 1] ? [trials.columns.height_m[front[i]]] : []));
+    if (changes.length <= 3) return `the ${side} changes at ${changes.map((h) => `${round(h, 2)} m`).join(", ")}`;
+    return `the ${side} has ESSPG in ${external} of ${families.length} designs, changing ${changes.length} times between ${round(changes[0], 2)} m and ${round(changes.at(-1), 2)} m`;
+  });
+  return front.length > 1 ? ` Along this front ${parts.join("; ")}.` : "";
+}
+
+function moveDots() {
+  const chosen = subject();
+  for (const { dot, chart, variable, q } of dots) {
+    const h = chosen?.measures.height_m;
+    const cx = h === null || h === undefined ? -1 : chart.toX(h);
+    const inside = cx >= chart.left && cx <= chart.left + chart.w;
+    dot.setAttribute("display", inside ? "inline" : "none");
+    if (!inside) continue;
+    dot.setAttribute("cx", cx);
+    dot.setAttribute("cy", chart.toY(chosen.values[variable.name] * q.scale));
+  }
+}
+
+function startLines() {
+  on("selection", (how) => { drawTimes(); if (how.other) drawAlong(); else moveDots(); });
+  on("time", moveCursors);
+  on("view", drawAlong);
+  drawAlong();
+}

@@ -1,0 +1,94 @@
+// Convergence, the stage 1 map and link mass, by Plotly.
+
+function seriesStyle(i) {
+  return { color: studyColour(i), width: 1.8, dash: ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"][i % 6] };
+}
+
+function band(x, low, middle, high, tint, name) {
+  const edge = { type: "scatter", mode: "lines", x, line: { width: 0 }, hoverinfo: "skip", showlegend: false };
+  return [
+    { ...edge, y: low }, { ...edge, y: high, fill: "tonexty", fillcolor: `${tint}33` },
+    { type: "scatter", mode: "lines", name, x, y: middle, line: { color: tint, width: 2.5 } },
+  ];
+}
+
+function drawConvergence(node) {
+  const comparison = page.comparison;
+  const list = page.studies.map((study, i) => ({
+    type: "scatter", mode: study.history.evaluations.length > 1 ? "lines" : "markers", name: plain(study.label),
+    x: study.history.evaluations, y: study.history.hypervolume, line: { ...seriesStyle(i), shape: "hv" },
+    hovertemplate: "%{x} evaluations: %{y:.3f} m J<extra></extra>",
+  }));
+  (comparison?.growth ?? []).forEach((growth, k) => {
+    const first = page.studies.findIndex((study) => study.label === growth.labels[0]);
+    list.push(...band(growth.evaluations, growth.low, growth.median, growth.high, studyColour(first), `median of ${growth.labels.length} seeds`));
+  });
+  Plotly.react(node, list, layout(axis("evaluations", { rangemode: "tozero" }), axis("hypervolume, m J"), {
+    showlegend: list.length > 1, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
+  }), CONFIG);
+  const last = page.studies[0].history;
+  describe(node, last.evaluations.length ? `Hypervolume over evaluations: ${round(last.hypervolume.at(-1), 2)} m J after ${last.evaluations.at(-1)}` : "No evaluations yet");
+}
+
+// Attainment surfaces of several seeds: what the best, the median and the worst run reached.
+function drawAttainment(node) {
+  const list = page.comparison.surfaces.flatMap((surface) => {
+    const first = page.studies.findIndex((study) => study.label === surface.labels[0]);
+    const tint = studyColour(first);
+    const line = (name, y, dash, width) => ({ type: "scatter", mode: "lines", name, x: y, y: surface.height_m, line: { color: tint, dash, width }, hovertemplate: "%{y:.3f} m on %{x:.2f} J<extra></extra>" });
+    return [line("best", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst", surface.worst, "dash", 1.2)];
+  });
+  Plotly.react(node, list, layout(axis("energy, J", { rangemode: "tozero" }), axis("height reached by best, median and worst seed, m"), {
+    showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
+  }), CONFIG);
+  describe(node, "Attainment surfaces: the height that the best, the median and the worst seed reached on an energy");
+}
+
+function drawMap(node) {
+  const list = [];
+  const style = { ISSPG: [colour("c1"), "circle"], ESSPG: [colour("c0"), "diamond"] };
+  page.maps.forEach((map, k) => {
+    for (const [family, [tint, symbol]] of Object.entries(style)) {
+      const rows = map.points.filter((p) => p.family_mass_kg[family] !== undefined);
+      const best = (p) => p.gearbox !== null && page.gearboxes[p.gearbox].family === family;
+      list.push({
+        type: "scatter", mode: "markers", name: `${family}${page.maps.length > 1 ? `, ${plain(map.motor)}` : ""}`,
+        x: rows.map((p) => p.ratio_low), y: rows.map((p) => p.family_mass_kg[family]),
+        marker: { size: 7, symbol: rows.map((p) => (k ? `${symbol}-open` : symbol)), color: tint, opacity: rows.map((p) => (best(p) ? 1 : 0.35)) },
+        text: rows.map((p) => {
+          const g = best(p) ? page.gearboxes[p.gearbox] : null;
+          const teeth = g ? `<br>${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth}, module ${g.module_mm} mm, ${g.planets} planets` : "<br>not the lighter family here";
+          return `<b>${family}</b>, [${round(p.ratio_low, 1)}, ${round(p.ratio_low + 0.1, 1)})<br>${round(p.family_mass_kg[family])} kg${teeth}`;
+        }),
+        hovertemplate: "%{text}<extra></extra>",
+      });
+    }
+  });
+  Plotly.react(node, list, layout(axis("gear ratio"), axis("actuator mass with motor, kg"), {
+    showlegend: true, legend: { x: 0, y: 1, bgcolor: "rgba(0,0,0,0)" },
+  }), CONFIG);
+  describe(node, `Actuator mass over gear ratio; ${page.maps.map((m) => m.points.filter((p) => p.gearbox !== null).length).join(" and ")} intervals of 0.1 have a gearbox`);
+  byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of 0.1${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
+}
+
+function drawLinks(node) {
+  const { length_m, thigh_kg, shank_kg } = page.links;
+  const mm = length_m.map((l) => l * 1000);
+  const line = (name, y, more) => ({ type: "scatter", mode: "lines", name, x: mm, y, line: more, hovertemplate: "%{x:.0f} mm: %{y:.3f} kg<extra></extra>" });
+  const list = [
+    line("thigh", thigh_kg, { color: colour("hip"), width: 2.2 }),
+    line("shank", shank_kg, { color: colour("knee"), width: 2.2 }),
+    line("published link", mm.map((l) => 0.235 + 0.000828 * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
+  ];
+  Plotly.react(node, list, layout(axis("link length, mm"), axis("mass, kg", { rangemode: "tozero" }), {
+    showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
+  }), CONFIG);
+  describe(node, "Mass of thigh and shank over their length");
+}
+
+function startSearch() {
+  lazily("convergence", drawConvergence);
+  if (byId("attainment")) lazily("attainment", drawAttainment);
+  lazily("map-chart", drawMap);
+  lazily("link-chart", drawLinks);
+}

@@ -1,0 +1,88 @@
+// What is selected, which studies and ranges are shown; everything else listens.
+
+const state = { study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {} };
+const listeners = { selection: [], view: [], time: [] };
+
+function on(event, listener) { listeners[event].push(listener); }
+
+function tell(event, detail) { for (const listener of listeners[event]) listener(detail); }
+
+function current() { return page.studies[state.study]; }
+
+function select(study, row, byUser = true) {
+  const other = study !== state.study;
+  Object.assign(state, { study, row, caseName: null });
+  tell("selection", { byUser, other });
+}
+
+function selectCase(study, name) {
+  const other = study !== state.study;
+  Object.assign(state, { study, row: null, caseName: name });
+  tell("selection", { byUser: true, other });
+}
+
+// Place of the selection on its study's front, -1 if it is not on it.
+function place() { return state.row === null ? -1 : current().front.indexOf(state.row); }
+
+function moveAlongFront(steps) {
+  const { front, trials } = current();
+  if (!front.length) return;
+  let at = place();
+  if (at < 0) {
+    // From off the front, to the first design on it that jumps at least as high.
+    const height = state.row === null ? 0 : trials.columns.height_m[state.row] ?? 0;
+    at = front.findIndex((row) => trials.columns.height_m[row] >= height);
+    if (at < 0) at = front.length - 1;
+    steps = 0;
+  }
+  select(state.study, front[Math.min(Math.max(at + steps, 0), front.length - 1)]);
+}
+
+function inRanges(study, row) {
+  const columns = page.studies[study].trials.columns;
+  for (const [name, [low, high]] of Object.entries(state.ranges)) {
+    const value = columns[name][row];
+    if (value === null || value < low || value > high) return false;
+  }
+  return true;
+}
+
+function gearboxAt(study, ratio) {
+  const point = page.maps[study.map].points.find((p) => Math.round(p.ratio_low * 10) === Math.floor(ratio * 10 + 1e-7));
+  return point && point.gearbox !== null ? page.gearboxes[point.gearbox] : null;
+}
+
+// The selection as one object, a trial or one of the paper's cases.
+function subject() {
+  const study = current();
+  if (state.caseName !== null) {
+    const made = study.cases.find((c) => c.name === state.caseName);
+    const published = page.published.find((c) => c.name === state.caseName);
+    const values = published.design;
+    return {
+      kind: "case", study, name: made.name, values, measures: made, more: {}, jump: made.jump, status: made.status,
+      hip: gearboxAt(study, values.hip_ratio), knee: gearboxAt(study, values.knee_ratio), published,
+      why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
+    };
+  }
+  if (state.row === null) return null;
+  const { columns } = study.trials;
+  const row = state.row;
+  const number = study.trials.trial[row];
+  const values = Object.fromEntries(page.variables.map((v) => [v.name, columns[v.name][row]]));
+  const at = place();
+  const measures = Object.fromEntries(Object.entries(columns).map(([name, list]) => [name, list[row]]));
+  const more = at < 0 ? {} : Object.fromEntries(Object.entries(study.more).map(([name, list]) => [name, list[at]]));
+  const picked = study.picks.find((p) => p.row === row);
+  const letter = study.trials.state[row];
+  const ill = study.ill_conditioned.includes(row);
+  let why = `on the front, ${at + 1} of ${study.front.length}`;
+  if (picked) why = picked.why.replace(/^trial \d+ \([^)]*\): /, "");
+  else if (ill) why = "taken off the front by its audit";
+  else if (at < 0) why = { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[letter];
+  return {
+    kind: "trial", study, number, row, values, measures, more, at, why, letter,
+    jump: study.jumps[number] ?? null, audit: study.audits[number] ?? null, model: study.models[number] ?? null,
+    hip: page.gearboxes[columns.hip_gearbox[row]] ?? null, knee: page.gearboxes[columns.knee_gearbox[row]] ?? null,
+  };
+}

@@ -1,0 +1,118 @@
+"""Payload -> one HTML file that needs nothing but itself."""
+
+import base64
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, is_dataclass
+from functools import lru_cache
+from importlib import resources
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from pareto_monoped.errors import StudyError
+from pareto_monoped.files import write_text
+from pareto_monoped.report.exports import read_models
+from pareto_monoped.report.payload import Source, build
+from pareto_monoped.report.physics import simulate_extras
+from pareto_monoped.report.records import Payload
+from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, safe
+from pareto_monoped.study.reader import read_study
+
+SCRIPTS = (
+    "dom", "state", "plots", "front", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
+)  # fmt: skip
+"""The page's own scripts, in the order in which they run; together they are one closed scope."""
+
+
+def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None) -> None:
+    """Write the report of one or several studies.
+
+    Args:
+        dbs: study databases; several are laid over each other and compared.
+        out: the HTML file.
+        exports: folder with exported designs, a folder ``trial_N`` each, for the 3D view.
+
+    Raises:
+        DatabaseError: a database that is missing, damaged, or no study.
+        StudyError: no database.
+        OutputError: ``out`` cannot be written.
+    """
+    write_text(out, page(payload_of(dbs, exports=exports)))
+
+
+def payload_of(dbs: Sequence[Path], *, exports: Path | None = None) -> Payload:
+    """Read the studies and simulate what the page shows beyond them."""
+    if not dbs:
+        raise StudyError("databases = 0: must be at least 1; name the database of a study")
+    # All are read before anything is simulated: a wrong name is found at once.
+    studies = [read_study(db) for db in dbs]
+    sources = []
+    for db, data in zip(dbs, studies, strict=True):
+        models = read_models(exports, data) if exports is not None else {}
+        sources.append(Source(database=str(db), data=data, extras=simulate_extras(data), models=models))
+    return build(sources, literal_cases())
+
+
+@lru_cache(maxsize=1)
+def literal_cases() -> tuple[dict[str, float | None], ...]:
+    """The paper's cases with the paper's motor under the ``paper`` calibration: medians and spread."""
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.table1 import paper_spreads
+
+    return tuple(asdict(spread) for spread in paper_spreads(map_for("VT8020"), load_calibration("paper")))
+
+
+def page(payload: Payload) -> str:
+    """The whole HTML text."""
+    script = "(() => {\n'use strict';\n" + "\n".join(_asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
+    plotly = _plotly()
+    # Only these two scripts may run, whatever else might find its way into the page; nothing may be fetched.
+    policy = (
+        f"default-src 'none'; script-src {_fingerprint(plotly)} {_fingerprint(script)}; style-src 'unsafe-inline'; "
+        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+    return Template(_asset("page.html")).substitute(
+        policy=policy,
+        title=safe(payload.title),
+        style=_asset("style.css"),
+        head=head(payload),
+        comparison=comparison_tables(payload),
+        cases=cases_table(payload),
+        provenance=provenance_tables(payload),
+        version=safe(payload.version),
+        payload=embedded(payload),
+        plotly=plotly,
+        script=script,
+    )
+
+
+def embedded(payload: Payload) -> str:
+    """The payload as JSON that may stand inside a script element: no ``<`` can end it or begin a comment."""
+    text = json.dumps(payload, default=_plain, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _plain(value: Any) -> Any:
+    if is_dataclass(value) and not isinstance(value, type):
+        return {name: getattr(value, name) for name in value.__dataclass_fields__}
+    raise TypeError(f"{type(value).__name__} does not belong on the page")
+
+
+def _fingerprint(script: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
+
+
+@lru_cache(maxsize=1)
+def _plotly() -> str:
+    from plotly.offline import get_plotlyjs
+
+    # An end tag inside a string of the library would end the script element.
+    text: str = get_plotlyjs()
+    return text.replace("</script", "<\\/script").replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _asset(name: str) -> str:
+    return (resources.files("pareto_monoped.report") / "assets" / name).read_text(encoding="utf-8")

@@ -1,0 +1,219 @@
+"""What the page knows, as plain records: everything on it is drawn from one ``Payload``.
+
+Field names are the keys in the page's JSON. Columns are lists, a number a row; None where a trial has no such value.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+Number = float | int | None
+Column = Sequence[Number]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantity:
+    """A column's name, what it is called on the page, its unit there, and decimals to show; ``scale`` leads there."""
+
+    name: str
+    label: str
+    unit: str
+    decimals: int
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gearbox:
+    """One actuator of a stage 1 map, as the page shows it; diameters in mm for the drawing to scale."""
+
+    motor: str
+    family: str
+    ratio: float
+    sun_teeth: int
+    planet_teeth: int
+    ring_teeth: int
+    module_mm: float
+    planets: int
+    face_width_mm: float
+    mass_kg: float
+    peak_torque_n_m: float
+    no_load_speed_rad_per_s: float
+    efficiency: float
+    motor_diameter_mm: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapPoint:
+    """One interval of a stage 1 map: its lower end, the chosen gearbox (an index, None: none) and best masses."""
+
+    ratio_low: float
+    gearbox: int | None
+    reason: str
+    family_mass_kg: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ActuatorTable:
+    """The stage 1 map of one motor."""
+
+    motor: str
+    points: Sequence[MapPoint]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Jump:
+    """A jump in few frames; every list has one entry a frame.
+
+    ``scale`` holds, for each column, the size of one count: the columns are whole numbers to keep the page small.
+    """
+
+    height_m: float
+    lift_off_s: Number
+    columns: Mapping[str, Sequence[int]]
+    scale: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One row of the paper's Table I, simulated with a study's motor and calibration."""
+
+    name: str
+    status: str
+    reason: str
+    height_m: Number
+    energy_j: Number
+    mass_kg: Number
+    jump: Jump | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picked:
+    """A design worth pointing out: what it is called, its row, and why."""
+
+    name: str
+    row: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trials:
+    """Trials of a study, a row each, in the order of their numbers.
+
+    Attributes:
+        trial: numbers.
+        state: one letter a row: f feasible, i infeasible, x failed.
+        columns: by name; None where there is no value.
+        total: trials in the database; more than rows if the page had to leave some out.
+    """
+
+    trial: Sequence[int]
+    state: str
+    columns: Mapping[str, Column]
+    total: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Model3D:
+    """Triangles of an exported design: corners in whole ``step_mm``, colours from 0 to 255, both base64."""
+
+    step_mm: float
+    triangles: int
+    positions: str
+    colours: str
+    simplified: bool
+    note: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyCard:
+    """One study on the page.
+
+    Attributes:
+        label: short and unique among the page's studies.
+        motor, calibration: as shown; ``motor_name`` and ``calibration_name`` are what the command line takes.
+        map: which of the page's stage 1 maps is this motor's.
+        group: studies that differ in nothing but their seed share it.
+        bounds: variable -> [lower, upper], equal for a fixed one.
+        front, ill_conditioned: rows of ``trials``.
+        more: further columns of the front's rows alone, in their order: the rest of the measures, body masses.
+        audits: trial number -> measures of its audit.
+        jumps, models: by trial number.
+        weighted: results of a weighted search: weight of the height, row.
+        floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
+        notes: lines the reader has to know.
+    """
+
+    label: str
+    name: str
+    description: str
+    database: str
+    motor: str
+    motor_name: str
+    calibration: str
+    calibration_name: str
+    map: int
+    algorithm: str
+    seed: int
+    group: str
+    state: str
+    budget: int
+    seconds: float
+    counts: Mapping[str, int]
+    reasons: Mapping[str, int]
+    hypervolume: float
+    reference: Mapping[str, float]
+    bounds: Mapping[str, Sequence[float]]
+    summary: Sequence[str]
+    notes: Sequence[str]
+    trials: Trials
+    front: Sequence[int]
+    ill_conditioned: Sequence[int]
+    picks: Sequence[Picked]
+    more: Mapping[str, Column]
+    audits: Mapping[str, Mapping[str, Any]]
+    jumps: Mapping[str, Jump]
+    models: Mapping[str, Model3D]
+    cases: Sequence[Case]
+    history: Mapping[str, Column]
+    weighted: Sequence[Sequence[float]]
+    floor_mass_kg: Number
+    foot_mass_kg: float
+    foot_radius_m: float
+    provenance: Sequence[Sequence[str]]
+    reproduce: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """Several studies side by side.
+
+    Attributes:
+        reference: the corner that all hypervolumes here are measured from.
+        rows: label, hypervolume, and least energy at each of ``heights_m`` (None where not reached).
+        surfaces: attainment of each group with several seeds: heights, and least, median and greatest energy there.
+        growth: the same for hypervolume over evaluations.
+    """
+
+    reference: Mapping[str, float]
+    heights_m: Sequence[float]
+    rows: Sequence[Mapping[str, Any]]
+    surfaces: Sequence[Mapping[str, Any]]
+    growth: Sequence[Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Payload:
+    """Everything on the page."""
+
+    version: str
+    title: str
+    variables: Sequence[Mapping[str, Any]]
+    quantities: Sequence[Quantity]
+    published: Sequence[Mapping[str, Any]]
+    literal: Sequence[Mapping[str, Any]]
+    gearboxes: Sequence[Gearbox]
+    maps: Sequence[ActuatorTable]
+    links: Mapping[str, Column]
+    drawing: Mapping[str, float]
+    studies: Sequence[StudyCard]
+    comparison: Comparison | None = field(default=None)

@@ -1,0 +1,88 @@
+"""The sentences at the head of the page."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.report.records import Case
+from pareto_monoped.study.reader import StudyData
+
+if TYPE_CHECKING:
+    from pareto_monoped.report.physics import Extras
+
+HEADLINE_M = 0.8
+"""Height of the paper's Case C."""
+_DRIFT_M = 0.001
+
+
+def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
+    """What the front comes to: the price of the headline height, and the paper's Case C against it."""
+    done = len(data.trials)
+    if done == 0:
+        return ["No design has been simulated yet: run or resume the study, then make the report again."]
+    if len(front) == 0:
+        return [
+            f"None of the {done} designs is feasible: there is no front to choose from. Run longer, widen the bounds, "
+            "or relax the constraints."
+        ]
+    if len(front) == 1:
+        only = front.iloc[0]
+        lines = [f"One design is on the front: {only['height_m']:.3f} m on {only['energy_j']:.2f} J."]
+    else:
+        low, high = front.iloc[0], front.iloc[-1]
+        lines = [
+            f"{_price(front, HEADLINE_M)}; the front of {len(front)} designs runs from {low['height_m']:.2f} m on "
+            f"{low['energy_j']:.1f} J to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
+        ]
+    return [*lines, *_against_paper(front, cases)]
+
+
+def _price(front: pd.DataFrame, height_m: float) -> str:
+    reach = front[front["height_m"] >= height_m]
+    if len(reach) == 0:
+        return f"No design reaches {height_m:.2f} m, the highest jump is {front['height_m'].max():.3f} m"
+    return f"{height_m:.2f} m costs at least {reach['energy_j'].min():.1f} J"
+
+
+def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
+    """The paper's Case C, published and simulated here, against the front at the height it reaches here."""
+    here = next((case for case in cases if case.name == "C"), None)
+    published = PAPER_CASES["C"]
+    if here is None:
+        return []
+    text = f"The paper's Case C (published: {published.height_m:.2f} m on {published.energy_j:.1f} J)"
+    if here.height_m is None or here.energy_j is None:
+        return [f"{text} does not jump under this study's motor and calibration: {here.reason or here.status}."]
+    text += f" reaches {here.height_m:.2f} m on {here.energy_j:.1f} J under this study's calibration"
+    reach = front[front["height_m"] >= here.height_m]
+    if len(reach) == 0:
+        return [f"{text}, higher than this front goes."]
+    energy = float(reach["energy_j"].min())
+    change = 100.0 * (energy / here.energy_j - 1.0)
+    compared = f"{abs(change):.0f} % {'less' if change < 0.0 else 'more'}"
+    return [f"{text}; the front gets that high on {energy:.1f} J, {compared}."]
+
+
+def notes(data: StudyData, extras: "Extras") -> list[str]:
+    """What the reader has to know before trusting the page."""
+    lines = []
+    done, budget = len(data.trials), int(data.meta["budget"])
+    if not data.meta["finished"]:
+        lines.append(
+            f"Unfinished: {done} of {budget} designs are simulated, and its front is audited only at the end. "
+            "The front will still move."
+        )
+    bad = int((~data.audits["well_conditioned"].astype(bool)).sum())
+    if bad:
+        lines.append(
+            f"{bad} design{' was' if bad == 1 else 's were'} taken off the front by the audit: their height or energy "
+            "changes with the smallest change of the design or of the time step."
+        )
+    if extras.drift_m > _DRIFT_M:
+        lines.append(
+            f"Simulated again for this page, heights differ by up to {1000.0 * extras.drift_m:.1f} mm from those "
+            "stored: code, versions or machine are not those of the study."
+        )
+    return lines

@@ -1,0 +1,150 @@
+"""The page's words and tables: what is painted before any script runs. Every text from a study is escaped here."""
+
+from collections.abc import Sequence
+from html import escape
+
+from pareto_monoped.report.records import Number, Payload, StudyCard
+
+
+def safe(value: object) -> str:
+    """Text for HTML, inside an element or a quoted attribute."""
+    return escape(str(value), quote=True)
+
+
+def head(payload: Payload) -> str:
+    """Summary and key facts; of each study if there are several."""
+    parts = []
+    several = len(payload.studies) > 1
+    for card in payload.studies:
+        if several:
+            parts.append(f"<h2>{safe(card.label)}</h2>")
+        elif card.description:
+            parts.append(f'<p class="small">{safe(card.description)}</p>')
+        parts.append(f'<p class="summary">{safe(" ".join(card.summary))}</p>')
+        parts += [f'<p class="note" role="note">{safe(note)}</p>' for note in card.notes]
+        facts = "".join(f"<div><dt>{safe(name)}</dt><dd>{safe(value)}</dd></div>" for name, value in _facts(card))
+        parts.append(f'<dl class="facts">{facts}</dl>')
+    return "\n".join(parts)
+
+
+def _facts(card: StudyCard) -> list[tuple[str, str]]:
+    counts = card.counts
+    done = f"{counts['total']:,}" if counts["total"] == card.budget else f"{counts['total']:,} of {card.budget:,}"
+    states = f"{counts['feasible']:,} feasible, {counts['infeasible']:,} infeasible, {counts['failed']:,} failed"
+    if card.reasons:
+        states += f" ({', '.join(f'{name} {count:,}' for name, count in card.reasons.items())})"
+    return [
+        ("motor", card.motor),
+        ("calibration", card.calibration),
+        ("search", f"{card.algorithm}, seed {card.seed}"),
+        ("evaluations", done),
+        ("of these", states),
+        ("run time", _duration(card.seconds)),
+        ("hypervolume", f"{card.hypervolume:.3f} m J"),
+        ("measured from", f"{card.reference['height_m']:g} m, {card.reference['energy_j']:g} J"),
+    ]
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    if seconds < 7200.0:
+        return f"{seconds / 60.0:.0f} min"
+    return f"{seconds / 3600.0:.1f} h"
+
+
+def _number(value: Number, decimals: int) -> str:
+    return "–" if value is None else f"{value:.{decimals}f}"
+
+
+def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
+    """An HTML table; ``rows`` hold text, the first cell names the row."""
+    first, *others = (safe(name) for name in columns)
+    top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
+    body = "".join(
+        f'<tr><th scope="row">{safe(cells[0])}</th>' + "".join(f'<td class="n">{safe(c)}</td>' for c in cells[1:]) + "</tr>"
+        for cells in rows
+    )
+    words = f"<caption>{safe(caption)}</caption>" if caption else ""
+    table = f"<table>{words}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+    return f'<div class="scroll" tabindex="0">{table}</div>' if scroll else table
+
+
+def cases_table(payload: Payload) -> str:
+    """The paper's table beside what is simulated here."""
+    columns = ["design", *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables)]
+    designs = [
+        [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
+    ]
+    parts = [_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
+    shown: list[tuple[str, str]] = []
+    cards = [c for c in payload.studies if not ((c.motor, c.calibration) in shown or shown.append((c.motor, c.calibration)))]
+    names = ["height, m", "as published"]
+    literal = bool(payload.literal)
+    if literal:
+        names.append("paper-literal model, median (5 to 95 %)")
+    names += [f"simulated here: {card.motor}, {card.calibration}" for card in cards]
+    for quantity, unit, decimals in (("height", "m", 3), ("energy", "J", 2)):
+        key = f"{quantity}_{unit.lower()}"
+        rows = []
+        for i, case in enumerate(payload.published):
+            row = [_case_name(case["name"]), f"{case[key]:.{decimals}f}"]
+            if literal:
+                spread = payload.literal[i]
+                low, high = (spread[f"{quantity}_{p}_{unit.lower()}"] for p in ("p05", "p95"))
+                row.append(f"{_number(spread[key], decimals)} ({_number(low, decimals)} to {_number(high, decimals)})")
+            for card in cards:
+                made = card.cases[i]
+                value = getattr(made, key)
+                row.append(_number(value, decimals) if value is not None else made.status)
+            rows.append(row)
+        parts.append(_table([f"{quantity}, {unit}", *names[1:]], rows))
+    parts.append(
+        '<p class="small">The literal model follows the paper word for word and was fitted to its table; it reacts to '
+        "the smallest changes, so it is shown as the median over many of them. The study's calibration is well-posed, "
+        "and its heights and energies compare with the front, not with the published ones.</p>"
+    )
+    return "\n".join(parts)
+
+
+def _case_name(name: str) -> str:
+    return name if name == "nominal" else f"Case {name}"
+
+
+def comparison_tables(payload: Payload) -> str:
+    """Several studies side by side; empty for one."""
+    comparison = payload.comparison
+    if comparison is None:
+        return ""
+    columns = ["study", "motor", "calibration", "search", "seed", "evaluations", "front", "hypervolume, m J"]
+    columns += [f"J at {height:g} m" for height in comparison.heights_m]
+    rows = [
+        [
+            *(f"{row[name]}" for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")),
+            _number(row["hypervolume"], 3),
+            *(_number(energy, 2) for energy in row["energy_j"]),
+        ]
+        for row in comparison.rows
+    ]
+    corner = comparison.reference
+    caption = (
+        f"All hypervolumes from {corner['height_m']:g} m and {corner['energy_j']:g} J, the first study's reference "
+        "point. Energy: least on the front for at least that height."
+    )
+    chart = '<div id="attainment" class="chart"></div>' if comparison.surfaces else ""
+    return f"<h3>Studies compared</h3>{_table(columns, rows, caption=caption)}{chart}"
+
+
+def provenance_tables(payload: Payload) -> str:
+    """Where everything comes from, and the command that makes it again."""
+    parts = []
+    for card in payload.studies:
+        rows = "".join(
+            f'<tr><th scope="row">{safe(key)}</th><td class="wrap">{safe(value)}</td></tr>' for key, value in card.provenance
+        )
+        table = f"<table><tbody>{rows}</tbody></table>"
+        parts.append(
+            f"<p>{safe(card.label)} is reproduced by <code>{safe(card.reproduce)}</code> with the settings below.</p>"
+            f"<details><summary>Settings, versions, hash</summary>{table}</details>"
+        )
+    return "\n".join(parts)
