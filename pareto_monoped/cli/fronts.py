@@ -22,8 +22,7 @@ COLUMNS = ("trial", "height_m", "energy_j", *NAMES)
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that select one design; ``command`` gets them as one ``selector`` keyword.
 
-    Exactly one of them must be given, unless the command sets ``selector_optional`` on its click parameters by taking
-    ``--front`` or the like: then it reads ``selector`` as None.
+    At most one of them may be given; with none ``selector`` is None, which ``required`` refuses.
     """
 
     @click.option("--min-height", type=float, metavar="M", help="Cheapest design that jumps at least M metres.")

@@ -84,6 +84,8 @@ def status(db: Path, as_json: bool) -> None:
         + (f" (process {facts['process']})" if facts["process"] else ""),
         "motor, calibration": f"{facts['motor']}, {facts['calibration']}",
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
+        "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
+        "least height": f"{facts['settings']['constraints']['min_height_m']:g} m",
         "evaluations": f"{facts['evaluations']} of {facts['budget']}",
         "feasible": f"{facts['feasible']} ({facts['infeasible']} infeasible, {facts['failed']} failed)",
         "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",

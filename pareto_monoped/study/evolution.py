@@ -58,8 +58,8 @@ class Evolution:
             for key in ("X", "F", "G"):
                 state[key] = population.get(key).astype(float).tolist()
             for key in ("rank", "crowding"):
-                # Infeasible survivors have neither rank nor crowding.
-                state[key] = [None if value is None else float(value) for value in population.get(key)]
+                # Infeasible survivors have neither rank nor crowding; JSON has no infinity, the ends' crowding.
+                state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
         return state
 
     def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
@@ -69,15 +69,23 @@ class Evolution:
         if "X" not in state:
             return
         arrays = {key: np.array(state[key], dtype=np.float64) for key in ("X", "F", "G")}
+        n = len(state["rank"])
+        for key, width in (("X", algorithm.problem.n_var), ("F", 2), ("G", 1)):
+            if arrays[key].shape != (n, width):
+                raise ValueError(f"{key} of the population has the shape {arrays[key].shape}, must be {(n, width)}")
         population = Population.new(**arrays)
         for key in ("rank", "crowding"):
             for individual, value in zip(population, state[key], strict=True):
                 if value is not None:
-                    individual.set(key, int(value) if key == "rank" else value)
+                    individual.set(key, int(value) if key == "rank" else float(value))
         algorithm._initialize()
         algorithm.pop = population
         algorithm.n_iter = int(state["iteration"])
         algorithm.is_initialized = True
+
+
+def _jsonable(value: float) -> float | str:
+    return value if np.isfinite(value) else str(value)
 
 
 def _algorithm(settings: EvolutionSettings, seed: int) -> GeneticAlgorithm:

@@ -17,6 +17,19 @@ from pareto_monoped.study.definition import Study, study_from_dict
 
 _TEXT = ("state", "status", "reason")
 _WHOLE = ("trial", "generation")
+_META = {
+    "motor": str,
+    "calibration": str,
+    "contents": dict,
+    "files": dict,
+    "versions": dict,
+    "hash": str,
+    "probe": list,
+    "created": str,
+    "budget": int,
+    "finished": bool,
+}
+"""What must be known of every study, by key and type."""
 _FIRST = ("trial", "generation", "state", "status", "reason", *NAMES, "height_m", "energy_j")
 
 
@@ -92,6 +105,9 @@ def read_study(db: Path) -> StudyData:
         study = study_from_dict(meta["study"], source=f"study database {str(db)!r}")
         generation, told, state = checkpoint_row
         checkpoint = Checkpoint(generation=int(generation), told=int(told), state=json.loads(state))
+        for key, kind in _META.items():
+            if not isinstance(meta[key], kind):
+                raise TypeError(f"{key} is {meta[key]!r}")
         audits = [
             {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
             for trial, good, measures in audit_rows

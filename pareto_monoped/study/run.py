@@ -254,7 +254,12 @@ class _Loop:
         self._front = np.zeros((0, 2))
         self._add_to_front(data.trials.loc[feasible, ["height_m", "energy_j"]].to_numpy())
         self._algorithm: Algorithm = create(study)
-        self._algorithm.restore(data.checkpoint.state, _told(data, self._free))
+        try:
+            self._algorithm.restore(data.checkpoint.state, _told(data, self._free))
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            raise DatabaseError(
+                f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
+            ) from None
         # Trials of a generation that the last budget cut short: the algorithm has not been told of them yet.
         self._designs, self._scores = _rows(data, data.checkpoint.told, len(data.trials))
 

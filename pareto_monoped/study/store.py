@@ -94,9 +94,9 @@ def create(path: Path, study: Study, meta: Mapping[str, Any], state: Mapping[str
                 connection.execute("BEGIN IMMEDIATE")
                 for statement in _OUR_TABLES.format(columns=columns).split(";"):
                     connection.execute(statement)
-                rows = [(key, json.dumps(value)) for key, value in ({"format": FORMAT} | dict(meta)).items()]
+                rows = [(key, _strict(value)) for key, value in ({"format": FORMAT} | dict(meta)).items()]
                 connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
-                connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (json.dumps(state),))
+                connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (_strict(state),))
                 connection.execute("COMMIT")
             finally:
                 connection.close()
@@ -202,7 +202,7 @@ class Store:
     def set_meta(self, values: Mapping[str, Any]) -> None:
         """Replace what is known about the study under some keys."""
         with translated(self.path), _transaction(self._connection):
-            rows = [(key, json.dumps(value)) for key, value in values.items()]
+            rows = [(key, _strict(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
@@ -253,7 +253,7 @@ class Store:
         if generation.state is not None:
             execute(
                 "UPDATE monoped_checkpoint SET generation = ?, told = ?, state = ?",
-                (generation.number + 1, total, json.dumps(generation.state)),
+                (generation.number + 1, total, _strict(generation.state)),
             )
 
     def _add_to_optuna_tables(self, generation: Generation) -> None:
@@ -335,6 +335,11 @@ class Store:
         finally:
             storage.remove_session()
             storage.engine.dispose()
+
+
+def _strict(value: Any) -> str:
+    """JSON that any reader takes: no NaN, no infinity."""
+    return json.dumps(value, allow_nan=False)
 
 
 def _attributes(generation: Generation, k: int) -> dict[str, Any]:

@@ -270,3 +270,53 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
     assert data.meta["stop_reason"] == "interrupted"
     assert len(data.trials) == data.checkpoint.told > 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["s.db", "s.toml"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "state = '{}'",
+        "state = json_remove(state, '$.generator')",
+        "state = json_set(state, '$.X', json('[[1.0]]'))",
+        "state = json_set(state, '$.rank', json('[1]'))",
+        "state = json_set(state, '$.generator.bit_generator', 'os.system')",
+        "state = json_set(state, '$.F', 'x')",
+    ],
+)
+def test_a_bent_checkpoint_is_refused(whole, tmp_path, change):
+    import sqlite3
+
+    path = tmp_path / "s.db"
+    path.write_bytes(whole[0].read_bytes())
+    connection = sqlite3.connect(path)
+    connection.execute(f"UPDATE monoped_checkpoint SET {change}")
+    connection.commit()
+    connection.close()
+    with pytest.raises(DatabaseError, match="checkpoint is damaged"):
+        resume(path, evaluations=80)
+    assert read_study(path).trials.equals(whole[2].trials)
+
+
+def test_a_disk_that_fills_up_loses_nothing(tmp_path):
+    """The system's own limit on a file's size, in a real process; gone on with after the limit is lifted."""
+    import resource
+
+    toml = tmp_path / "s.toml"
+    toml.write_text('name = "s"\nevaluations = 2000\naudit = false\n[algorithm]\nname = "random"\npopulation = 100\n')
+    done = subprocess.run(
+        [sys.executable, "-m", "pareto_monoped", "run", str(toml)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000)),
+    )
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].startswith("error: study database")
+    assert "all acknowledged trials are safe" in done.stderr
+    assert "Traceback" not in done.stderr
+    data = read_study(tmp_path / "s.db")
+    stored = len(data.trials)
+    assert 0 < stored < 2000
+    assert resume(tmp_path / "s.db", evaluations=stored + 100).new_evaluations == 100
+    again = load_physics(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:100])
+    assert np.array_equal(again.height_m, data.trials["height_m"][:100], equal_nan=True)

@@ -3,6 +3,7 @@
 import json
 import sqlite3
 import warnings
+from wsgiref.util import setup_testing_defaults
 
 import numpy as np
 import optuna
@@ -162,3 +163,19 @@ def test_the_state_is_json_and_nothing_is_pickled(tmp_path):
     (state,) = connection.execute("SELECT state FROM monoped_checkpoint").fetchone()
     assert json.loads(state) == {"after": 1}
     connection.close()
+
+
+def test_optuna_dashboard_reads_it(tmp_path):
+    dashboard = pytest.importorskip("optuna_dashboard", reason="an optional extra")
+    made_database(tmp_path / "s.db")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        application = dashboard.wsgi(f"sqlite:///{tmp_path}/s.db")
+        started = []
+        environ = {"PATH_INFO": "/api/studies/1", "QUERY_STRING": "after=0"}
+        setup_testing_defaults(environ)
+        body = b"".join(application(environ, lambda status, headers, *_: started.append(status)))
+    assert started == ["200 OK"]
+    detail = json.loads(body)
+    assert len(detail["trials"]) == 6
+    assert detail["trials"][1]["constraints"] == pytest.approx([0.03 / 0.55])

@@ -1,0 +1,71 @@
+"""Cases A, B and C as studies: the paper's designs, the weighted search and the front, at the same height.
+
+    python benchmarks/search_cases.py               # what benchmarks/search_cases.md shows
+    python benchmarks/search_cases.py --evaluations 1600
+
+All energies are simulated here, under ``reference``, but for the column "published".
+"""
+
+import argparse
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pandas import DataFrame
+
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.physics import load_physics
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.run import run
+
+WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
+
+
+def least_energy(front: DataFrame, height_m: float) -> str:
+    """Least energy on a front at this height or above, as text."""
+    high = front[front["height_m"] >= height_m]
+    return f"{high['energy_j'].min():.2f}" if len(high) else "not reached"
+
+
+def front(folder: Path, case: str, algorithm: dict[str, Any], evaluations: int) -> DataFrame:
+    """The front of a study of this case."""
+    values = {"name": case, "case": case, "evaluations": evaluations, "audit": False, "algorithm": algorithm}
+    path = folder / f"{case}-{algorithm['name']}.db"
+    run(study_from_dict(values, source="benchmark"), path)
+    return read_study(path).front()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--evaluations", type=int, default=8_000, help="of each search of each case")
+    evaluations = parser.parse_args().evaluations
+    physics = load_physics(study_from_dict({"name": "b", "evaluations": 1}, source="benchmark"), workers=1)
+    cases = [PAPER_CASES[name] for name in ("A", "B", "C")]
+    simulated = physics.evaluator(np.array([case.design.as_array() for case in cases]))
+    print(
+        "| case | published | paper's design here | weighted CMA-ES: least J at the published height | front: least J "
+        "there | weighted: least J at the design's height here | front: least J there |\n|---|---|---|---|---|---|---|"
+    )
+    with tempfile.TemporaryDirectory() as name:
+        for i, case in enumerate(cases):
+            sweep = {
+                "name": "weighted_cmaes",
+                "height_weights": WEIGHTS,
+                "iterations": max(1, evaluations // (8 * len(WEIGHTS))),
+            }
+            weighted = front(Path(name), case.name, sweep, evaluations)
+            ours = front(Path(name), case.name, {"name": "nsga2"}, evaluations)
+            here = float(simulated.height_m[i])
+            cells = [
+                case.name,
+                f"{case.height_m:.3f} m, {case.energy_j:.2f} J",
+                f"{here:.3f} m, {simulated.energy_j[i]:.2f} J",
+                *(least_energy(rows, height) for height in (case.height_m, here) for rows in (weighted, ours)),
+            ]
+            print("| " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,142 @@
+"""What storing and resuming costs: a study's time against the bare simulation, and against Optuna's own loop.
+
+    python benchmarks/search_overhead.py            # 4,000 jumps
+    python benchmarks/search_overhead.py --full     # 20,000 jumps: what benchmarks/search_overhead.md shows
+
+Bare simulation: the same designs through the evaluator and nothing else, in the study's generations, and in one batch.
+Optuna's loop: ``Study.optimize`` with its NSGA-II sampler on SQLite, one naive simulation (XML, Python loop) a trial;
+measured on fewer trials (the naive way is the tests' oracle). Both sides must agree in what they compute before a
+ratio is printed. CPU times stand beside the wall times, for machines that others use, too.
+"""
+
+import argparse
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import optuna
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.jump.calibration import FadeGate
+from pareto_monoped.jump.model import mjcf
+from pareto_monoped.robot import robot_arrays
+from pareto_monoped.study.definition import Bounds, Study, study_from_dict
+from pareto_monoped.study.physics import Physics, load_physics
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.run import default_workers, run
+from pareto_monoped.study.settings import EvolutionSettings
+from tests.jump.oracle import jump, motors_of
+
+
+def timed(work: Callable[[], object]) -> tuple[float, float]:
+    """Wall and CPU seconds that ``work`` takes."""
+    began, cpu = time.perf_counter(), time.process_time()
+    work()
+    return time.perf_counter() - began, time.process_time() - cpu
+
+
+def medians(times: list[tuple[float, float]]) -> tuple[float, float]:
+    """Median wall and CPU seconds."""
+    return statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times)
+
+
+def bare(physics: Physics, designs: NDArray[np.float64], batch: int) -> NDArray[np.float64]:
+    """Heights of the designs, simulated in batches."""
+    parts = [physics.evaluator(designs[first : first + batch]).height_m for first in range(0, len(designs), batch)]
+    return np.concatenate(parts)
+
+
+def optuna_loop(study: Study, physics: Physics, folder: Path, trials: int) -> list[optuna.trial.FrozenTrial]:
+    """Optuna's own loop with a naive simulation."""
+    gate = physics.calibration.gate
+    assert isinstance(gate, FadeGate)
+    fade_m = gate.length_m
+
+    def objective(trial: optuna.trial.Trial) -> tuple[float, float]:
+        values = {
+            n: trial.suggest_float(n, v.lower, v.upper) for n, v in study.variables.items() if isinstance(v, Bounds)
+        }
+        robots = robot_arrays(
+            np.array([list(values.values())]), physics.evaluator.actuator_map, physics.calibration.mass
+        )
+        result = jump(
+            mjcf(robots, physics.calibration, 0),
+            values["stiffness_n_per_m"],
+            values["damping_n_s_per_m"],
+            values["torsional_stiffness_n_m_per_rad"],
+            motors_of(robots, 0, physics.calibration),
+            fade=fade_m,
+        )
+        return result.height, result.energy
+
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    naive = optuna.create_study(
+        storage=f"sqlite:///{folder}/optuna.db",
+        directions=["maximize", "minimize"],
+        sampler=optuna.samplers.NSGAIISampler(seed=1),
+    )
+    naive.optimize(objective, n_trials=trials)
+    return naive.trials
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--full", action="store_true", help="20,000 jumps instead of 4,000")
+    parser.add_argument("--rounds", type=int, default=3, help="interleaved rounds; medians are shown")
+    parser.add_argument("--workers", type=int, default=default_workers())
+    arguments = parser.parse_args()
+    evaluations = 20_000 if arguments.full else 4_000
+    study = study_from_dict(
+        {"name": "b", "case": "C", "evaluations": evaluations, "audit": False, "algorithm": {"name": "nsga2"}},
+        source="benchmark",
+    )
+    physics = load_physics(study, workers=arguments.workers)
+    physics.probe()
+    assert isinstance(study.algorithm, EvolutionSettings)
+    population = study.algorithm.population
+    stored, generations, batch = [], [], []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        run(study, folder / "warm.db", evaluations=population, workers=arguments.workers)
+        for k in range(arguments.rounds):
+            db = folder / f"{k}.db"
+            stored.append(timed(partial(run, study, db, workers=arguments.workers)))
+            trials = read_study(db).trials
+            designs = trials[list(NAMES)].to_numpy()
+            generations.append(timed(partial(bare, physics, designs, population)))
+            batch.append(timed(partial(bare, physics, designs, len(designs))))
+        assert np.array_equal(bare(physics, designs[:200], 200), trials["height_m"][:200], equal_nan=True)
+        size = (folder / "0.db").stat().st_size
+        few = 100
+        loop_s, _ = timed(lambda: optuna_loop(study, physics, folder, few))
+        naive = optuna.load_study(study_name=None, storage=f"sqlite:///{folder}/optuna.db").trials
+        ours = physics.evaluator(np.array([[t.params[n] for n in NAMES] for t in naive])).height_m
+        theirs = np.array([t.values[0] if t.values else np.nan for t in naive])
+        agree = np.isclose(ours, theirs, rtol=0.0, atol=1e-9).mean()
+        assert agree >= 0.95, f"only {agree:.0%} of the naive loop's heights agree"
+    (wall, cpu), (each_wall, each_cpu), (one_wall, one_cpu) = medians(stored), medians(generations), medians(batch)
+    rate = evaluations / wall
+    print(f"{evaluations:,} evaluations of Case C, {arguments.workers} workers, {arguments.rounds} rounds, medians:")
+    for label, seconds, busy in (
+        ("study, stored and resumable", wall, cpu),
+        (f"bare, in generations of {population}", each_wall, each_cpu),
+        ("bare, in one batch", one_wall, one_cpu),
+    ):
+        print(f"{label:<32} {seconds:8.2f} s wall {busy:8.2f} s CPU {evaluations / seconds:8.0f} designs/s")
+    print(f"{'study / bare in generations':<32} {wall / each_wall:8.3f} wall   {cpu / each_cpu:8.3f} CPU")
+    print(f"{'study / bare in one batch':<32} {wall / one_wall:8.3f} wall   {cpu / one_cpu:8.3f} CPU")
+    print(f"{'database':<32} {size / 1e6:8.1f} MB")
+    print(f"{'loop of Optuna, naive':<32} {few / loop_s:8.1f} designs/s on {few} trials ({agree:.0%} agree)")
+    print(f"{'study / loop of Optuna':<32} {rate * loop_s / few:8.1f} times faster")
+
+
+if __name__ == "__main__":
+    main()
