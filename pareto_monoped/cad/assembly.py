@@ -15,7 +15,7 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.robot import PART_TO_BODY, Robot, Unit
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.record import Actuator
+    from pareto_monoped.actuator.actuator import Actuator
 
 Matrix = NDArray[np.float64]
 
@@ -148,8 +148,8 @@ def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[fl
     """How a part turns about its unit's z axis when the unit's output has turned by ``theta_rad``.
 
     A planetary gear with a fixed ring: the carrier is the output, the sun turns by the ratio, and a planet turns
-    against its carrier by -z_ring / z_planet of the carrier's angle. At rest the planet at angle a is turned by
-    pi - pi / z_planet + a z_sun / z_planet against its carrier, so that its spaces meet the sun's teeth.
+    against its carrier by -z_ring / z_planet of the carrier's angle. The planet's outline is drawn for the place on the
+    x axis; at angle a it is turned on by a z_sun / z_planet against its carrier to meet the sun's teeth.
 
     Returns:
         The angle of the whole circle of instances, and from an instance's place on it to its own turn on its place.
@@ -162,7 +162,6 @@ def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[fl
         return theta_rad, lambda _: 0.0
     if part.group == "planet":
         gears = actuator.gears
-        at_rest = np.pi - np.pi / gears.planet_teeth
         rolled = -theta_rad * gears.ring_teeth / gears.planet_teeth
-        return theta_rad, lambda place: at_rest + place * gears.sun_teeth / gears.planet_teeth + rolled
+        return theta_rad, lambda place: place * gears.sun_teeth / gears.planet_teeth + rolled
     return 0.0, lambda _: 0.0

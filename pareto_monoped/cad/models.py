@@ -11,14 +11,21 @@ from numpy.typing import NDArray
 from pareto_monoped.cad.assembly import unit_frame
 from pareto_monoped.cad.meshes import Mesh, mesh_from, mesh_of, placed
 from pareto_monoped.cad.product import Product
+from pareto_monoped.geometry.parts import Part
 from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
 from pareto_monoped.robot import BODIES, RobotArrays
 
 Floats = NDArray[np.float64]
 
 VISUAL_TOLERANCE_MM = 0.1
-_HIDDEN = ("planet", "gear", "sun", "bush", "pin", "bearing", "_screw", "secondary")
-"""Parts with these in their names are inside the actuators or too small to show."""
+_INSIDE = frozenset(
+    {
+        *("planet", "planet_bush", "planet_pin", "sun", "sun_shaft", "ring", "secondary_carrier", "coupling"),
+        *("main_bearing", "end_bearing", "rear_bearing", "retaining_ring", "bore_retaining_ring", "motor_stator"),
+        "knee_bearing_cup",
+    }
+)
+"""Parts that cannot be seen from outside."""
 _MARGIN_M = 1e-3
 
 
@@ -43,13 +50,18 @@ class Collider:
     position: tuple[float, float, float]
 
 
+def is_hidden(part: Part) -> bool:
+    """Whether a part is inside an actuator or a link."""
+    return part.name in _INSIDE
+
+
 def visuals(product: Product) -> tuple[Visual, ...]:
     """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
     shown: dict[tuple[str, str], list[m3.Manifold]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
     coarse: dict[int, m3.Manifold] = {}
     for instance, kind in product.placed():
-        if any(word in instance.part.name for word in _HIDDEN):
+        if is_hidden(instance.part) or instance.part.name.endswith("_screw"):
             continue
         if id(kind) not in coarse:
             coarse[id(kind)] = mesh_of(kind.part, VISUAL_TOLERANCE_MM).body
@@ -136,20 +148,20 @@ def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Col
                 )
         for item in solid:
             if item.body == body.get("name"):
-                turn = {"euler": _numbers(np.pi / 2, 0.0, 0.0)} if item.kind == "cylinder" else {}
-                ET.SubElement(
+                geom = ET.SubElement(
                     body,
                     "geom",
                     name=f"{item.name}_collider",
                     type=item.kind,
                     size=_numbers(*item.size),
                     pos=_numbers(*item.position),
-                    **turn,
                     contype="2",
                     conaffinity="2",
                     group="3",
                     rgba="0.2 0.5 0.9 0.2",
                 )
+                if item.kind == "cylinder":
+                    geom.set("zaxis", "0 1 0")
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
@@ -170,7 +182,7 @@ def urdf(arrays: RobotArrays, shown: Sequence[Visual], solid: Sequence[Collider]
         ET.SubElement(inertial, "mass", value=_numbers(arrays.body_mass_kg[0, k]))
         tensor = arrays.body_inertia_kg_m2[0, k]
         entries = {f"i{'xyz'[a]}{'xyz'[b]}": _numbers(tensor[a, b]) for a in range(3) for b in range(a, 3)}
-        ET.SubElement(inertial, "inertia", **entries)
+        ET.SubElement(inertial, "inertia", attrib=entries)
         for visual in shown:
             if visual.body == name:
                 element = ET.SubElement(link, "visual", name=visual.name)

@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Matrix, Pose, body_frames, instances
 from pareto_monoped.cad.meshes import placed
+from pareto_monoped.cad.outlines import all_polygons
 from pareto_monoped.cad.product import Product
+from pareto_monoped.geometry.gears import InternalGear
+from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
 
 ALLOWED_DEPTH_MM = 0.02
@@ -48,10 +51,12 @@ class _Thing:
 
 def in_pose(product: Product) -> tuple[list[Overlap], int]:
     """Overlaps of all pairs of instances in the product's pose, and how many pairs were looked at."""
-    things = [_thing(i.name, k.mesh.body, i.world) for i, k in product.placed()]
+    things = {i.name: _thing(i.name, k.mesh.body, i.world) for i, k in product.placed()}
+    rings = {instance.name: _rings(instance) for instance in product.instances}
     found: list[Overlap] = []
-    for one, other in _near(things):
-        found += _overlap(one, other, "in the pose")
+    for one, other in _near(list(things.values())):
+        if not _apart(rings[one.name], rings[other.name]):
+            found += _overlap(one, other, "in the pose")
     count = len(things)
     return found, count * (count - 1) // 2
 
@@ -64,7 +69,7 @@ def in_gear_cycle(product: Product) -> tuple[list[Overlap], int]:
             break
         unit = next(unit for unit in product.robot.units if unit.name == name)
         geared = {part.name for part in unit.parts if part.name in GEARS}
-        step = 2.0 * np.pi / (actuator.gears.sun_teeth * actuator.ratio * _GEAR_STEPS)
+        step = 2.0 * np.pi / (float(actuator.gears.sun_teeth) * actuator.ratio * _GEAR_STEPS)
         for k in range(_GEAR_STEPS):
             pose = Pose(hip_rad=k * step, knee_rad=k * step)
             meshing = [
@@ -88,6 +93,9 @@ def in_working_range(product: Product) -> tuple[list[Overlap], float]:
     at_zero = instances(product.robot, zero)
     by_body: dict[str, list[tuple[Instance, m3.Manifold]]] = {"base": [], "thigh": [], "shank": []}
     for instance, kind in zip(at_zero, product.kinds, strict=True):
+        # What turns inside an actuator turns with the next body and has its own check.
+        if instance.part.group in ("output", "rotor", "planet", "knee_drive"):
+            continue
         by_body[instance.body].append((instance, product.unique[kind].mesh.body))
     found: list[Overlap] = []
     for fixed, moving, limits in (("base", "thigh", HIP_RANGE_RAD), ("thigh", "shank", KNEE_RANGE_RAD)):
@@ -133,6 +141,43 @@ def _near(things: Sequence[_Thing]) -> Iterator[tuple[_Thing, _Thing]]:
     meets = np.all((low[:, None] < high[None] - _TOUCH_MM) & (low[None] < high[:, None] - _TOUCH_MM), axis=2)
     for i, j in np.argwhere(np.triu(meets, 1)):
         yield things[i], things[j]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Rings:
+    """An instance's prisms as rings around its own axis, a row each: least and greatest radius, low and high y."""
+
+    axis: NDArray[np.float64]
+    rows: NDArray[np.float64]
+
+
+def _rings(instance: Instance) -> _Rings | None:
+    """None for what has no prisms."""
+    rows = []
+    for prism in instance.part.prisms:
+        heights = [float((instance.world @ np.array([0.0, 0.0, float(z), 1.0]))[1]) for z in (prism.z0_mm, prism.z1_mm)]
+        bores = [hole for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
+        least = max((_bore_radius(bore) for bore in bores), default=0.0)
+        greatest = max(float(np.hypot(*points.T).max()) for points in all_polygons([prism.outline]))
+        rows.append((least, greatest, min(heights), max(heights)))
+    return _Rings(axis=instance.world[[0, 2], 3], rows=np.array(rows)) if rows and not instance.part.balls else None
+
+
+def _bore_radius(hole: Circle | InternalGear) -> float:
+    """Radius of a hole around the part's axis; 0 for one that is elsewhere."""
+    if isinstance(hole, InternalGear):
+        return float(hole.tip_radius_mm)
+    return float(hole.radius_mm) if float(hole.x_mm) == 0.0 and float(hole.y_mm) == 0.0 else 0.0
+
+
+def _apart(one: _Rings | None, other: _Rings | None) -> bool:
+    """Whether two instances on one axis keep apart as rings, so that their meshes need not be intersected."""
+    if one is None or other is None or float(np.abs(one.axis - other.axis).max()) > _TOUCH_MM:
+        return False
+    a, b = one.rows[:, None], other.rows[None]
+    radial = np.minimum(a[..., 1], b[..., 1]) - np.maximum(a[..., 0], b[..., 0]) > _TOUCH_MM
+    axial = np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 2], b[..., 2]) > _TOUCH_MM
+    return not bool(np.any(radial & axial))
 
 
 def _boxes_meet(one: _Thing, other: _Thing) -> bool:

@@ -16,9 +16,9 @@ from pareto_monoped.geometry.parts import Material
 
 # Densities as in the authors' published part data; rubber: natural rubber of 60 Shore A, engineering handbooks.
 ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2710.0, colour=(0.78, 0.80, 0.83))
-PLASTIC = Material(name="printed plastic", density_kg_per_m3=1430.0, colour=(0.16, 0.17, 0.19))
+PLASTIC = Material(name="printed plastic", density_kg_per_m3=1430.0, colour=(0.92, 0.50, 0.13))
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.45, 0.46, 0.48))
-RUBBER = Material(name="rubber", density_kg_per_m3=1150.0, colour=(0.10, 0.10, 0.11))
+RUBBER = Material(name="rubber", density_kg_per_m3=1150.0, colour=(0.22, 0.23, 0.25))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
