@@ -1,0 +1,123 @@
+"""Every actuator of every map can be put together: nothing overlaps, nothing rubs, bolts meet their holes."""
+
+import pytest
+
+from pareto_monoped.actuator.actuator import build_actuator
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.motors import load_motor, motor_names
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.geometry.shapes import Pattern
+from tests.actuator.fit import clashes, overlaps_within, rings
+
+
+def bests(name):
+    """The best actuator of each family in every interval of one motor."""
+    found = map_for(name)
+    for entry in found.entries:
+        for family, result in entry.families.items():
+            if result.best is not None:
+                yield build_actuator(found.motor, family, result.best.gears, found.settings)
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_no_parts_clash_and_every_hole_has_metal_around_it(name):
+    count = 0
+    for actuator in bests(name):
+        found = clashes(actuator) + [line for part in actuator.parts for line in overlaps_within(part)]
+        assert not found, f"{actuator.family} {actuator.gears}: {found}"
+        count += 1
+    assert count > 20
+
+
+def test_the_check_sees_a_gear_that_is_too_wide(vt8020, settings):
+    """Two planets with too little metal behind the ring: the check must not pass everything."""
+    gears = GearSet(sun_teeth=19, planet_teeth=45, ring_teeth=109, module_mm=0.5, planets=2)
+    assert clashes(build_actuator(vt8020, "ISSPG", gears, settings))
+
+
+def patterns(actuator, name):
+    part = next(part for part in actuator.parts if part.name == name)
+    return [hole for prism in part.prisms for hole in prism.holes if isinstance(hole, Pattern)]
+
+
+def meets(actuator, one, other):
+    """Whether a bolt pattern of one part lies on a pattern of the other: same circle, count and angle."""
+    return any(
+        a.count == b.count
+        and abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
+        and a.phase_rad == b.phase_rad
+        and abs(a.radius_mm - b.radius_mm) > 0.1  # a thread below a clearance hole
+        for a in patterns(actuator, one)
+        for b in patterns(actuator, other)
+    )
+
+
+@pytest.mark.parametrize("name", ["VT8020", "U8", "U12"])
+def test_bolts_of_mating_parts_meet(name):
+    for actuator in bests(name):
+        assert meets(actuator, "casing", "backplate")
+        assert meets(actuator, "casing", "ring_housing")
+        assert meets(actuator, "coupling", "motor_rotor")
+        if actuator.family == "ESSPG":
+            assert meets(actuator, "backplate", "motor_stator")
+
+
+def test_interfaces_are_where_the_parts_have_their_holes(vt_map):
+    for ratio in (4.0, 6.0, 7.9, 8.7):
+        actuator = vt_map.lookup(ratio)
+        front = "casing" if actuator.family == "ISSPG" else "ring_housing"
+        for bolts, name in ((actuator.mount.bolts, front), (actuator.output.bolts, "carrier")):
+            found = [
+                hole
+                for hole in patterns(actuator, name)
+                if hole.count == bolts.count and abs(2.0 * hole.pitch_radius_mm - bolts.pitch_circle_mm) < 1e-9
+            ]
+            assert found
+            assert all(2.0 * hole.radius_mm == pytest.approx(2.5) for hole in found)  # M3 tapping holes
+        back = actuator.mount.back_bolts
+        assert any(
+            hole.count == back.count and abs(2.0 * hole.pitch_radius_mm - back.pitch_circle_mm) < 1e-9
+            for hole in patterns(actuator, "backplate")
+        )
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_interfaces_do_not_depend_on_the_gear_set(name):
+    found = list(bests(name))
+    assert len({actuator.output for actuator in found}) == 1
+    assert len({(actuator.family, actuator.mount) for actuator in found}) == len({a.family for a in found})
+
+
+def test_faces_and_bearings_are_where_they_must_be():
+    found = map_for("VT8020")
+    for ratio in (4.0, 6.0, 7.0, 8.7):
+        actuator = found.lookup(ratio)
+        parts = {part.name: part for part in actuator.parts}
+        assert max(ring.z1 for part in actuator.parts for ring in rings(part)) == 0.0
+        housing = parts["casing" if actuator.family == "ISSPG" else "ring_housing"]
+        assert max(ring.z1 for ring in rings(housing)) == 0.0
+        assert max(ring.z1 for ring in rings(parts["carrier"])) == 0.0
+        assert actuator.length_mm == pytest.approx(-min(r.z0 for part in actuator.parts for r in rings(part)))
+        # The main bearing's bore sits on the carrier, its outside in the ring housing, over its whole width.
+        (bearing,) = rings(parts["main_bearing"])
+        on = [r for r in rings(parts["carrier"]) if r.r1 == bearing.r0 and r.z0 < bearing.z1 and r.z1 > bearing.z0]
+        assert min(r.z0 for r in on) <= bearing.z0 + 1e-9
+        assert max(r.z1 for r in on) >= bearing.z1 - 1e-9
+        seats = [r for r in rings(parts["ring_housing"]) if r.r0 == bearing.r1]
+        assert min(r.z0 for r in seats) <= bearing.z0 + 1e-9
+        assert max(r.z1 for r in seats) >= bearing.z1 - 1e-9
+
+
+def test_motor_envelopes_are_the_motors(vt_map, vt8020):
+    for ratio, body in ((6.0, vt8020.frameless), (7.0, vt8020.framed)):
+        actuator = vt_map.lookup(ratio)
+        own = [ring for part in actuator.parts if part.name.startswith("motor_") for ring in rings(part)]
+        assert 2.0 * max(ring.r1 for ring in own) == body.outer_diameter_mm
+        assert max(r.z1 for r in own) - min(r.z0 for r in own) == pytest.approx(body.length_mm, abs=0.6)
+        mass = sum(part.mass_kg() for part in actuator.parts if part.name.startswith("motor_"))
+        assert mass == pytest.approx(body.mass_kg)
+
+
+def test_a_motor_without_stator_data_has_only_the_outer_family():
+    assert load_motor("MN8014").frameless is None
+    assert {actuator.family for actuator in bests("MN8014")} == {"ESSPG"}

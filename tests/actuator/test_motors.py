@@ -1,0 +1,137 @@
+"""Motors: derived values against their definitions, and a clear line for every bad file."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from pareto_monoped.actuator.motors import PEAK_TO_CONTINUOUS, load_motor, motor_names
+from pareto_monoped.errors import MotorError
+
+GOOD = """
+description = "a motor of my own"
+kv_rpm_per_v = 90.0
+max_continuous_current_a = 30.0
+rated_voltage_v = 36.0
+winding_resistance_ohm = 0.1
+framed = { mass_kg = 0.5, outer_diameter_mm = 90.0, length_mm = 40.0 }
+[frameless]
+mass_kg = 0.4
+outer_diameter_mm = 90.0
+length_mm = 30.0
+stator_inner_diameter_mm = 60.0
+stator_outer_diameter_mm = 80.0
+"""
+
+
+def written(tmp_path: Path, text: str) -> str:
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_the_papers_motor_is_the_first_of_six():
+    assert motor_names() == ("VT8020", "U8", "U10", "U12", "MN8014", "MAD_M6C12")
+    motor = load_motor("vt8020")
+    assert motor.name == "VT8020"
+    assert motor.peak_torque_n_m == 5.5
+    # 60 / (2 pi 100) x 40 A, as its data sheet: 3.82 N m; 4,800 rpm.
+    assert motor.continuous_torque_n_m == pytest.approx(3.82, abs=0.005)
+    assert motor.no_load_speed_rad_per_s == pytest.approx(4800.0 * 2.0 * math.pi / 60.0)
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_derived_values(name):
+    motor = load_motor(name)
+    assert motor.torque_constant_n_m_per_a == pytest.approx(9.5493 / motor.kv_rpm_per_v, rel=1e-4)
+    assert motor.continuous_torque_n_m == pytest.approx(
+        motor.torque_constant_n_m_per_a * motor.max_continuous_current_a
+    )
+    assert motor.peak_torque_n_m == pytest.approx(PEAK_TO_CONTINUOUS * motor.continuous_torque_n_m, rel=1e-3)
+    assert 0.2 < motor.rotor_share() < 0.7
+
+
+def test_rotor_inertias_are_of_the_size_of_published_ones():
+    # About 1.2e-4 kg m2 is published for outrunners of the U8's size and mass; no figure is published for the VT8020,
+    # which is three times as heavy at the same diameter.
+    assert load_motor("U8").rotor_inertia_kg_m2 == pytest.approx(1.2e-4, rel=0.35)
+    assert load_motor("VT8020").rotor_inertia_kg_m2 < 0.560 * 0.0445**2
+
+
+def test_a_motor_of_my_own(tmp_path):
+    motor = load_motor(written(tmp_path, GOOD))
+    assert motor.name == "mine"
+    assert motor.frameless.stator_height_mm == 28.0
+    assert motor.mount_holes.count == 4
+    given = load_motor(written(tmp_path, "rotor_inertia_kg_m2 = 2e-4\npeak_torque_n_m = 9.0\n" + GOOD))
+    assert given.rotor_inertia_kg_m2 == 2e-4
+    assert given.peak_torque_n_m == 9.0
+
+
+def test_a_file_in_the_shipped_form(tmp_path):
+    motor = load_motor(written(tmp_path, "[my_motor]" + GOOD.replace("[frameless]", "[my_motor.frameless]")))
+    assert motor.name == "my_motor"
+
+
+KV = "kv_rpm_per_v = 90.0"
+BAD = {
+    "a field missing": (KV + "\n", "", ("kv_rpm_per_v", "missing")),
+    "text for a number": (KV, 'kv_rpm_per_v = "fast"', ("kv_rpm_per_v", "fast", "number")),
+    "not a number": (KV, "kv_rpm_per_v = nan", ("kv_rpm_per_v", "nan")),
+    "unknown field": (KV, KV + "\nkv = 3", ("unknown key 'kv'",)),
+    "no TOML": (KV, KV + " x", ("not valid TOML",)),
+    "negative mass": ("{ mass_kg = 0.5", "{ mass_kg = -0.5", ("framed.mass_kg", "-0.5", "greater than 0")),
+    "zero diameter": ("= 90.0, length", "= 0.0, length", ("framed.outer_diameter_mm", "0.0", "greater than 0")),
+    "stator larger than motor": (
+        "stator_outer_diameter_mm = 80.0",
+        "stator_outer_diameter_mm = 95.0",
+        ("stator_outer_diameter_mm = 95.0", "outer_diameter_mm = 90.0"),
+    ),
+    "bore larger than stator": (
+        "stator_inner_diameter_mm = 60.0",
+        "stator_inner_diameter_mm = 81.0",
+        ("stator_inner_diameter_mm = 81.0", "80.0"),
+    ),
+    "bore missing": ("stator_inner_diameter_mm = 60.0\n", "", ("stator_inner_diameter_mm", "missing")),
+    "kit heavier than motor": ("mass_kg = 0.4", "mass_kg = 0.6", ("frameless.mass_kg = 0.6", "framed.mass_kg = 0.5")),
+    "shorter than its bell": ("length_mm = 30.0", "length_mm = 1.5", ("length_mm = 1.5", "bell")),
+    "stator higher than motor": (
+        "length_mm = 30.0",
+        "length_mm = 30.0\nstator_height_mm = 31.0",
+        ("stator_height_mm = 31.0", "length_mm = 30.0"),
+    ),
+    "zero torque": (KV, KV + "\npeak_torque_n_m = 0.0", ("peak_torque_n_m", "0.0")),
+    "peak below continuous": (KV, KV + "\npeak_torque_n_m = 1.0", ("peak_torque_n_m = 1.0", "continuous")),
+    "hole larger than its circle": (
+        KV,
+        KV + "\nmount_holes = { pitch_circle_mm = 5.0, diameter_mm = 6.0, count = 4 }",
+        ("diameter_mm = 6.0", "pitch_circle_mm"),
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_files_get_one_line_that_says_what_is_wrong(tmp_path, case):
+    old, new, words = BAD[case]
+    assert old in GOOD
+    path = written(tmp_path, GOOD.replace(old, new, 1))
+    with pytest.raises(MotorError) as caught:
+        load_motor(path)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert "mine.toml" in message
+    for word in words:
+        assert word in message
+
+
+def test_a_motor_without_any_body(tmp_path):
+    text = "\n".join(line for line in GOOD.partition("[frameless]")[0].splitlines() if not line.startswith("framed"))
+    with pytest.raises(MotorError, match="framed and frameless are both missing"):
+        load_motor(written(tmp_path, text))
+
+
+def test_unknown_names_and_missing_files():
+    with pytest.raises(MotorError, match=r"motor = 'VT8021': must be one of VT8020, U8.* or a TOML file"):
+        load_motor("VT8021")
+    with pytest.raises(MotorError, match="no such file"):
+        load_motor("nowhere.toml")
