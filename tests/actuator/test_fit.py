@@ -4,8 +4,9 @@ import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.actuator.motors import load_motor, motor_names
-from pareto_monoped.actuator.search import map_for
+from pareto_monoped.actuator.motors import FramedMotor, FramelessMotor, Motor, load_motor, motor_names
+from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.shapes import Pattern
 from tests.actuator.fit import clashes, overlaps_within, rings
 
@@ -121,3 +122,43 @@ def test_motor_envelopes_are_the_motors(vt_map, vt8020):
 def test_a_motor_without_stator_data_has_only_the_outer_family():
     assert load_motor("MN8014").frameless is None
     assert {actuator.family for actuator in bests("MN8014")} == {"ESSPG"}
+
+
+@pytest.mark.parametrize(
+    ("outer", "bore", "stator", "length"), [(60, 40, 54, 25), (120, 80, 108, 30), (200, 150, 180, 40)]
+)
+def test_motors_of_other_sizes_fit_together_too(outer, bore, stator, length):
+    motor = Motor(
+        name="other",
+        kv_rpm_per_v=100.0,
+        rated_voltage_v=24.0,
+        max_continuous_current_a=10.0,
+        winding_resistance_ohm=0.1,
+        framed=FramedMotor(mass_kg=0.3, outer_diameter_mm=outer, length_mm=length + 8.0),
+        frameless=FramelessMotor(
+            mass_kg=0.2,
+            outer_diameter_mm=outer,
+            length_mm=length,
+            stator_inner_diameter_mm=bore,
+            stator_outer_diameter_mm=stator,
+        ),
+    )
+    found = build_map(motor)
+    built = [entry.actuator for entry in found.entries if entry.actuator is not None]
+    assert built
+    for actuator in built[::3]:
+        assert not clashes(actuator)
+        assert not [line for part in actuator.parts for line in overlaps_within(part)]
+
+
+def test_a_motor_too_small_for_any_gearbox_says_so():
+    motor = Motor(
+        name="tiny",
+        kv_rpm_per_v=100.0,
+        rated_voltage_v=24.0,
+        max_continuous_current_a=10.0,
+        winding_resistance_ohm=0.1,
+        framed=FramedMotor(mass_kg=0.1, outer_diameter_mm=30.0, length_mm=20.0),
+    )
+    with pytest.raises(DesignError, match=r"gear ratio = 5.0: tiny has no gearbox.*gearbox_diameter.*another motor"):
+        build_map(motor).lookup(5.0)
