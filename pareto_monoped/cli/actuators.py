@@ -11,6 +11,7 @@ import click
 if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
+    from pareto_monoped.geometry.parts import Part
 
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
@@ -172,8 +173,24 @@ def _detail(entry: "MapEntry") -> dict[str, Any]:
         else {"type": second.family, "gears": str(second.gears), "mass_kg": second.mass_kg},
         "binding": {name: CONSTRAINTS[name].says for name in entry.binding},
         "families": families,
-        "parts_kg": actuator.mass_breakdown_kg(),
+        "parts": [
+            {
+                "name": part.name,
+                "material": part.material.name,
+                "group": part.group,
+                "count": int(part.count),
+                "mass_kg": float(part.mass_kg()),
+                "axial_inertia_kg_m2": _axial_inertia_kg_m2(part),
+            }
+            for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg()))
+        ],
     }
+
+
+def _axial_inertia_kg_m2(part: "Part") -> float:
+    """Of all instances together, about the gearbox axis."""
+    second = part.mass_properties().second_kg_m2
+    return float(second[0, 0] + second[1, 1])
 
 
 def _print_detail(actuator_map: "ActuatorMap", entry: "MapEntry", detail: dict[str, Any]) -> None:
@@ -206,14 +223,15 @@ def _print_detail(actuator_map: "ActuatorMap", entry: "MapEntry", detail: dict[s
     table.add_column("count", justify="right")
     table.add_column("mass, g", justify="right")
     table.add_column("share, %", justify="right")
-    for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg())):
-        mass = float(part.mass_kg())
+    table.add_column("axial inertia,\nkg mm2", justify="right")
+    for part in detail["parts"]:
         table.add_row(
-            part.name,
-            part.material.name,
-            f"{int(part.count)}",
-            f"{1e3 * mass:.1f}",
-            f"{100.0 * mass / actuator.mass_kg:.1f}",
+            part["name"],
+            part["material"],
+            f"{part['count']}",
+            f"{1e3 * part['mass_kg']:.1f}",
+            f"{100.0 * part['mass_kg'] / actuator.mass_kg:.1f}",
+            f"{1e6 * part['axial_inertia_kg_m2']:.2f}",
         )
     console.print(table)
     second = detail["runner_up"]

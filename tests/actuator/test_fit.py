@@ -146,7 +146,7 @@ def test_motors_of_other_sizes_fit_together_too(outer, bore, stator, length):
     found = build_map(motor)
     built = [entry.actuator for entry in found.entries if entry.actuator is not None]
     assert built
-    for actuator in built[::3]:
+    for actuator in built[::10]:
         assert not clashes(actuator)
         assert not [line for part in actuator.parts for line in overlaps_within(part)]
 

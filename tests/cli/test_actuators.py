@@ -69,7 +69,11 @@ def test_one_ratio_is_explained_part_by_part(capsys):
     detail = json.loads(output.out)
     assert list(detail)[: len(KEYS)] == KEYS
     assert detail["ratio_low"] == 7.9
-    assert sum(detail["parts_kg"].values()) == pytest.approx(detail["mass_kg"])
+    assert sum(part["mass_kg"] for part in detail["parts"]) == pytest.approx(detail["mass_kg"])
+    # A ball bearing as a ring between its diameters: 55 x 72 mm, 81 g.
+    bearing = next(part for part in detail["parts"] if part["name"] == "main_bearing")
+    ring = 0.081 * 0.5 * (0.0275**2 + 0.036**2)
+    assert bearing["axial_inertia_kg_m2"] == pytest.approx(ring)
     assert detail["runner_up"]["mass_kg"] > detail["mass_kg"]
     assert detail["families"]["ISSPG"]["gears"] is None
 
