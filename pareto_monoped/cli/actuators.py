@@ -217,13 +217,13 @@ def _print_detail(actuator_map: "ActuatorMap", entry: "MapEntry", detail: dict[s
     )
     for name, value in facts:
         console.print(f"  {name:20} {value}", markup=False)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("part")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    table.add_column("part", no_wrap=True)
     table.add_column("material")
     table.add_column("count", justify="right")
     table.add_column("mass, g", justify="right")
     table.add_column("share, %", justify="right")
-    table.add_column("axial inertia,\nkg mm2", justify="right")
+    table.add_column("inertia,\nkg mm2", justify="right")
     for part in detail["parts"]:
         table.add_row(
             part["name"],
