@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from pareto_monoped.study.run import Progress, RunSummary
+    from pareto_monoped.study.loop import Progress
+    from pareto_monoped.study.run import RunSummary
 
 _evaluations = click.option(
     "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, in place of the study's."

@@ -15,6 +15,9 @@ from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
 
+HEADLINE_HEIGHT_M = 0.8
+"""Height at which progress and status give the least energy: that of the paper's Case C."""
+
 _TEXT = ("state", "status", "reason")
 _WHOLE = ("trial", "generation")
 _META = {

@@ -4,8 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.study.lock import holder
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.run import HEADLINE_HEIGHT_M
+from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, read_study
 
 
 def status(db: Path) -> dict[str, Any]:

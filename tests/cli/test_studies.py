@@ -89,7 +89,11 @@ def test_on_a_terminal_progress_is_a_bar(study, monkeypatch):
     with os.fdopen(theirs, "w") as stream:
         monkeypatch.setattr(sys, "stderr", stream)
         assert cli(["run", str(study)]) == 0
-    shown = os.read(ours, 100_000).decode()
+        stream.write("END")
+        stream.flush()
+        shown = ""
+        while not shown.endswith("END"):
+            shown += os.read(ours, 4096).decode(errors="replace")
     os.close(ours)
     assert "40/40" in shown
     assert "━" in shown

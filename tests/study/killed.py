@@ -16,8 +16,9 @@ from pathlib import Path
 
 from pareto_monoped.study.algorithms import create
 from pareto_monoped.study.definition import load_study
+from pareto_monoped.study.physics import load_physics
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.run import load_physics, run
+from pareto_monoped.study.run import run
 
 
 def start(study, db, workers):

@@ -8,8 +8,9 @@ from pareto_monoped.jump.evaluate import MEASURES, Evaluations
 from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import create as create_algorithm
 from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.scoring import judge
-from pareto_monoped.study.store import Generation, Store, create
+from pareto_monoped.study.store import Store, create
 
 CONTENTS = {"motor": {"peak_torque_n_m": 5.5}, "calibration": {"name": "reference"}}
 

@@ -43,7 +43,7 @@ def killed(folder, algorithm, evaluations, kills, seed=3):
 
 @pytest.mark.parametrize("algorithm", [NSGA2, WEIGHTED], ids=["nsga2", "weighted_cmaes"])
 def test_killed_three_times(tmp_path, algorithm):
-    killed(tmp_path, algorithm, evaluations=400, kills=3)
+    killed(tmp_path, algorithm, evaluations=240, kills=3)
 
 
 @pytest.mark.long

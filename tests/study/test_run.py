@@ -88,11 +88,14 @@ def test_stopped_within_a_generation_and_gone_on_with_it_ends_the_same(whole, tm
     assert data.history["evaluations"].tolist() == [20, 40, 60]
 
 
-def test_a_study_that_is_done_is_not_run_again(whole):
-    path = whole[0]
-    summary = run(made(), path)
-    assert (summary.new_evaluations, summary.stop_reason) == (0, "budget")
-    assert read_study(path).trials.equals(whole[2].trials)
+def test_a_study_that_is_done_is_left_untouched(whole):
+    path, first, _, _ = whole
+    before = (path.read_bytes(), path.stat().st_mtime_ns)
+    again = run(made(), path)
+    assert (again.new_evaluations, again.stop_reason, again.evaluations) == (0, "budget", 60)
+    assert (again.hypervolume, again.front_size) == (first.hypervolume, first.front_size)
+    assert resume(path).new_evaluations == 0
+    assert (path.read_bytes(), path.stat().st_mtime_ns) == before
 
 
 def test_the_seed_decides_the_trials(whole, tmp_path):

@@ -147,7 +147,7 @@ def test_trials_that_optuna_wrote_before_a_kill_are_not_written_twice(tmp_path):
     made_database(path, [], study)
     generation = made_generation(study, 0, 0, made_evaluations([0.7, 0.8, 0.9], [1.0, 2.0, 3.0]), state={})
     with Store(path, study, known_schemas=()) as store:
-        store._add_by_optuna(generation)
+        store._optuna.add_by_optuna(generation)
     assert len(read_study(path).trials) == 0
     with Store(path, study, known_schemas=()) as store:
         store.add(generation)

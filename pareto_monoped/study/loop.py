@@ -1,0 +1,217 @@
+"""Ask, simulate, tell, store: one session of a study, the one place that knows all three rooms together."""
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.study.algorithms import Algorithm, Scores, create
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.interrupt import Interrupt
+from pareto_monoped.study.physics import Evaluate
+from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, StudyData
+from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.study.store import Store
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a run is, all of it already stored.
+
+    Attributes:
+        evaluations, budget: designs evaluated, and to be evaluated in all.
+        per_second: designs a second in this session.
+        seconds_left: until the budget is used up, at this rate.
+        hypervolume: of the front so far, in m J.
+        least_energy_j: of the designs that reach ``HEADLINE_HEIGHT_M``; None while there are none.
+    """
+
+    evaluations: int
+    budget: int
+    per_second: float
+    seconds_left: float
+    hypervolume: float
+    least_energy_j: float | None
+
+
+class Loop:
+    """Ask, simulate, tell, store: one session of a study."""
+
+    def __init__(
+        self,
+        data: StudyData,
+        study: Study,
+        evaluate: Evaluate,
+        store: Store,
+        budget: int,
+        progress: Callable[[Progress], None],
+    ) -> None:
+        self._study = study
+        self._evaluate = evaluate
+        self._store = store
+        self._budget = budget
+        self._progress = progress
+        self._free = np.array([name in study.free for name in NAMES])
+        self._generation = data.checkpoint.generation
+        self.total = self._before = len(data.trials)
+        self._seconds_before = float(data.meta["wall_time_s"])
+        self._started = time.monotonic()
+        self._history: list[tuple[int, float]] = list(
+            zip(data.history["evaluations"].tolist(), data.history["hypervolume"].tolist(), strict=True)
+        )
+        feasible = (data.trials["state"] == "feasible").to_numpy()
+        self._front = np.zeros((0, 2))
+        self._add_to_front(data.trials.loc[feasible, ["height_m", "energy_j"]].to_numpy())
+        self._algorithm: Algorithm = create(study)
+        try:
+            self._algorithm.restore(data.checkpoint.state, _told(data, self._free))
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            raise DatabaseError(
+                f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
+            ) from None
+        # Trials of a generation that the last budget cut short: the algorithm has not been told of them yet.
+        self._designs, self._scores = _rows(data, data.checkpoint.told, len(data.trials))
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds of this session."""
+        return time.monotonic() - self._started
+
+    def go(self, interrupt: Interrupt) -> str:
+        """Run until something says stop; return what."""
+        writing: Future[Progress] | None = None
+        with ThreadPoolExecutor(1, thread_name_prefix="store") as writer:
+            while (reason := self._stop_reason(interrupt)) is None:
+                generation = self._simulate()
+                if generation is None:
+                    reason = "exhausted"
+                    break
+                # The last generation was written while this one was simulated.
+                self._report(writing)
+                writing = writer.submit(self._write, generation, self._present())
+            self._report(writing)
+        return reason
+
+    def _stop_reason(self, interrupt: Interrupt) -> str | None:
+        stop = self._study.stop
+        if interrupt.asked:
+            return "interrupted"
+        if self.total >= self._budget:
+            return "budget"
+        if stop.wall_time_s is not None and self._seconds_before + self.elapsed >= stop.wall_time_s:
+            return "wall_time"
+        if stop.plateau_evaluations is not None and self._history:
+            earlier = [volume for n, volume in self._history if n <= self.total - stop.plateau_evaluations]
+            volume = self._history[-1][1]
+            if earlier and earlier[-1] > 0.0 and volume - earlier[-1] < stop.plateau_growth * earlier[-1]:
+                return "plateau"
+        return None
+
+    def _simulate(self) -> Generation | None:
+        """Ask for a generation, simulate what is missing of it, and tell it if it is complete."""
+        proposal = self._algorithm.ask()
+        if proposal is None:
+            return None
+        designs = np.tile(self._study.lower, (len(proposal.values), 1))
+        designs[:, self._free] = proposal.values
+        there = len(self._designs)
+        if not np.array_equal(designs[:there], self._designs):
+            raise DatabaseError(
+                f"study database {str(self._store.path)!r}: trials {self.total - there} to {self.total - 1} do not "
+                "follow from its checkpoint; it is damaged, restore a copy"
+            )
+        missing = designs[there : there + self._budget - self.total]
+        started = datetime.now(UTC)
+        evaluations = self._evaluate(missing)
+        judgement = judge(evaluations, self._study.constraints)
+        self._designs = np.vstack((self._designs, missing))
+        self._scores = _joined(self._scores, scores(evaluations, judgement))
+        feasible = judgement.state == "feasible"
+        self._add_to_front(np.column_stack((evaluations.height_m, evaluations.energy_j))[feasible])
+        number, first = self._generation, self.total
+        self.total += len(missing)
+        state = None
+        if len(self._designs) == len(designs):
+            self._algorithm.tell(self._scores)
+            state = self._algorithm.state()
+            self._generation += 1
+            self._designs, self._scores = self._designs[:0], _joined(self._scores, None)
+        volume = hypervolume(self._front, self._study.reference_point)
+        self._history.append((self.total, volume))
+        return Generation(
+            number=number,
+            first_trial=first,
+            designs=missing,
+            evaluations=evaluations,
+            judgement=judgement,
+            height_weight=proposal.height_weight,
+            state=state,
+            hypervolume=volume,
+            seconds=self._seconds_before + self.elapsed,
+            started=started,
+            ended=datetime.now(UTC),
+        )
+
+    def _add_to_front(self, points: NDArray[np.float64]) -> None:
+        points = np.vstack((self._front, points))
+        self._front = points[front_mask(points[:, 0], points[:, 1], np.ones(len(points), dtype=bool))]
+
+    def _present(self) -> Progress:
+        rate = (self.total - self._before) / max(self.elapsed, 1e-9)
+        high = self._front[self._front[:, 0] >= HEADLINE_HEIGHT_M, 1]
+        return Progress(
+            evaluations=self.total,
+            budget=self._budget,
+            per_second=rate,
+            seconds_left=(self._budget - self.total) / rate,
+            hypervolume=self._history[-1][1],
+            least_energy_j=float(high.min()) if len(high) else None,
+        )
+
+    def _write(self, generation: Generation, present: Progress) -> Progress:
+        self._store.add(generation)
+        return present
+
+    def _report(self, writing: "Future[Progress] | None") -> None:
+        if writing is not None:
+            self._progress(writing.result())
+
+
+def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Scores]:
+    rows = data.trials.iloc[first:end]
+    return rows[list(NAMES)].to_numpy(dtype=np.float64), Scores(
+        height_m=rows["height_m"].to_numpy(),
+        energy_j=rows["energy_j"].to_numpy(),
+        violation=rows["violation"].to_numpy(),
+    )
+
+
+def _told(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.float64], Scores]]:
+    """Every whole generation so far: values of the free variables, and scores."""
+    numbers = data.trials["generation"].to_numpy()[: data.checkpoint.told]
+    edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.told]
+    for first, end in pairwise(edges):
+        if first < end:
+            designs, told = _rows(data, first, end)
+            yield designs[:, free], told
+
+
+def _joined(before: Scores, new: Scores | None) -> Scores:
+    """Both one after the other; of ``before`` nothing if ``new`` is None."""
+    if new is None:
+        return Scores(height_m=before.height_m[:0], energy_j=before.energy_j[:0], violation=before.violation[:0])
+    return Scores(
+        height_m=np.concatenate((before.height_m, new.height_m)),
+        energy_j=np.concatenate((before.energy_j, new.energy_j)),
+        violation=np.concatenate((before.violation, new.violation)),
+    )

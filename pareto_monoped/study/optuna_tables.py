@@ -1,0 +1,162 @@
+"""Optuna's own tables: what Optuna and its dashboard show of a study."""
+
+import json
+import sqlite3
+from collections.abc import Mapping
+from datetime import UTC
+from pathlib import Path
+from typing import Any
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.study.definition import Bounds, Study
+from pareto_monoped.study.generation import Generation
+
+KNOWN_SCHEMAS = ("v3.2.0.a",)
+"""Revisions of Optuna's schema whose tables are written directly; with any other, Optuna writes its own."""
+
+
+def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> None:
+    """Let Optuna make a new database with an empty study.
+
+    Args:
+        path: where; must not exist.
+        study: names it.
+        attributes: the study's user attributes, JSON values.
+    """
+    import optuna
+
+    verbosity = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    try:
+        storage = _optuna_storage(path)
+        study_id = storage.create_new_study(
+            [optuna.study.StudyDirection.MAXIMIZE, optuna.study.StudyDirection.MINIMIZE], study.name
+        )
+        # What optuna.study.Study.set_metric_names writes; the method itself warns that it is experimental.
+        storage.set_study_system_attr(study_id, "study:metric_names", ["height_m", "energy_j"])
+        for key, value in attributes.items():
+            storage.set_study_user_attr(study_id, key, value)
+        storage.remove_session()
+        storage.engine.dispose()
+    finally:
+        optuna.logging.set_verbosity(verbosity)
+
+
+def _optuna_storage(path: Path) -> Any:
+    import optuna
+    from sqlalchemy.engine import URL
+
+    # A path with a question mark or a percent sign would be taken apart by a plain "sqlite:///..." text.
+    url = URL.create("sqlite", database=str(path)).render_as_string(hide_password=False)
+    return optuna.storages.RDBStorage(url)
+
+
+class OptunaTables:
+    """Writes trials into an existing study: directly, or, where the schema is not known, by Optuna's public call."""
+
+    def __init__(self, path: Path, study_id: int, study: Study) -> None:
+        self._path = path
+        self._study_id = study_id
+        self._free = [i for i, name in enumerate(NAMES) if name in study.free]
+        self._distributions = {
+            name: json.dumps(
+                {
+                    "name": "FloatDistribution",
+                    "attributes": {"step": None, "low": bounds.lower, "high": bounds.upper, "log": False},
+                }
+            )
+            for name, bounds in study.variables.items()
+            if isinstance(bounds, Bounds)
+        }
+
+    def insert(self, connection: sqlite3.Connection, generation: Generation) -> None:
+        """Write a generation's rows, within the connection's transaction."""
+        executemany = connection.executemany
+        evaluations, judgement = generation.evaluations, generation.judgement
+        n = len(generation.designs)
+        numbers = range(generation.first_trial, generation.first_trial + n)
+        # One study a file and no other writer: Optuna's primary key is the trial's number plus one.
+        ids = [number + 1 for number in numbers]
+        failed = (judgement.state == "failed").tolist()
+        started, ended = (
+            t.astimezone(UTC).replace(tzinfo=None).isoformat(" ") for t in (generation.started, generation.ended)
+        )
+        executemany(
+            "INSERT INTO trials (trial_id, number, study_id, state, datetime_start, datetime_complete) "
+            "VALUES (?, ?, ?, ?, ?, ?)",
+            [
+                (i, number, self._study_id, "FAIL" if bad else "COMPLETE", started, ended)
+                for i, number, bad in zip(ids, numbers, failed, strict=True)
+            ],
+        )
+        executemany(
+            "INSERT INTO trial_params (trial_id, param_name, param_value, distribution_json) VALUES (?, ?, ?, ?)",
+            [
+                (i, NAMES[k], row[k], self._distributions[NAMES[k]])
+                for i, row in zip(ids, generation.designs.tolist(), strict=True)
+                for k in self._free
+            ],
+        )
+        objectives = zip(ids, failed, evaluations.height_m.tolist(), evaluations.energy_j.tolist(), strict=True)
+        executemany(
+            "INSERT INTO trial_values (trial_id, objective, value, value_type) VALUES (?, ?, ?, 'FINITE')",
+            [(i, k, v) for i, bad, *values in objectives if not bad for k, v in enumerate(values)],
+        )
+        # The list under one key is the form that both Optuna and its dashboard read.
+        executemany(
+            "INSERT INTO trial_system_attributes (trial_id, key, value_json) VALUES (?, 'constraints', ?)",
+            [(i, json.dumps(row)) for i, row in zip(ids, judgement.constraints.tolist(), strict=True)],
+        )
+        executemany(
+            "INSERT INTO trial_user_attributes (trial_id, key, value_json) VALUES (?, ?, ?)",
+            [
+                (i, key, json.dumps(value))
+                for k, i in enumerate(ids)
+                for key, value in _attributes(generation, k).items()
+            ],
+        )
+
+    def add_by_optuna(self, generation: Generation) -> None:
+        """Let Optuna write trials into a schema that is not known here.
+
+        That is a transaction a trial, so a kill may leave trials that our checkpoint does not know yet. They come
+        again, the same, after a resume; then they are not added twice.
+        """
+        import optuna
+
+        storage = _optuna_storage(self._path)
+        try:
+            there = storage.get_n_trials(self._study_id)
+            for k in range(max(0, there - generation.first_trial), len(generation.designs)):
+                bad = generation.judgement.state[k] == "failed"
+                row = generation.designs[k].tolist()
+                storage.create_new_trial(
+                    self._study_id,
+                    optuna.trial.create_trial(
+                        state=optuna.trial.TrialState.FAIL if bad else optuna.trial.TrialState.COMPLETE,
+                        params={NAMES[i]: row[i] for i in self._free},
+                        distributions={
+                            name: optuna.distributions.json_to_distribution(text)
+                            for name, text in self._distributions.items()
+                        },
+                        values=None
+                        if bad
+                        else [float(generation.evaluations.height_m[k]), float(generation.evaluations.energy_j[k])],
+                        system_attrs={"constraints": generation.judgement.constraints[k].tolist()},
+                        user_attrs=_attributes(generation, k),
+                    ),
+                )
+        finally:
+            storage.remove_session()
+            storage.engine.dispose()
+
+
+def _attributes(generation: Generation, k: int) -> dict[str, Any]:
+    """What Optuna's dashboard shows of a trial besides its values."""
+    attributes: dict[str, Any] = {}
+    if generation.judgement.reason[k]:
+        attributes["status"] = str(generation.evaluations.status[k])
+        attributes["reason"] = generation.judgement.reason[k]
+    if generation.height_weight is not None:
+        attributes["height_weight"] = generation.height_weight
+    return attributes
