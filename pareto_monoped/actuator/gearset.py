@@ -90,7 +90,7 @@ class GearSet:
 
 
 def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
-    """Transverse contact ratios of sun with planet and of planet with ring (Shigley, section 13-8; ISO 21771)."""
+    """Transverse contact ratios of sun with planet and of planet with ring (Shigley, section 13-6; ISO 21771)."""
     sun, planet, ring = gears.sun(), gears.planet(), gears.ring()
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
     distance = gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
@@ -108,7 +108,7 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
 
     Loss of a mesh with the carrier held, per unit of power: pi mu (1/z1 + 1/z2) (1 - e + e1^2 + e2^2), for an internal
     mesh 1/z1 - 1/z2, with e1 and e2 the shares of the contact ratio e before and after the pitch point (Ohlendorf;
-    Niemann/Winter, Maschinenelemente II, section 21). With eta0 the product of both meshes and the ratio i,
+    Niemann/Winter, Maschinenelemente II). With eta0 the product of both meshes and the ratio i,
     eta = (1 + (i - 1) eta0) / i (Mueller, Die Umlaufgetriebe): only the rolling power is lossy.
     """
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)

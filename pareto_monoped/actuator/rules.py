@@ -149,7 +149,7 @@ CONSTRAINTS: Mapping[str, Constraint] = {
     ),
     "contact_ratio": Constraint(
         says="contact ratio of either mesh at least 1.2",
-        source="Shigley, section 13-8",
+        source="Shigley, section 13-6",
         margin=_contact_ratio,
     ),
     "within_stator": Constraint(

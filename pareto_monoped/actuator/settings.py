@@ -153,7 +153,7 @@ class ActuatorSettings:
         teeth_min: N_min of sun and planet (paper, eq. 5).
         planet_gap_mm: delta_p of the no-interference constraint (paper, eq. 4).
         diameter_clearance_mm: delta_clr between D_GB and the motor (paper, section III-A).
-        contact_ratio_min: of either mesh (Shigley, section 13-8).
+        contact_ratio_min: of either mesh (Shigley, section 13-6).
         constraints_off: names of constraints not to apply, see ``rules.CONSTRAINTS``.
         bearings: mass of the main bearing from the catalogue, or from the paper's regression over its bore.
         parts: dimensions, materials, strength.

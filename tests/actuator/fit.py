@@ -135,3 +135,24 @@ def overlaps_within(part: Part) -> list[str]:
                 found.append(f"{part.name}: two holes overlap")
                 break
     return found
+
+
+def pieces(part: Part) -> int:
+    """Into how many pieces a part falls: prisms hold together where they share a face."""
+    own = rings_about_own_axis(part)
+    left, found = set(range(len(own))), 0
+    while left:
+        found += 1
+        front = [left.pop()]
+        while front:
+            a = own[front.pop()]
+            touching = [k for k in left if share_a_face(a, own[k])]
+            left.difference_update(touching)
+            front += touching
+    return found
+
+
+def share_a_face(a: Ring, b: Ring) -> bool:
+    across = min(a.r1, b.r1) - max(a.r0, b.r0)
+    along = min(a.z1, b.z1) - max(a.z0, b.z0)
+    return (across > 0.4 and abs(along) < 1e-9) or (along > 0.4 and abs(across) < 1e-9)

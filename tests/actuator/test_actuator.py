@@ -57,7 +57,7 @@ def test_rotor_inertia_counts_at_the_square_of_the_ratio(vt_map, vt8020):
 
 
 def test_gears_weigh_their_true_tooth_area(vt_map):
-    """Within a few percent of pitch cylinders, and lighter by what the notes of gear makers say, 2 to 3 percent."""
+    """A standard gear is a few percent lighter than its pitch cylinder: roots are cut deeper than tips stand out."""
     actuator = vt_map.lookup(6.0)
     planet = next(part for part in actuator.parts if part.name == "planet")
     cylinder = np.pi * (9.0**2 - 4.0**2) * actuator.face_width_mm * 1e-9 * 7850.0

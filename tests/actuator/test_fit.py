@@ -8,7 +8,7 @@ from pareto_monoped.actuator.motors import FramedMotor, FramelessMotor, Motor, l
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.shapes import Pattern
-from tests.actuator.fit import clashes, overlaps_within, rings
+from tests.actuator.fit import clashes, overlaps_within, pieces, rings
 
 
 def bests(name):
@@ -25,6 +25,7 @@ def test_no_parts_clash_and_every_hole_has_metal_around_it(name):
     count = 0
     for actuator in bests(name):
         found = clashes(actuator) + [line for part in actuator.parts for line in overlaps_within(part)]
+        found += [f"{part.name} falls apart" for part in actuator.parts if pieces(part) != 1]
         assert not found, f"{actuator.family} {actuator.gears}: {found}"
         count += 1
     assert count > 20
