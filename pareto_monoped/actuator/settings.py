@@ -171,7 +171,7 @@ class ActuatorSettings:
     parts: PartData = field(default_factory=default_parts)
 
     def __post_init__(self) -> None:
-        from pareto_monoped.actuator.rules import CONSTRAINTS
+        from pareto_monoped.actuator.rules import CONSTRAINTS  # here, because rules look at settings
 
         for name in sorted(self.constraints_off):
             if name not in CONSTRAINTS:
