@@ -2,12 +2,12 @@
 
     python benchmarks/search_algorithms.py                       # a short look: 1,000 jumps, 2 seeds, small reference
     python benchmarks/search_algorithms.py --full                # what benchmarks/search_algorithms.md shows
-    python benchmarks/search_algorithms.py --full --only nsga2-40 random
+    python benchmarks/search_algorithms.py --full --evaluations 5000 --only nsga2-100 random
 
 All seeds of one algorithm run in step, so that their generations are simulated as one batch; a jump's result does not
 depend on its batch. Quality is the hypervolume of all designs evaluated so far (not of the last population), as a
-share of that of the reference front. Results are kept in benchmarks/search_algorithms.json, and the table is made of
-all that is in there.
+share of that of the reference front. Results are kept in build/search_algorithms.json, and the table is made of all
+that is in there.
 """
 
 import argparse
@@ -183,10 +183,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--full", action="store_true", help="10,000 jumps, 5 seeds, reference of 200,000; keep results")
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="these contenders")
+    parser.add_argument("--evaluations", type=int, help="jumps a search, in place of 1,000 or 10,000")
     arguments = parser.parse_args()
     evaluations, seeds, effort = (10_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
+    evaluations = arguments.evaluations or evaluations
     physics = load_physics(study({"name": "random"}, 1, 1), workers=default_workers())
-    kept = HERE / "search_algorithms.json"
+    kept = HERE.parent / "build" / "search_algorithms.json"
+    kept.parent.mkdir(exist_ok=True)
     results: dict[str, Any] = {"rows": {}}
     if arguments.full and kept.exists():
         results = json.loads(kept.read_text())
