@@ -85,7 +85,7 @@ def export_design(
         DesignError: the robot cannot be built.
         CheckError: a check failed; nothing is written.
     """
-    wanted = _formats(formats)
+    wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
     built = as_built(design, actuator_map)
     robot = build_robot(built, actuator_map)
@@ -151,13 +151,18 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         )
 
 
-def _formats(formats: Sequence[str] | None) -> tuple[str, ...]:
-    if formats is None:
+def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
+    """The formats asked for, in the order of ``FORMATS``; all of them for None.
+
+    Raises:
+        InputError: an unknown name.
+    """
+    if names is None:
         return FORMATS
-    for name in formats:
+    for name in names:
         if name not in FORMATS:
             raise InputError(f"format {name!r}: must be one of {', '.join(FORMATS)}; correct the name")
-    return tuple(name for name in FORMATS if name in formats)
+    return tuple(name for name in FORMATS if name in names)
 
 
 def _jumps(

@@ -172,9 +172,9 @@ def urdf(arrays: RobotArrays, shown: Sequence[Visual], solid: Sequence[Collider]
     URDF has no word for the rotors' reflected inertia; it is written as a comment beside each joint.
     """
     root = ET.Element("robot", name="monoped")
-    # Only MuJoCo reads this; other parsers resolve the meshes relative to the file.
+    # Only MuJoCo reads this: keep the visual meshes and their folder.
     extension = ET.SubElement(root, "mujoco")
-    ET.SubElement(extension, "compiler", meshdir="meshes", balanceinertia="false", discardvisual="false")
+    ET.SubElement(extension, "compiler", strippath="false", discardvisual="false")
     for k, name in enumerate(BODIES):
         link = ET.SubElement(root, "link", name=name)
         inertial = ET.SubElement(link, "inertial")
