@@ -90,6 +90,6 @@ def _text(name: str) -> str | None:
 
 def _file(folder: Path, name: str, text: str) -> str:
     # Only the last part of a stored name is used: it may come from a stranger's database.
-    path = folder / (Path(name).name or "file.toml")
+    path = folder / (Path(name).name if name.endswith(".toml") else "file.toml")
     path.write_text(text, encoding="utf-8")
     return str(path)
