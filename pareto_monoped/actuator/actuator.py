@@ -39,7 +39,7 @@ class MountInterface:
         thread_depth_mm: of those.
         back_bolts: the motor's own mounting pattern in the backplate: threads in the ISSPG's; in the ESSPG's, clearance
             holes for the screws that reach the motor's base.
-        back_thickness_mm: of the backplate.
+        back_depth_mm: of those holes: thread (ISSPG) or plate (ESSPG).
     """
 
     housing_radius_mm: float
@@ -47,7 +47,7 @@ class MountInterface:
     bolts: HolePattern
     thread_depth_mm: float
     back_bolts: HolePattern
-    back_thickness_mm: float
+    back_depth_mm: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -192,5 +192,5 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
         ),
         thread_depth_mm=case.rim_mm,
         back_bolts=motor.mount_holes,
-        back_thickness_mm=case.plate_mm,
+        back_depth_mm=case.rim_mm if family == "ISSPG" else case.plate_mm,
     )

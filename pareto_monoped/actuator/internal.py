@@ -80,6 +80,9 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
     assert mount_holes is not None
     r_mount = 0.5 * (mount_holes.pitch_circle_mm + mount_holes.diameter_mm)
     front_vents = vents(r_flange, at.r_case, case.vent_wall_mm)
+    # A pad behind the motor's own bolt pattern gives its threads the same depth as the mounting threads.
+    back_threads = back_holes(motor, -0.8)
+    r_pad = 0.5 * (mount_holes.pitch_circle_mm - mount_holes.diameter_mm) - 0.5
     back_vents = vents(r_mount + case.vent_wall_mm, at.r_case, case.vent_wall_mm)
     return (
         *gear_parts(at, settings),
@@ -141,7 +144,8 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="backplate",
             material=alu,
             prisms=(
-                *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_holes(motor, -0.8), *back_vents),
+                *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_threads, *back_vents),
+                *tube(z_plate, z_end + case.rim_mm, r_mount + 0.5, r_pad, back_threads),
                 *tube(z_plate, z_seat, rear_seat + case.seat_wall_mm, rear_seat),
             ),
             process="machined",
