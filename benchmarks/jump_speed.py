@@ -23,11 +23,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, UPPER
-from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot import RobotArrays, robot_arrays
-from tests.jump.oracle import jump, motors_of
+from tests.jump.oracle import Jump, jump, motors_of
 
 Floats = NDArray[np.float64]
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -112,8 +112,13 @@ class Raw:
                 mujoco.mj_step(model, data)
 
 
-def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibration: Calibration):  # type: ignore[no-untyped-def]
-    return jump(document, *design[4:], motors_of(robots, i, calibration), fade=calibration.gate.length_m)  # type: ignore[union-attr]
+def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibration: Calibration) -> Jump:
+    """Compile the XML and jump in plain Python."""
+    gate = calibration.gate
+    assert isinstance(gate, FadeGate)
+    stiffness, damping, torsion = design[4:].tolist()
+    motors = motors_of(robots, i, calibration)
+    return jump(document, stiffness, damping, torsion, motors, fade=gate.length_m)
 
 
 def _same(name: str, values: Floats, *expected: Floats) -> None:

@@ -26,7 +26,7 @@ from pareto_monoped.jump.table1 import Spread, paper_spreads
 
 Floats = NDArray[np.float64]
 
-FITTED: dict[str, tuple[float, float, float]] = {
+FITTED: dict[str, tuple[float, float, int]] = {
     # key in the TOML file: lower bound, upper bound, digits kept
     "damping_n_m_s_per_rad": (0.0, 5.0, 3),
     "peak_torque_scale": (0.8, 1.2, 4),
@@ -42,7 +42,7 @@ def with_numbers(calibration: Calibration, numbers: Floats) -> Calibration:
     """``calibration`` with the fitted numbers, rounded to the digits that are kept."""
     values = {key: round(float(x), digits) for x, (key, (_, _, digits)) in zip(numbers, FITTED.items(), strict=True)}
     parts = {}
-    for name in ("mass", "joints", "drive"):
+    for name in ("mass", "joints", "drive", "controller", "contact"):
         record = getattr(calibration, name)
         chosen = {key: value for key, value in values.items() if hasattr(record, key)}
         parts[name] = replace(record, **chosen)
@@ -85,7 +85,13 @@ def fit(start: Calibration, evaluations: int) -> Floats:
 
 
 def _current(calibration: Calibration, key: str) -> float:
-    for record in (calibration.mass, calibration.joints, calibration.drive):
+    for record in (
+        calibration.mass,
+        calibration.joints,
+        calibration.drive,
+        calibration.controller,
+        calibration.contact,
+    ):
         if hasattr(record, key):
             value = getattr(record, key)
             return 0.0 if value is None else float(value)

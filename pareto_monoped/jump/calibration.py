@@ -172,13 +172,13 @@ class Controller:
 
     Attributes:
         rest_length_m: l0, rest length of the virtual spring (10 m in a passage that the paper's final text lost).
-        gravity_feed_forward: whether m g is part of F_z, as in the paper.
+        gravity_feed_forward: factor on the term m g of F_z, with m the simulated robot's mass; 1 as in the paper.
     """
 
     __pydantic_config__ = _STRICT
 
     rest_length_m: Positive = 10.0
-    gravity_feed_forward: bool = True
+    gravity_feed_forward: NotNegative = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -190,6 +190,8 @@ class Simulation:
         timestep_s: step, and period of the controller.
         time_limit_s: a jump that is not over by then has failed.
         base_slides: whether the base may move in x; otherwise a vertical guide holds it.
+        work_speed: the speed that a step's work is booked with: the ``mean`` of its ends, which is what MuJoCo's step
+            turns into kinetic energy, or that at its ``start``, as the paper's sum is written.
     """
 
     __pydantic_config__ = _STRICT
@@ -198,6 +200,7 @@ class Simulation:
     timestep_s: Positive
     time_limit_s: Positive = 3.0
     base_slides: bool = True
+    work_speed: Literal["mean", "start"] = "mean"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -33,8 +33,8 @@ Floats = NDArray[np.float64]
 
 # Entries of ``settings``, the same for all jumps.
 (
-    REST_LENGTH, TIMESTEP, STEP_LIMIT, FADE_LENGTH, LATCH, LOSS_SPEED, VOLTAGE_LIMIT, LAGS, N_SETTINGS,
-) = range(9)  # fmt: skip
+    REST_LENGTH, TIMESTEP, STEP_LIMIT, FADE_LENGTH, LATCH, LOSS_SPEED, VOLTAGE_LIMIT, LAGS, MEAN_SPEED, N_SETTINGS,
+) = range(10)  # fmt: skip
 
 # Values of ``status``.
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
@@ -157,7 +157,7 @@ def _one(
     speed = (v[nv - 2], v[nv - 1])
 
     if m[STEPS] > 0:
-        _book(m, c, speed, settings[TIMESTEP])
+        _book(m, c, speed, settings[TIMESTEP], settings[MEAN_SPEED] > 0.0)
     m[STEPS] += 1
     m[HEIGHT] = max(m[HEIGHT], z)
     m[CLEARANCE] = clearance
@@ -241,17 +241,17 @@ def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _book(m: Floats, c: Floats, speed: tuple[float, float], timestep: float) -> None:
-    """Add the step just made; its work is torque times the mean of the speeds before and after it."""
+def _book(m: Floats, c: Floats, speed: tuple[float, float], timestep: float, mean_speed: bool) -> None:
+    """Add the step just made: torque times the speed at its start, or times the mean of the speeds at its ends."""
     for joint in range(2):
         torque = m[TORQUE_HIP + joint]
-        mean = 0.5 * (m[SPEED_HIP + joint] + speed[joint])
-        power = torque * mean
+        during = 0.5 * (m[SPEED_HIP + joint] + speed[joint]) if mean_speed else m[SPEED_HIP + joint]
+        power = torque * during
         if power > 0.0:
             m[ENERGY_HIP + joint] += power * timestep
         else:
             m[ABSORBED_HIP + joint] -= power * timestep
-        m[LOST_HIP + joint] += (torque - m[JOINT_TORQUE_HIP + joint]) * mean * timestep
+        m[LOST_HIP + joint] += (torque - m[JOINT_TORQUE_HIP + joint]) * during * timestep
         m[HEAT_J] += c[HEAT_HIP + joint] * torque * torque * timestep
         m[PEAK_TORQUE_HIP + joint] = max(m[PEAK_TORQUE_HIP + joint], abs(torque))
         m[PEAK_SPEED_HIP + joint] = max(m[PEAK_SPEED_HIP + joint], abs(speed[joint]))

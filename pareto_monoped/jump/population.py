@@ -174,8 +174,8 @@ def constants(robots: RobotArrays, control: Floats, calibration: Calibration) ->
     result[:, k.THIGH], result[:, k.SHANK] = robots.thigh_length_m, robots.shank_length_m
     result[:, k.FOOT_RADIUS] = robots.foot_radius_m
     result[:, k.STIFFNESS : k.TORSION + 1] = control
-    if calibration.controller.gravity_feed_forward:
-        result[:, k.WEIGHT] = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
+    weight_n = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
+    result[:, k.WEIGHT] = calibration.controller.gravity_feed_forward * weight_n
     result[:, k.PEAK_HIP : k.PEAK_KNEE + 1] = peak
     result[:, k.NO_LOAD_HIP : k.NO_LOAD_KNEE + 1] = robots.no_load_speed_rad_per_s
     result[:, k.CORNER_HIP : k.CORNER_KNEE + 1] = corner
@@ -198,5 +198,6 @@ def settings(calibration: Calibration) -> Floats:
     else:
         result[k.LAGS] = float(gate.lags)
     result[k.LOSS_SPEED] = calibration.drive.loss_speed_rad_per_s
+    result[k.MEAN_SPEED] = float(simulation.work_speed == "mean")
     result[k.VOLTAGE_LIMIT] = float(calibration.drive.voltage_limit)
     return result

@@ -1,12 +1,15 @@
 """The jump written a second time: a plain loop over ``mj_step``, from the equations, knowing only the exported MJCF.
 
-Nothing of the package is used. Kinematics and the Jacobian are MuJoCo's, torque limits are read from the model.
+Kinematics and the Jacobian are those of MuJoCo, torque limits are read from the model, and none of our code is called.
 """
 
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.robot import RobotArrays
 
 REST_LENGTH = 10.0
 
@@ -29,10 +32,22 @@ class Jump:
     apex: float
     clearance: float
     ended: bool
-    torques: list
+    torques: list[np.ndarray]
 
 
-def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, loss_speed=0.5, time_limit=3.0):
+def jump(
+    xml: str,
+    stiffness: float,
+    damping: float,
+    torsion: float,
+    motors: list[Motor],
+    *,
+    fade: float | None = None,
+    lags: bool = False,
+    loss_speed: float = 0.5,
+    time_limit: float = 3.0,
+    mean_speed: bool = True,
+) -> Jump:
     """Paper, section II-B, on the MJCF's robot.
 
     Args:
@@ -45,6 +60,7 @@ def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, los
         lags: with ``fade`` None, whether the contact is that of the state before.
         loss_speed: of the smooth sign in the drive's losses.
         time_limit: in s.
+        mean_speed: whether a step's work is booked with the mean of the speeds at its ends, or that at its start.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)
@@ -58,7 +74,7 @@ def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, los
     step = model.opt.timestep
     energy, height, lift_off = np.zeros(2), 0.0, 0.0
     off, stood, touched = False, False, None
-    torques = []
+    torques: list[np.ndarray] = []
     for k in range(round(time_limit / step) + 1):
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -106,11 +122,12 @@ def jump(xml, stiffness, damping, torsion, motors, *, fade=None, lags=False, los
             data.ctrl[j] = np.clip(torque[j] - lost, -limits[j], limits[j])
         torques.append(data.ctrl.copy())
         mujoco.mj_step(model, data)
-        energy += np.maximum(torque * 0.5 * (speeds + data.qvel[hinges]), 0.0) * step
+        booked = 0.5 * (speeds + data.qvel[hinges]) if mean_speed else speeds
+        energy += np.maximum(torque * booked, 0.0) * step
     return Jump(height, energy.sum(), energy[0], lift_off, np.nan, np.nan, False, torques)
 
 
-def motors_of(robots, i, calibration):
+def motors_of(robots: RobotArrays, i: int, calibration: Calibration) -> list[Motor]:
     """The drives of robot ``i``, from its data sheet numbers."""
     drive, motors = calibration.drive, []
     for j, transmission in enumerate((1.0, drive.chain_efficiency)):

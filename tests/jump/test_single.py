@@ -26,7 +26,8 @@ def test_trace_and_measures_are_the_same_jump(jump):
     work = 0.0
     for joint in ("hip", "knee"):
         torque, speed = trace[f"{joint}_motor_torque_n_m"][:-1], trace[f"{joint}_rad_per_s"]
-        work += np.maximum(torque * 0.5 * (speed[1:] + speed[:-1]), 0.0).sum() * step
+        booked = speed[:-1] if jump.calibration.startswith("paper") else 0.5 * (speed[1:] + speed[:-1])
+        work += np.maximum(torque * booked, 0.0).sum() * step
     assert work == pytest.approx(measures["energy_j"])
 
 
