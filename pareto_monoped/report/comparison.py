@@ -85,13 +85,14 @@ def _surface(fronts: Sequence[Floats], labels: Sequence[str]) -> dict[str, Any]:
 
 
 def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, Any]:
-    """Least, median and greatest hypervolume over evaluations, up to where the shortest run ends."""
+    """Least, median and greatest hypervolume over evaluations, as far as all runs have values."""
     histories = [data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64) for data in studies]
     histories = [history for history in histories if len(history)]
     if not histories:
         return {"labels": list(labels), "evaluations": [], "low": [], "median": [], "high": []}
     last = min(float(history[-1, 0]) for history in histories)
-    at = np.unique(np.linspace(1.0, last, _POINTS).round())
+    first = max(float(history[0, 0]) for history in histories)
+    at = np.unique(np.linspace(min(first, last), last, _POINTS).round())
     volumes = np.stack([_held(history, at) for history in histories])
     return {
         "labels": list(labels),

@@ -2,8 +2,9 @@
 
 import base64
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,12 @@ from pareto_monoped.errors import OutputError
 from pareto_monoped.report.records import Model3D
 from pareto_monoped.study.reader import StudyData
 
-MOST_TRIANGLES = 45_000
-"""Of all models on a page together: about 1.3 MB."""
-_STEP_MM = 0.25  # corners are rounded to this; it grows until few enough triangles are left
+Floats = NDArray[np.float64]
+
+MOST_TRIANGLES = 60_000
+"""Of all models on a page together: about 1.7 MB."""
+_LEAST = 24  # triangles that even the smallest body may keep
+_FINEST_MM = 0.1
 _GREY = (170, 176, 184)
 _FOLDER = re.compile(r"^trial_(\d+)$")
 
@@ -39,62 +43,81 @@ def read_models(folder: Path, data: StudyData) -> Mapping[int, Model3D]:
 
 
 def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
-    """Triangles of a GLB file with their colours, at most ``most`` of them."""
+    """Triangles of a GLB file with their colours, about ``most`` of them at most."""
     import trimesh
 
     scene = trimesh.load_scene(path)
-    corners, colours = [], []
+    bodies = []
     for name in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[name]
         mesh = scene.geometry[geometry]
-        if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
-            continue
-        points = mesh.vertices @ transform[:3, :3].T + transform[:3, 3]
-        corners.append(points[mesh.faces])
-        colours.append(np.tile(_colour(mesh), (len(mesh.faces), 1)))
-    if not corners:
-        return _model(np.zeros((0, 3, 3), dtype=np.int64), np.zeros((0, 3), dtype=np.uint8), _STEP_MM, simplified=False)
-    # GLB has y up and metres; the page's world has z up.
-    triangles = 1000.0 * np.concatenate(corners)[..., [2, 0, 1]]
-    return simplified(triangles, np.concatenate(colours), most)
+        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            points = mesh.vertices @ transform[:3, :3].T + transform[:3, 3]
+            # GLB has y up and metres; the page's world has z up.
+            bodies.append((1000.0 * points[mesh.faces][..., [2, 0, 1]], _colour(mesh)))
+    return model_of(bodies, most)
 
 
-def simplified(triangles_mm: NDArray[np.float64], colours: NDArray[np.uint8], most: int) -> Model3D:
-    """Corners rounded to a grid, flat triangles dropped; the grid doubles until at most ``most`` are left.
+def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
+    """Bodies, each made coarse enough for its share of ``most``: large ones get more, screws few.
+
+    Args:
+        bodies: corners in mm, shape (n, 3, 3), and colour, 0 to 255, of each.
+        most: triangles in all, but every body keeps at least a few.
+    """
+    sizes = [float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) for corners, _ in bodies]
+    reduced = [
+        coarser(corners, max(int(most * size / sum(sizes)), _LEAST))
+        for (corners, _), size in zip(bodies, sizes, strict=True)
+    ]
+    before = sum(len(corners) for corners, _ in bodies)
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *reduced])
+    colours = [np.tile(colour, (len(left), 1)) for left, (_, colour) in zip(reduced, bodies, strict=True)]
+    step = max(float(np.abs(triangles).max(initial=0.0)) / 32000.0, 1e-3)
+    smaller = len(triangles) < before
+    return Model3D(
+        step_mm=step,
+        triangles=len(triangles),
+        positions=_base64(np.round(triangles / step).astype("<i2")),
+        colours=_base64(np.concatenate([np.zeros((0, 3)), *colours]).astype(np.uint8)),
+        simplified=smaller,
+        note="Small parts are coarser here than in the exported files." if smaller else "",
+    )
+
+
+def coarser(triangles_mm: Floats, most: int) -> Floats:
+    """Corners rounded to a grid and flat or double triangles dropped, on ever wider grids until ``most`` are left.
 
     Clustering of vertices (Rossignac and Borrel 1993): crude, but it keeps shape and size to within the grid.
 
     Args:
         triangles_mm: shape (n, 3, 3).
-        colours: of each triangle, shape (n, 3), 0 to 255.
         most: triangles that may be left.
     """
-    step = _STEP_MM
+    if len(triangles_mm) <= most:
+        return triangles_mm
+    middle = triangles_mm.reshape(-1, 3).mean(axis=0)
+    step = _FINEST_MM
     while True:
-        grid = np.round(triangles_mm / step).astype(np.int64)
-        a, b, c = grid[:, 0], grid[:, 1], grid[:, 2]
-        solid = (a != b).any(axis=1) & (b != c).any(axis=1) & (c != a).any(axis=1)
-        order = np.sort(grid[solid] @ np.array([1, 1 << 20, 1 << 40]), axis=1)
-        _, first = np.unique(order, axis=0, return_index=True)
-        first.sort()
-        small = np.abs(grid).max(initial=0) < 2**15
-        if len(first) <= most and small:
-            return _model(grid[solid][first], colours[solid][first], step, simplified=len(first) < len(triangles_mm))
-        step *= 1.5
+        grid = np.round((triangles_mm - middle) / step).astype(np.int64)
+        # A corner as one number, so that a triangle's three sort into a key.
+        corners = np.sort(grid @ np.array([1, 1 << 20, 1 << 40]), axis=1)
+        solid = np.flatnonzero((corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]))
+        order = solid[np.lexsort(corners[solid].T)]
+        new = np.ones(len(order), dtype=bool)
+        new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
+        kept = np.sort(order[new])
+        if len(kept) <= most:
+            return grid[kept] * step + middle
+        step *= 1.25
 
 
-def _model(grid: NDArray[np.int64], colours: NDArray[np.uint8], step: float, *, simplified: bool) -> Model3D:
-    return Model3D(
-        step_mm=step,
-        triangles=len(grid),
-        positions=base64.b64encode(grid.astype("<i2").tobytes()).decode("ascii"),
-        colours=base64.b64encode(colours.astype(np.uint8).tobytes()).decode("ascii"),
-        simplified=simplified,
-        note=f"Rounded to {step:.2g} mm for this page; the exported files are exact." if simplified else "",
-    )
+def _base64(values: NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode("ascii")
 
 
 def _colour(mesh: object) -> tuple[int, int, int]:
+    """Base colour of a mesh, grey if it has none."""
     material = getattr(getattr(mesh, "visual", None), "material", None)
     base = getattr(material, "baseColorFactor", None)
     if base is None:

@@ -13,7 +13,7 @@ from pareto_monoped.design import NAMES, PAPER_CASES, VARIABLES
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import DEFAULT
 from pareto_monoped.leg.links import shank_parts, thigh_parts
-from pareto_monoped.pareto.pick import Knee, MinHeight, pick
+from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
 from pareto_monoped.report.comparison import compare, group_of
 from pareto_monoped.report.physics import Extras, Robots
 from pareto_monoped.report.quantities import AUDIT, DIGITS, EVERY_TRIAL, QUANTITIES
@@ -240,14 +240,18 @@ def _audits(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
 def _history(history: pd.DataFrame) -> dict[str, Column]:
     kept = np.unique(np.linspace(0, len(history) - 1, min(len(history), _HISTORY)).astype(int))
     return {
-        name: column(history[name].to_numpy()[kept], 6) if len(history) else [] for name in ("evaluations", "hypervolume")
+        name: column(history[name].to_numpy()[kept], 6) if len(history) else []
+        for name in ("evaluations", "hypervolume")
     }
 
 
 def _picks(front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
     """The knee and the cheapest designs at the headline heights."""
     found: list[Picked] = []
-    named = [("knee", Knee()), *((f"{height:g} m", MinHeight(height_m=height)) for height in HEADLINES_M)]
+    named: list[tuple[str, Selector]] = [
+        ("knee", Knee()),
+        *((f"{height:g} m", MinHeight(height_m=height)) for height in HEADLINES_M),
+    ]
     for name, selector in named:
         try:
             picked = pick(front, selector)

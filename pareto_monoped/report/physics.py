@@ -130,9 +130,8 @@ def simulate_extras(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Extras:
     """Simulate what the page shows of a study beyond its database."""
     from pareto_monoped.pareto.pick import Knee, pick
     from pareto_monoped.study.physics import load_physics
-    from pareto_monoped.study.run import default_workers
 
-    physics = load_physics(data.study, workers=default_workers(), files=data.meta["files"])
+    physics = load_physics(data.study, workers=1, files=data.meta["files"])
     actuator_map, calibration = physics.evaluator.actuator_map, physics.calibration
     front = data.front()
     chosen = set(_spread(len(front), most_jumps))

@@ -13,18 +13,26 @@ def safe(value: object) -> str:
 
 def head(payload: Payload) -> str:
     """Summary and key facts; of each study if there are several."""
-    parts = []
-    several = len(payload.studies) > 1
-    for card in payload.studies:
-        if several:
-            parts.append(f"<h2>{safe(card.label)}</h2>")
-        elif card.description:
-            parts.append(f'<p class="small">{safe(card.description)}</p>')
-        parts.append(f'<p class="summary">{safe(" ".join(card.summary))}</p>')
-        parts += [f'<p class="note" role="note">{safe(note)}</p>' for note in card.notes]
-        facts = "".join(f"<div><dt>{safe(name)}</dt><dd>{safe(value)}</dd></div>" for name, value in _facts(card))
-        parts.append(f'<dl class="facts">{facts}</dl>')
-    return "\n".join(parts)
+    if len(payload.studies) == 1:
+        (card,) = payload.studies
+        about = f'<p class="small">{safe(card.description)}</p>' if card.description else ""
+        return f'{about}<p class="summary">{safe(" ".join(card.summary))}</p>{_notes(card)}{_facts_list(card)}'
+    # Several studies: a line each, the rest folded away, so that the front stays in sight.
+    lines = "".join(
+        f"<details><summary><b>{safe(card.label)}</b> {safe(card.summary[0])}</summary>"
+        f"<p>{safe(' '.join(card.summary[1:]))}</p>{_facts_list(card)}</details>{_notes(card)}"
+        for card in payload.studies
+    )
+    return f'<div class="studies">{lines}</div>'
+
+
+def _notes(card: StudyCard) -> str:
+    return "".join(f'<p class="note" role="note">{safe(note)}</p>' for note in card.notes)
+
+
+def _facts_list(card: StudyCard) -> str:
+    rows = "".join(f"<div><dt>{safe(name)}</dt><dd>{safe(value)}</dd></div>" for name, value in _facts(card))
+    return f'<dl class="facts">{rows}</dl>'
 
 
 def _facts(card: StudyCard) -> list[tuple[str, str]]:
@@ -40,8 +48,10 @@ def _facts(card: StudyCard) -> list[tuple[str, str]]:
         ("evaluations", done),
         ("of these", states),
         ("run time", _duration(card.seconds)),
-        ("hypervolume", f"{card.hypervolume:.3f} m J"),
-        ("measured from", f"{card.reference['height_m']:g} m, {card.reference['energy_j']:g} J"),
+        (
+            "hypervolume",
+            f"{card.hypervolume:.3f} m J from {card.reference['height_m']:g} m, {card.reference['energy_j']:g} J",
+        ),
     ]
 
 
@@ -54,7 +64,7 @@ def _duration(seconds: float) -> str:
 
 
 def _number(value: Number, decimals: int) -> str:
-    return "–" if value is None else f"{value:.{decimals}f}"
+    return "-" if value is None else f"{value:.{decimals}f}"
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
@@ -62,7 +72,9 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: st
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
     body = "".join(
-        f'<tr><th scope="row">{safe(cells[0])}</th>' + "".join(f'<td class="n">{safe(c)}</td>' for c in cells[1:]) + "</tr>"
+        f'<tr><th scope="row">{safe(cells[0])}</th>'
+        + "".join(f'<td class="n">{safe(c)}</td>' for c in cells[1:])
+        + "</tr>"
         for cells in rows
     )
     words = f"<caption>{safe(caption)}</caption>" if caption else ""
@@ -72,13 +84,16 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: st
 
 def cases_table(payload: Payload) -> str:
     """The paper's table beside what is simulated here."""
-    columns = ["design", *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables)]
+    columns = [
+        "design",
+        *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables),
+    ]
     designs = [
         [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
     ]
     parts = [_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
-    shown: list[tuple[str, str]] = []
-    cards = [c for c in payload.studies if not ((c.motor, c.calibration) in shown or shown.append((c.motor, c.calibration)))]
+    # Studies with the same motor and calibration simulate the cases alike: one column for all of them.
+    cards = list({(card.motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
     literal = bool(payload.literal)
     if literal:
@@ -120,7 +135,10 @@ def comparison_tables(payload: Payload) -> str:
     columns += [f"J at {height:g} m" for height in comparison.heights_m]
     rows = [
         [
-            *(f"{row[name]}" for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")),
+            *(
+                f"{row[name]}"
+                for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
+            ),
             _number(row["hypervolume"], 3),
             *(_number(energy, 2) for energy in row["energy_j"]),
         ]
@@ -140,7 +158,8 @@ def provenance_tables(payload: Payload) -> str:
     parts = []
     for card in payload.studies:
         rows = "".join(
-            f'<tr><th scope="row">{safe(key)}</th><td class="wrap">{safe(value)}</td></tr>' for key, value in card.provenance
+            f'<tr><th scope="row">{safe(key)}</th><td class="wrap">{safe(value)}</td></tr>'
+            for key, value in card.provenance
         )
         table = f"<table><tbody>{rows}</tbody></table>"
         parts.append(

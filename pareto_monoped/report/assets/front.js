@@ -125,7 +125,7 @@ function traces() {
     }
   }
   if (show.picks) {
-    for (const study of each) {
+    for (const study of each.toReversed()) {
       const picks = page.studies[study].picks.filter((p) => p.name === "knee");
       const entries = rowsOf(study, picks.map((p) => p.row));
       entries.forEach((entry, i) => { entry.text = `<b>knee</b><br>${entry.text}`; entry.label = picks[i].name; });
@@ -173,7 +173,8 @@ function labels(list) {
   const taken = [];
   const found = [];
   for (const one of list) {
-    const names = one.name === "picks" ? one.x.map(() => "knee") : one.customdata;
+    // Of several studies' knees, which lie close together, the last drawn has its name beside it.
+    const names = one.name === "picks" ? (one === list.findLast((t) => t.name === "picks") ? one.x.map(() => "knee") : null) : one.customdata;
     if (!names) continue;
     names.forEach((text, i) => {
       const px = (one.x[i] - x[0]) / (x[1] - x[0]) * width, py = (one.y[i] - y[0]) / (y[1] - y[0]) * height;

@@ -12,7 +12,7 @@ function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18,
   }
   for (const value of ticks(x[0], x[1], 4)) svg.append(text(toX(value), top + h + 14, tickText(value), "middle"));
   svg.append(draw("rect", { x: left, y: top, width: w, height: h, class: "frame" }));
-  svg.append(text(left, 11, title, "start", "strong"));
+  svg.append(text(4, 11, title, "start", "strong"));
   if (xTitle) svg.append(text(left + w, height - 3, xTitle, "end"));
   for (const one of series) {
     if (one.mark) {
@@ -59,9 +59,9 @@ function drawTimes() {
   const x = [0, endTime()];
   const legend = make("p", { class: "small" });
   for (const [name, tint] of [["hip", "--hip"], ["knee", "--knee"]]) {
-    legend.append(make("span", { class: "swatch", style: `background: var(${tint})` }), `${name}   `);
+    legend.append(make("span", { class: "swatch", style: `background: var(${tint})` }), name);
   }
-  legend.append(`dashed: limits of the gearboxes; vertical: lift-off at ${round(chosen.jump.lift_off_s)} s`);
+  legend.append(`; dashed: limits of the gearboxes; vertical: lift-off at ${round(chosen.jump.lift_off_s)} s`);
   const limit = (value) => [{ x, y: [value, value] }, { x, y: [-value, -value] }];
   const limits = (key) => ["hip", "knee"].flatMap((side) => (chosen[side] ? limit(chosen[side][key]).map((s) => ({ ...s, colour: `var(--${side})`, dash: "3 3", thick: 1 })) : []));
   const pair = (suffix) => ["hip", "knee"].map((side) => ({ x: j.time_s, y: j[side + suffix], colour: `var(--${side})` }));
@@ -109,6 +109,7 @@ function drawAlong() {
   const heights = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns.height_m[row])));
   const x = padded(heights, 0.03);
   const several = page.studies.length > 1;
+  const width = window.innerWidth <= 700 ? 180 : 300; // so that the words stay readable on a telephone
   for (const variable of page.variables) {
     const q = quantity[variable.name];
     const joint = variable.name.endsWith("_ratio") ? variable.name.replace("_ratio", "_gearbox") : null;
@@ -124,7 +125,7 @@ function drawAlong() {
       };
     });
     const title = `${q.label}${q.unit === ": 1" ? "" : `, ${q.unit}`}`;
-    const chart = smallChart({ width: 300, height: 190, x, y, title, xTitle: "height, m", series, label: `${title}, against height along the front` });
+    const chart = smallChart({ width, height: 190, left: 40, x, y, title, xTitle: "height, m", series, label: `${title}, against height along the front` });
     for (const bound of limits) chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(bound * q.scale), y2: chart.toY(bound * q.scale), stroke: "var(--faint)", "stroke-dasharray": "2 3" }));
     const change = joint ? switchRatio() : null;
     if (change !== null && change > y[0] && change < y[1]) {
@@ -142,11 +143,11 @@ function drawAlong() {
     : "There is no front to follow.";
 }
 
-// Least ratio at which only the external family is left or lighter.
+// Ratio from which on the external family has every interval; null if one family has them all.
 function switchRatio() {
   const points = page.maps[current().map].points.filter((p) => p.gearbox !== null);
-  const at = points.findIndex((p) => page.gearboxes[p.gearbox].family === "ESSPG");
-  return at > 0 ? points[at].ratio_low : null;
+  const at = points.findLastIndex((p) => page.gearboxes[p.gearbox].family === "ISSPG");
+  return at >= 0 && at < points.length - 1 ? points[at + 1].ratio_low : null;
 }
 
 function switchesText() {

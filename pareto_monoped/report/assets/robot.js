@@ -27,7 +27,7 @@ function buildStage(chosen) {
   const foot = chosen.study.foot_radius_m;
   const highest = flight ? Math.max(...flight.base_z_m) : 0.5;
   const top = Math.max(highest + 0.14, 0.95);
-  const wide = 0.95 * top;
+  const wide = 1.05 * top;
   const svg = draw("svg", { viewBox: `${-wide / 2} ${-top} ${wide} ${top + 0.06}`, role: "img", preserveAspectRatio: "xMidYMax meet" });
   svg.setAttribute("aria-label", `The robot to scale: thigh ${shown("thigh_length_m", l1)}, shank ${shown("shank_length_m", l2)}, jumping from 0.5 m to ${round(highest, 2)} m`);
   const font = `font-size: ${0.03 * top}px`;

@@ -36,9 +36,9 @@ function drawAttainment(node) {
     const first = page.studies.findIndex((study) => study.label === surface.labels[0]);
     const tint = studyColour(first);
     const line = (name, y, dash, width) => ({ type: "scatter", mode: "lines", name, x: y, y: surface.height_m, line: { color: tint, dash, width }, hovertemplate: "%{y:.3f} m on %{x:.2f} J<extra></extra>" });
-    return [line("best", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst", surface.worst, "dash", 1.2)];
+    return [line("best seed", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst seed", surface.worst, "dash", 1.2)];
   });
-  Plotly.react(node, list, layout(axis("energy, J", { rangemode: "tozero" }), axis("height reached by best, median and worst seed, m"), {
+  Plotly.react(node, list, layout(axis("energy, J", { rangemode: "tozero" }), axis("height reached, m"), {
     showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
   }), CONFIG);
   describe(node, "Attainment surfaces: the height that the best, the median and the worst seed reached on an energy");

@@ -27,7 +27,7 @@ const solid = { turn: -0.7, tilt: 0.35, zoom: 1, draw: () => {} };
 function showModel(box, model, name) {
   const canvas = make("canvas", { tabindex: 0, role: "img", "aria-label": `${name} in three dimensions; turn it with the arrow keys, plus and minus to zoom` });
   box.append(canvas, make("p", { class: "small" }, `${model.note} Drag or use the arrow keys to turn it, the wheel or + and - to zoom.`));
-  const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: true });
   const made = gl && program(gl);
   if (!made) {
     box.replaceChildren(make("p", { class: "small" }, "This browser shows no WebGL 2: open the exported GLB or STEP file in a CAD viewer."));

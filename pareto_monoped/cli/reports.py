@@ -1,0 +1,38 @@
+"""``report``: studies to one HTML page, and figures for print."""
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.html", help="The page.")
+@click.option(
+    "--figures",
+    type=click.Path(file_okay=False, path_type=Path),
+    metavar="DIR",
+    help="Also write SVG and PNG for print.",
+)
+@click.option(
+    "--exports", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Exported designs, DIR/trial_N."
+)
+def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exports: Path | None) -> None:
+    """Write the report of a study; several studies are laid over each other.
+
+    The page is one file that works without a network.
+    """
+    if output is None and figures is None:
+        raise click.UsageError("no output given: must be -o FILE.html, --figures DIR, or both; add one")
+    from pareto_monoped.files import write_text
+    from pareto_monoped.report.page import page, payload_of
+
+    payload = payload_of(dbs, exports=exports)
+    if output is not None:
+        write_text(output, page(payload))
+        click.echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
+    if figures is not None:
+        from pareto_monoped.report.figures import write_figures
+
+        for path in write_figures(payload, figures):
+            click.echo(f"wrote {path}", err=True)

@@ -1,0 +1,235 @@
+"""The main figures for papers: SVG and PNG in a plain style that survives black-and-white print."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.errors import OutputError
+from pareto_monoped.files import replacing
+from pareto_monoped.report.quantities import QUANTITIES
+from pareto_monoped.report.records import Column, Jump, Payload, StudyCard
+
+# Okabe and Ito's colours, with a marker each, so that colour is never all that tells two studies apart.
+_STYLES = (("#0072b2", "o"), ("#d55e00", "s"), ("#009e73", "D"), ("#b0548a", "^"), ("#b87d00", "v"), ("#2f9bd8", "p"))
+_WIDTH_IN, _HEIGHT_IN = 3.5, 2.6  # one column of an IEEE paper is 3.5 in wide
+_DPI = 300
+_FORMATS = ("svg", "png")
+_FIXED = {"svg": {"Date": None}, "png": {"Software": None}}
+"""File information that would change from one run to the next."""
+
+
+def write_figures(payload: Payload, folder: Path) -> list[Path]:
+    """Write every figure that the payload has data for; returns the files.
+
+    Raises:
+        OutputError: the folder cannot be made or written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"folder {str(folder)!r}: cannot be made ({error.strerror}); give another") from error
+    makers: dict[str, Callable[[Payload, Any], bool]] = {
+        "front": _front,
+        "convergence": _convergence,
+        "along_the_front": _along,
+        "mass_over_ratio": _map,
+        "link_mass": _links,
+        "states_over_time": _states,
+    }
+    written = []
+    with _style() as figure_class:
+        for name, make in makers.items():
+            figure = figure_class(figsize=(_WIDTH_IN, _HEIGHT_IN), layout="constrained")
+            if not make(payload, figure):
+                continue
+            for kind in _FORMATS:
+                path = folder / f"{name}.{kind}"
+                with replacing(path) as temporary:
+                    figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
+                written.append(path)
+    return written
+
+
+@contextmanager
+def _style() -> Iterator[Any]:
+    """A figure class under the style for print, without touching global state."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    settings = {
+        "font.size": 8.0,
+        "axes.linewidth": 0.6,
+        "axes.grid": True,
+        "grid.linewidth": 0.4,
+        "grid.color": "#dddddd",
+        "lines.linewidth": 1.1,
+        "legend.frameon": False,
+        "legend.fontsize": 7.0,
+        "svg.hashsalt": "pareto_monoped",
+        "svg.fonttype": "none",
+    }
+    with matplotlib.rc_context(settings):
+        yield Figure
+
+
+def _values(column: Column, rows: Sequence[int] | None = None) -> NDArray[np.float64]:
+    chosen = column if rows is None else [column[row] for row in rows]
+    return np.array([np.nan if value is None else value for value in chosen], dtype=np.float64)
+
+
+def _objectives(card: StudyCard, rows: Sequence[int]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    columns = card.trials.columns
+    return _values(columns["energy_j"], rows), _values(columns["height_m"], rows)
+
+
+def _front(payload: Payload, figure: Any) -> bool:
+    axes = figure.add_subplot()
+    low, high = BASE_START_HEIGHT_M, max(case["height_m"] for case in payload.published)
+    right = max(case["energy_j"] for case in payload.published)
+    for i, card in enumerate(payload.studies):
+        tint, symbol = _STYLES[i % len(_STYLES)]
+        on_front = set(card.front)
+        others = [r for r, letter in enumerate(card.trials.state) if letter == "f" and r not in on_front]
+        cloud = axes.scatter(*_objectives(card, others), s=1.5, color="#bbbbbb" if i == 0 else tint, alpha=0.35, lw=0)
+        cloud.set_rasterized(True)
+        energy, height = _objectives(card, card.front)
+        axes.plot(energy, height, drawstyle="steps-pre", marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
+        made = [
+            (c.energy_j, c.height_m, c.name) for c in card.cases if c.energy_j is not None and c.height_m is not None
+        ]
+        if i == 0 and made:
+            axes.plot([m[0] for m in made], [m[1] for m in made], "kD", ms=4, ls="", label="paper, simulated here")
+            _name(axes, made)
+        right = max([right, *energy.tolist(), *(m[0] for m in made)])
+        high = max([high, *height.tolist(), *(m[1] for m in made)])
+    published = [(case["energy_j"], case["height_m"], case["name"]) for case in payload.published]
+    axes.plot(
+        [p[0] for p in published],
+        [p[1] for p in published],
+        "D",
+        mfc="white",
+        mec="black",
+        ms=4,
+        label="paper, published",
+    )
+    _name(axes, published)
+    masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
+    if masses:
+        ends = np.array([0.0, 1.1 * right])
+        axes.plot(
+            ends, low + ends / (min(masses) * GRAVITY_M_PER_S2), ":", color="black", lw=0.8, label="m g (H - 0.5 m)"
+        )
+    axes.set(xlim=(0.0, 1.06 * right), ylim=(low, high + 0.06), xlabel="energy (J)", ylabel="height (m)")
+    axes.legend(loc="lower right")
+    return True
+
+
+def _name(axes: Any, cases: Sequence[tuple[float, float, str]]) -> None:
+    """Names beside the paper's designs, to sides on which they do not cover each other."""
+    places = {"A": (3, -8), "C": (-9, 1)}
+    for energy, height, name in cases:
+        axes.annotate(name, (energy, height), xytext=places.get(name, (4, -3)), textcoords="offset points", fontsize=6)
+
+
+def _convergence(payload: Payload, figure: Any) -> bool:
+    axes = figure.add_subplot()
+    for i, card in enumerate(payload.studies):
+        x, y = (_values(card.history[name]) for name in ("evaluations", "hypervolume"))
+        axes.plot(
+            x,
+            y,
+            drawstyle="steps-post",
+            color=_STYLES[i % len(_STYLES)][0],
+            ls=("-", "--", ":", "-.")[i % 4],
+            label=card.label,
+        )
+    for growth in payload.comparison.growth if payload.comparison else ():
+        x = _values(growth["evaluations"])
+        axes.fill_between(x, _values(growth["low"]), _values(growth["high"]), color="#999999", alpha=0.3, lw=0)
+        axes.plot(x, _values(growth["median"]), color="black", label=f"median of {len(growth['labels'])} seeds")
+    axes.set(xlabel="evaluations", ylabel="hypervolume (m J)")
+    if len(payload.studies) > 1:
+        axes.legend(loc="lower right")
+    return any(len(card.history["evaluations"]) for card in payload.studies)
+
+
+def _along(payload: Payload, figure: Any) -> bool:
+    figure.set_size_inches(2 * _WIDTH_IN, 1.4 * _HEIGHT_IN)
+    names = {quantity.name: quantity for quantity in QUANTITIES}
+    for k, variable in enumerate(payload.variables):
+        axes = figure.add_subplot(2, 4, k + 1)
+        quantity = names[variable["name"]]
+        for i, card in enumerate(payload.studies):
+            columns = card.trials.columns
+            tint, symbol = _STYLES[i % len(_STYLES)]
+            y = _values(columns[variable["name"]], card.front) * quantity.scale
+            axes.plot(_values(columns["height_m"], card.front), y, symbol, ms=2, color=tint, ls="")
+        unit = "" if quantity.unit == ": 1" else f" ({quantity.unit})"
+        axes.set_title(f"{quantity.label}{unit}", fontsize=7)
+        axes.tick_params(labelsize=6)
+        axes.set_xlabel("height (m)", fontsize=7)
+    return any(card.front for card in payload.studies)
+
+
+def _map(payload: Payload, figure: Any) -> bool:
+    axes = figure.add_subplot()
+    for k, table in enumerate(payload.maps):
+        for family, (tint, symbol) in zip(("ISSPG", "ESSPG"), (_STYLES[1], _STYLES[0]), strict=True):
+            points = [p for p in table.points if family in p.family_mass_kg]
+            label = family if len(payload.maps) == 1 else f"{family}, {table.motor}"
+            x, y = [p.ratio_low for p in points], [p.family_mass_kg[family] for p in points]
+            axes.plot(x, y, symbol, ms=2.5, ls="", color=tint, mfc="white" if k else tint, label=label)
+    axes.set(xlabel="gear ratio", ylabel="actuator mass (kg)")
+    axes.legend(loc="upper left")
+    return bool(payload.maps)
+
+
+def _links(payload: Payload, figure: Any) -> bool:
+    axes = figure.add_subplot()
+    length = 1000.0 * _values(payload.links["length_m"])
+    axes.plot(length, _values(payload.links["thigh_kg"]), color=_STYLES[1][0], label="thigh")
+    axes.plot(length, _values(payload.links["shank_kg"]), "--", color=_STYLES[0][0], label="shank")
+    axes.set(xlabel="link length (mm)", ylabel="mass (kg)", ylim=(0.0, None))
+    axes.legend(loc="lower right")
+    return True
+
+
+def _states(payload: Payload, figure: Any) -> bool:
+    """The paper's figure of states and inputs over time, for the knee of the first front that has one."""
+    jump, title = _knee_jump(payload)
+    if jump is None:
+        return False
+    figure.set_size_inches(_WIDTH_IN, 1.7 * _HEIGHT_IN)
+    data = {name: np.array(values) * jump.scale[name] for name, values in jump.columns.items()}
+    rows = (
+        ("torque (N m)", (("hip_motor_torque_n_m", "hip"), ("knee_motor_torque_n_m", "knee"))),
+        ("speed (rad/s)", (("hip_rad_per_s", "hip"), ("knee_rad_per_s", "knee"))),
+        ("height (m)", (("base_z_m", "base"), ("foot_z_m", "foot"))),
+    )
+    for k, (label, series) in enumerate(rows):
+        axes = figure.add_subplot(3, 1, k + 1)
+        for (name, legend), style in zip(series, ("-", "--"), strict=True):
+            axes.plot(
+                data["time_s"], data[name], style, color=_STYLES[k == 2][0] if style == "-" else "black", label=legend
+            )
+        if jump.lift_off_s is not None:
+            axes.axvline(float(jump.lift_off_s), color="#888888", lw=0.6)
+        axes.set_ylabel(label)
+        axes.legend(loc="best")
+    axes.set_xlabel("time (s)")
+    figure.suptitle(title, fontsize=8)
+    return True
+
+
+def _knee_jump(payload: Payload) -> tuple[Jump | None, str]:
+    for card in payload.studies:
+        for picked in card.picks:
+            trial = card.trials.trial[picked.row]
+            if str(trial) in card.jumps:
+                return card.jumps[str(trial)], f"{card.label}, trial {trial} ({picked.name})"
+    return None, ""

@@ -1,0 +1,21 @@
+import pytest
+from click.testing import CliRunner
+
+from pareto_monoped.cli.reports import report
+from tests.report.conftest import db, folder  # noqa: F401
+
+
+def test_report_writes_one_page_and_figures(db, tmp_path):  # noqa: F811
+    result = CliRunner().invoke(
+        report, [str(db), "-o", str(tmp_path / "r.html"), "--figures", str(tmp_path / "figures")]
+    )
+    assert result.exit_code == 0, result.output
+    assert result.stdout == ""
+    assert (tmp_path / "r.html").read_text().startswith("<!doctype html>")
+    assert (tmp_path / "figures" / "front.svg").exists()
+
+
+@pytest.mark.parametrize("arguments", [[], ["x.db"]])
+def test_report_without_a_database_or_an_output_is_a_usage_error(arguments):
+    result = CliRunner().invoke(report, arguments)
+    assert result.exit_code == 2

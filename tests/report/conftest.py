@@ -1,0 +1,174 @@
+"""Real small studies, made once a session, and a headless browser without a network."""
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.report.payload import Source, build
+from pareto_monoped.report.physics import simulate_extras
+from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.run import run
+
+SETTINGS = {"name": "small", "description": "for tests", "case": "C", "evaluations": 200, "seed": 3}
+
+
+def made(folder: Path, **changes) -> Path:
+    study = study_from_dict(SETTINGS | changes, source="test")
+    db = folder / f"{study.algorithm.name}_{study.seed}_{study.evaluations}.db"
+    run(study, db, workers=2)
+    return db
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("report")
+
+
+@pytest.fixture(scope="session")
+def db(folder) -> Path:
+    """A real study of 200 jumps."""
+    return made(folder)
+
+
+@pytest.fixture(scope="session")
+def other_seed(folder) -> Path:
+    """The same study with another seed and budget."""
+    return made(folder, seed=4, evaluations=120)
+
+
+@pytest.fixture(scope="session")
+def weighted(folder) -> Path:
+    """Two runs of the paper's weighted search."""
+    algorithm = {"name": "weighted_cmaes", "height_weights": [0.2, 0.6], "iterations": 4}
+    return made(folder, name="weighted", algorithm=algorithm, evaluations=80)
+
+
+@pytest.fixture(scope="session")
+def data(db) -> StudyData:
+    return read_study(db)
+
+
+@pytest.fixture(scope="session")
+def extras(data):
+    return simulate_extras(data, most_jumps=8)
+
+
+@pytest.fixture(scope="session")
+def source(data, extras) -> Source:
+    return Source(database="small.db", data=data, extras=extras, models={})
+
+
+@pytest.fixture(scope="session")
+def payload(source):
+    return build([source])
+
+
+def cut(data: StudyData, keep: np.ndarray, *, finished: bool = False, state: str | None = None) -> StudyData:
+    """The study with only the trials at a mask, as if it had come no further."""
+    trials = data.trials[keep].reset_index(drop=True)
+    if state is not None:
+        trials["state"] = pd.array([state] * len(trials), dtype="str")
+    history = data.history[data.history["evaluations"] <= len(trials)]
+    audits = data.audits[data.audits["trial"].isin(trials["trial"])].reset_index(drop=True)
+    meta = data.meta | {"finished": finished, "stop_reason": None}
+    return replace(data, trials=trials, history=history, audits=audits, meta=meta)
+
+
+def grown(data: StudyData, count: int) -> StudyData:
+    """A study of ``count`` trials: the real ones over and over, each a little off, a tenth of them infeasible."""
+    rng = np.random.default_rng(1)
+    trials = data.trials.iloc[rng.integers(0, len(data.trials), count)].reset_index(drop=True)
+    trials["trial"] = np.arange(count)
+    for name in NAMES:
+        low, high = data.study.lower[NAMES.index(name)], data.study.upper[NAMES.index(name)]
+        trials[name] = np.clip(trials[name] * rng.normal(1.0, 0.03, count), low, high)
+    trials["energy_j"] *= 1.0 + rng.exponential(0.2, count)
+    trials["height_m"] *= 1.0 - rng.exponential(0.05, count)
+    feasible = (trials["state"] == "feasible").to_numpy() & (rng.random(count) > 0.1)
+    trials["state"] = pd.array(np.where(feasible, "feasible", "infeasible").astype(str), dtype="str")
+    return replace(data, trials=trials, audits=data.audits.iloc[:0])
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[object]:
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("no Chromium is installed")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        # SwiftShader draws the 3D view where there is no graphics card.
+        drawing = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        running = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", *drawing])
+        yield running
+        running.close()
+
+
+class Tab:
+    """A page in a browser without a network, with everything that it complained about or asked for."""
+
+    def __init__(self, browser, file: Path, width: int = 1440, height: int = 900, **options) -> None:
+        self.context = browser.new_context(
+            viewport={"width": width, "height": height}, reduced_motion="reduce", **options
+        )
+        self.context.set_offline(True)
+        self.page = self.context.new_page()
+        self.complaints: list[str] = []
+        self.requests: list[str] = []
+        self.page.on("console", lambda m: self.complaints.append(m.text) if m.type == "error" else None)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.goto(file.as_uri())
+        self.page.wait_for_selector("#front-chart .main-svg")
+        self.page.wait_for_selector("#parallel-chart canvas")
+
+    def text(self, selector: str) -> str:
+        return self.page.inner_text(selector)
+
+    def point(self, trace: str, index: int) -> tuple[float, float]:
+        """Where a point of the front chart lies in the window."""
+        return tuple(
+            self.page.evaluate(
+                """([name, i]) => {
+                    const gd = document.getElementById("front-chart");
+                    const t = gd.data.find((t) => t.name === name), box = gd.getBoundingClientRect();
+                    const { xaxis, yaxis } = gd._fullLayout;
+                    return [box.left + xaxis._offset + xaxis.d2p(t.x[i]), box.top + yaxis._offset + yaxis.d2p(t.y[i])];
+                }""",
+                [trace, index],
+            )
+        )
+
+    def scroll_through(self) -> None:
+        """Let every chart come into view."""
+        for top in range(0, self.page.evaluate("document.documentElement.scrollHeight"), 600):
+            self.page.evaluate(f"window.scrollTo(0, {top})")
+            self.page.wait_for_timeout(40)
+        self.page.evaluate("window.scrollTo(0, 0)")
+        self.page.wait_for_timeout(40)
+
+    def quiet(self, file: Path) -> None:
+        """Nothing was asked for but the file itself (its icon is empty data), and nothing went wrong."""
+        assert [url for url in self.requests if not url.startswith("data:")] == [file.as_uri()]
+        assert self.complaints == []
+
+
+@pytest.fixture
+def open_tab(browser):
+    tabs = []
+
+    def opened(file: Path, **options) -> Tab:
+        tabs.append(Tab(browser, file, **options))
+        return tabs[-1]
+
+    yield opened
+    for tab in tabs:
+        tab.context.close()

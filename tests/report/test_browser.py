@@ -1,0 +1,281 @@
+"""The page in headless Chromium, from a file, with the network off."""
+
+import re
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.report.page import page, write_report
+from pareto_monoped.report.payload import Source, build
+from tests.report.conftest import cut, grown
+
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+
+
+@pytest.fixture(scope="module")
+def report(folder, payload):
+    file = folder / "report.html"
+    file.write_text(page(payload), encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def tab(report, open_tab):
+    return open_tab(report)
+
+
+def written(folder, name, sources):
+    file = folder / name
+    file.write_text(page(build(sources)), encoding="utf-8")
+    return file
+
+
+def test_asks_for_nothing_and_complains_of_nothing(tab, report):
+    tab.scroll_through()
+    assert tab.page.locator("#convergence .main-svg").count() > 0
+    assert tab.page.locator("#map-chart .main-svg").count() > 0
+    tab.quiet(report)
+
+
+def test_begins_with_the_knee_and_the_sentence(tab, payload):
+    (card,) = payload.studies
+    assert f"Trial {card.trials.trial[card.picks[0].row]}" in tab.text("#subject")
+    assert card.summary[0] in tab.text("header")
+
+
+def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
+    (card,) = payload.studies
+    at = len(card.front) - 1
+    row = card.front[at]
+    tab.page.mouse.click(*tab.point("front", at))
+    tab.page.wait_for_function(f"document.querySelector('#subject').textContent.includes('{card.trials.trial[row]}')")
+    assert f"{card.trials.columns['height_m'][row]:.3f} m" in tab.text("#headline")
+    assert f"{card.trials.columns['thigh_length_m'][row] * 1000:.1f} mm" in tab.text("#variables")
+    knee = payload.gearboxes[card.trials.columns["knee_gearbox"][row]]
+    assert f"{knee.sun_teeth}/{knee.planet_teeth}/{knee.ring_teeth}" in tab.text("#gears")
+    assert f"{card.trials.columns['mass_kg'][row]:.3f} kg" in tab.text("#mass")
+    assert f"--trial {card.trials.trial[row]}" in tab.text("#commands")
+    assert tab.page.get_attribute("#front-chart", "aria-valuenow") == str(at + 1)
+    assert tab.page.locator("#time-charts svg").count() == 3
+    tab.quiet(report)
+
+
+def test_a_click_on_the_papers_diamond_shows_that_case(tab, payload):
+    tab.page.mouse.click(*tab.point("simulated", 0))
+    tab.page.wait_for_function("document.querySelector('#subject').textContent.includes('nominal design')")
+    assert f"{payload.studies[0].cases[0].energy_j:.2f} J" in tab.text("#headline")
+    assert "simulate --case nominal" in tab.text("#commands")
+
+
+def test_arrow_keys_move_along_the_front(tab, payload):
+    (card,) = payload.studies
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("Home")
+    assert tab.page.get_attribute("#front-chart", "aria-valuenow") == "1"
+    for _ in range(3):
+        tab.page.keyboard.press("ArrowRight")
+    assert f"Trial {card.trials.trial[card.front[3]]}" in tab.text("#subject")
+    tab.page.keyboard.press("ArrowDown")
+    assert f"Trial {card.trials.trial[card.front[2]]}" in tab.text("#subject")
+    tab.page.keyboard.press("End")
+    assert tab.page.get_attribute("#front-chart", "aria-valuenow") == str(len(card.front))
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_height_typed_in_gets_the_cheapest_design_that_reaches_it(tab, data, share):
+    from pareto_monoped.pareto.pick import MinHeight, pick
+
+    front = data.front()
+    low, high = front["height_m"].min(), front["height_m"].max()
+    wanted = round(low + share * (high - low), 3)
+    tab.page.fill("#ask-height", str(wanted))
+    trial = pick(front, MinHeight(height_m=wanted)).trial
+    assert f"Trial {trial}" in tab.text("#subject")
+    assert f"trial {trial}" in tab.text("#ask-answer")
+
+
+def test_an_energy_typed_in_gets_the_highest_jump_on_it(tab, data):
+    from pareto_monoped.pareto.pick import MaxEnergy, pick
+
+    front = data.front()
+    allowed = round(float(front["energy_j"].median()), 2)
+    tab.page.fill("#ask-energy", str(allowed))
+    assert f"Trial {pick(front, MaxEnergy(energy_j=allowed)).trial}" in tab.text("#subject")
+    tab.page.fill("#ask-height", "99")
+    assert "The front ends at" in tab.text("#ask-answer")
+
+
+def drag_axis(tab, name, top=0.1, bottom=0.5):
+    line = tab.page.locator(f"#parallel-chart g[data-axis={name}] line").first
+    line.scroll_into_view_if_needed()
+    box = line.bounding_box()
+    tab.page.mouse.move(box["x"], box["y"] + top * box["height"])
+    tab.page.mouse.down()
+    tab.page.mouse.move(box["x"], box["y"] + 0.5 * (top + bottom) * box["height"])
+    tab.page.mouse.move(box["x"], box["y"] + bottom * box["height"])
+    tab.page.mouse.up()
+
+
+def test_a_range_on_an_axis_dims_the_front_outside_it(tab, payload, report):
+    (card,) = payload.studies
+    drag_axis(tab, "energy_j")
+    low, high = (float(tab.page.input_value(f"[data-range=energy_j-{side}]")) for side in ("from", "to"))
+    energies = [card.trials.columns["energy_j"][row] for row in card.front]
+    inside = [low <= energy <= high for energy in energies]
+    assert 0 < sum(inside) < len(inside)
+    assert f"{sum(inside)} of {len(inside)} designs on the front" in tab.text("#brush-note")
+    opacity = tab.page.evaluate(
+        "document.getElementById('front-chart').data.find((t) => t.name === 'front').marker.opacity"
+    )
+    assert [value == 1 for value in opacity] == inside
+    tab.page.click("#clear-ranges")
+    assert tab.page.input_value("[data-range=energy_j-from]") == ""
+    tab.quiet(report)
+
+
+def test_a_range_can_be_typed(tab, payload):
+    (card,) = payload.studies
+    tab.page.click("#parallel summary")
+    tab.page.fill("[data-range=height_m-from]", "0.9")
+    tab.page.keyboard.press("Tab")
+    inside = sum(card.trials.columns["height_m"][row] >= 0.9 for row in card.front)
+    assert f"{inside} of {len(card.front)} designs on the front" in tab.text("#brush-note")
+
+
+def test_a_click_on_a_line_of_the_parallel_coordinates_selects_its_design(tab, payload):
+    (card,) = payload.studies
+    lines = tab.page.locator("#parallel-chart g.axis > line:first-of-type")
+    lines.last.scroll_into_view_if_needed()
+    before, last = lines.nth(lines.count() - 2).bounding_box(), lines.last.bounding_box()
+    # The top end of the energy axis belongs to the dearest design or one close to it.
+    tab.page.mouse.click(0.5 * (before["x"] + last["x"]) + 20, before["y"] + 30)
+    trial = int(re.search(r"Trial (\d+)", tab.text("#subject"))[1])
+    assert card.trials.columns["height_m"][card.trials.trial.index(trial)] > 0.7
+
+
+def test_the_jump_plays_and_the_foot_stands_on_the_floor(tab):
+    tab.page.focus("#scrub")
+    tab.page.keyboard.press("Home")
+    first = tab.page.get_attribute("#stage g:last-of-type", "transform")
+    tab.page.select_option("#speed", "1")
+    tab.page.click("#play")
+    tab.page.wait_for_function("document.querySelector('#play').textContent === 'Play'")
+    assert float(tab.page.input_value("#scrub")) == 1000
+    assert tab.page.get_attribute("#stage g:last-of-type", "transform") != first
+
+
+def test_switches_hide_and_show(tab):
+    def names():
+        return tab.page.evaluate("document.getElementById('front-chart').data.map((t) => t.name)")
+
+    assert {"front", "dominated", "published", "simulated", "floor", "picks"} <= set(names())
+    assert "infeasible" not in names()
+    for key in ("cloud", "published", "floor"):
+        tab.page.uncheck(f"[data-show={key}]")
+    tab.page.check("[data-show=infeasible]")
+    assert not {"dominated", "published", "floor"} & set(names())
+    assert "infeasible" in names()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
+def test_nothing_sticks_out_sideways(report, open_tab, width, height, scheme):
+    tab = open_tab(report, width=width, height=height, color_scheme=scheme)
+    tab.scroll_through()
+    assert tab.page.evaluate("document.documentElement.scrollWidth") == width
+    tab.quiet(report)
+
+
+def test_charts_have_words_and_controls_have_names(tab):
+    tab.scroll_through()
+    unnamed = tab.page.evaluate(
+        """[...document.querySelectorAll("button, input, select, canvas, [role=img], [role=slider]")].filter((node) =>
+            !(node.getAttribute("aria-label") || node.labels?.length || node.textContent.trim())
+            && !node.closest(".modebar")).map((node) => node.outerHTML.slice(0, 120))"""
+    )
+    assert unnamed == []
+
+
+def test_a_study_named_like_a_script_does_nothing(data, extras, folder, open_tab):
+    nasty = "</title><script>alert(1)</script><img src=x onerror=alert(2)>"
+    study = replace(data.study, name=nasty, description=nasty)
+    named = Source(database=f"{nasty}.db", data=replace(data, study=study), extras=extras, models={})
+    file = written(folder, "nasty.html", [named, named])
+    tab = open_tab(file)
+    tab.scroll_through()
+    tab.page.mouse.move(*tab.point("front", 0))
+    tab.page.wait_for_timeout(100)
+    assert nasty in tab.text("h1")
+    assert tab.page.locator("img[src=x]").count() == 0
+    tab.quiet(file)
+
+
+@pytest.mark.parametrize("kind", ["empty", "one", "none feasible", "unfinished"])
+def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, extras, folder, open_tab, kind):
+    feasible = np.flatnonzero(data.trials["state"] == "feasible")
+    keep = np.zeros(len(data.trials), dtype=bool)
+    keep[{"empty": [], "one": feasible[:1], "none feasible": feasible, "unfinished": np.arange(90)}[kind]] = True
+    less = cut(data, keep, state="infeasible" if kind == "none feasible" else None)
+    source = Source(database="x.db", data=less, extras=replace(extras, jumps={}), models={})
+    file = written(folder, f"{kind}.html", [source])
+    tab = open_tab(file)
+    tab.scroll_through()
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("ArrowRight")
+    tab.page.fill("#ask-height", "0.7")
+    expected = {
+        "empty": "No design has been simulated yet",
+        "one": "One design is on the front",
+        "none feasible": "is feasible: there is no front",
+        "unfinished": "Unfinished: 90 of 200",
+    }[kind]
+    assert expected in tab.text("header")
+    tab.quiet(file)
+
+
+def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed, weighted, folder, open_tab):
+    file = folder / "three.html"
+    write_report([db, other_seed, weighted], file)
+    tab = open_tab(file)
+    tab.scroll_through()
+
+    def fronts():
+        return tab.page.evaluate("document.getElementById('front-chart').data.filter((t) => t.name === 'front').length")
+
+    assert fronts() == 3
+    assert tab.page.locator("#attainment .main-svg").count() > 0
+    assert tab.page.locator("#search tbody tr").count() == 3
+    tab.page.uncheck("[data-study='1']")
+    assert fronts() == 2
+    tab.page.mouse.click(*tab.point("weighted", 0))
+    tab.page.wait_for_function("document.querySelector('#subject').textContent.includes('weighted')")
+    tab.quiet(file)
+
+
+def test_twenty_thousand_trials_stay_small_and_quick(data, extras, folder, open_tab):
+    big = grown(data, 20_000)
+    source = Source(database="big.db", data=big, extras=extras, models={})
+    start = time.perf_counter()
+    file = written(folder, "big.html", [source])
+    assert time.perf_counter() - start < 8.0
+    assert file.stat().st_size < 9e6
+    tab = open_tab(file)
+    paint = tab.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    assert paint < 2000.0
+    took = tab.page.evaluate(
+        """async () => {
+            const gd = document.getElementById("front-chart");
+            const times = [];
+            for (let k = 0; k < 9; k += 1) {
+                const start = performance.now();
+                gd.dispatchEvent(new KeyboardEvent("keydown", { key: k ? "ArrowRight" : "Home", bubbles: true }));
+                await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+                times.push(performance.now() - start);
+            }
+            return times.sort((a, b) => a - b)[4];
+        }"""
+    )
+    assert took < 100.0
+    tab.quiet(file)

@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.report.comparison import compare, energy_at
+from pareto_monoped.report.payload import Source, build
+from pareto_monoped.report.physics import simulate_extras
+from pareto_monoped.study.reader import read_study
+
+numbers = st.floats(0.5, 2.0)
+
+
+@given(st.lists(st.tuples(numbers, st.floats(1.0, 90.0)), max_size=8), numbers)
+def test_energy_at_a_height_is_the_least_of_those_that_reach_it(points, height):
+    front = np.array(points).reshape(-1, 2)
+    able = [energy for reached, energy in points if reached >= height]
+    assert energy_at(front, np.array([height]))[0] == (min(able) if able else np.inf)
+
+
+@pytest.fixture(scope="module")
+def both(data, other_seed):
+    return [data, read_study(other_seed)]
+
+
+def test_hypervolumes_come_from_one_corner(both):
+    comparison = compare(both, ["a", "b"], (0.7, 0.8))
+    for row, data in zip(comparison.rows, both, strict=True):
+        points = data.front()[["height_m", "energy_j"]].to_numpy()
+        assert row["hypervolume"] == pytest.approx(hypervolume(points, both[0].reference_point), abs=1e-4)
+
+
+def test_seeds_of_one_study_are_a_group_with_ordered_surfaces(both):
+    (surface,) = compare(both, ["a", "b"], (0.8,)).surfaces
+    assert surface["labels"] == ["a", "b"]
+    for best, worst in zip(surface["best"], surface["worst"], strict=True):
+        assert worst is None or best <= worst
+    # The best surface is the front of both runs together.
+    together = np.concatenate([d.front()[["height_m", "energy_j"]].to_numpy() for d in both])
+    expected = energy_at(together, np.array(surface["height_m"]))
+    near = np.array([np.nan if v is None else v for v in surface["best"]])
+    # Heights are rounded in the payload, so a step of the front may fall on the other side of one.
+    assert np.nanmedian(np.abs(near - expected)[np.isfinite(expected)]) < 1e-3
+    (growth,) = compare(both, ["a", "b"], (0.8,)).growth
+    assert growth["evaluations"][-1] == min(len(d.trials) for d in both)
+    assert all(low <= high for low, high in zip(growth["low"], growth["high"], strict=True))
+
+
+def test_other_algorithms_are_no_seeds_of_it(data, weighted):
+    assert compare([data, read_study(weighted)], ["a", "b"], (0.8,)).surfaces == []
+
+
+def test_one_study_is_not_compared(payload):
+    assert payload.comparison is None
+
+
+def test_two_studies_share_a_map(source, both):
+    other = Source(database="b.db", data=both[1], extras=simulate_extras(both[1], most_jumps=1), models={})
+    payload = build([source, other])
+    assert len(payload.maps) == 1
+    assert [card.map for card in payload.studies] == [0, 0]
+    assert len(payload.comparison.rows) == 2

@@ -1,0 +1,75 @@
+import base64
+import hashlib
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from pareto_monoped.errors import DatabaseError, OutputError, StudyError
+from pareto_monoped.report.page import page, payload_of, write_report
+from pareto_monoped.report.tables import safe
+
+
+class Scripts(HTMLParser):
+    """The scripts of a page as a browser would see them."""
+
+    def __init__(self, text):
+        super().__init__(convert_charrefs=False)
+        self.found, self.policy = [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        if tag == "script":
+            self.found.append([attributes.get("type"), ""])
+        if attributes.get("http-equiv") == "Content-Security-Policy":
+            self.policy = attributes["content"]
+
+    def handle_data(self, data):
+        if self.lasttag == "script" and self.found and self.cdata_elem == "script":
+            self.found[-1][1] += data
+
+
+@pytest.fixture(scope="module")
+def text(payload):
+    return page(payload)
+
+
+def test_policy_lets_exactly_the_two_scripts_of_the_page_run(text):
+    scripts = Scripts(text)
+    running = [content for kind, content in scripts.found if kind is None]
+    assert len(scripts.found) == 3
+    prints = [base64.b64encode(hashlib.sha256(content.encode()).digest()).decode() for content in running]
+    assert sorted(re.findall(r"'sha256-([^']+)'", scripts.policy)) == sorted(prints)
+    assert "default-src 'none'" in scripts.policy
+
+
+def test_page_is_the_same_every_time(payload, text):
+    assert page(payload) == text
+
+
+def test_page_of_a_small_study_is_under_six_megabytes(text):
+    assert len(text.encode()) < 6e6
+
+
+def test_safe_escapes_markup_and_quotes():
+    assert safe("<a b=\"c\" d='e'>&") == "&lt;a b=&quot;c&quot; d=&#x27;e&#x27;&gt;&amp;"
+
+
+def test_a_missing_database_is_refused_and_nothing_is_written(tmp_path, db):
+    out = tmp_path / "r.html"
+    with pytest.raises(DatabaseError):
+        write_report([db, tmp_path / "none.db"], out)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_database_is_refused():
+    with pytest.raises(StudyError, match="databases = 0"):
+        payload_of([])
+
+
+def test_a_folder_that_is_not_there_is_refused(tmp_path, db):
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_report([db], tmp_path / "none" / "r.html")
+    with pytest.raises(OutputError, match="exports folder"):
+        payload_of([db], exports=tmp_path / "none")

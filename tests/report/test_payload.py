@@ -1,0 +1,131 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.pareto.pick import Knee, pick
+from pareto_monoped.report import payload as payload_module
+from pareto_monoped.report.page import embedded
+from pareto_monoped.report.payload import Source, build, column
+from pareto_monoped.robot import build_robot
+from tests.report.conftest import cut, grown
+
+
+def test_column_keeps_five_digits_and_leaves_out_what_is_no_number():
+    values = [123.456789, -0.00123456, 98765.4, 0.0, float("nan"), float("inf")]
+    assert column(values) == [123.46, -0.0012346, 98765.0, 0.0, None, None]
+
+
+@pytest.mark.parametrize("value", np.random.default_rng(0).lognormal(0.0, 4.0, 12))
+def test_column_is_off_by_at_most_half_a_digit(value):
+    assert column([value])[0] == pytest.approx(value, rel=0.5e-4)
+
+
+def test_rows_are_the_trials(payload, data):
+    (card,) = payload.studies
+    assert card.trials.trial == data.trials["trial"].tolist()
+    assert card.counts["total"] == card.trials.total == len(data.trials)
+    np.testing.assert_allclose(
+        np.array([card.trials.columns[n] for n in NAMES], dtype=float).T, data.trials[list(NAMES)], rtol=1e-4, atol=1e-9
+    )
+
+
+def test_front_has_the_readers_designs_in_order(payload, data):
+    (card,) = payload.studies
+    assert [card.trials.trial[row] for row in card.front] == data.front()["trial"].tolist()
+    heights = [card.trials.columns["height_m"][row] for row in card.front]
+    assert heights == sorted(heights)
+
+
+def test_first_pick_is_the_knee_of_the_pick_command(payload, data):
+    (card,) = payload.studies
+    assert card.picks[0].name == "knee"
+    assert card.trials.trial[card.picks[0].row] == pick(data.front(), Knee()).trial
+
+
+def test_masses_of_the_bodies_add_up_to_the_simulated_robot(payload):
+    (card,) = payload.studies
+    for at, row in enumerate(card.front):
+        bodies = sum(card.more[f"{body}_kg"][at] for body in ("base", "thigh", "shank"))
+        assert bodies == pytest.approx(card.trials.columns["mass_kg"][row], abs=3e-4)
+
+
+def test_gearboxes_are_those_of_the_built_robot(payload, data, extras):
+    from pareto_monoped.design import Design
+
+    (card,) = payload.studies
+    for row in card.front:
+        design = Design.from_array(data.trials.loc[row, list(NAMES)].to_numpy(dtype=float))
+        robot = build_robot(design, extras.actuator_map)
+        for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
+            gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
+            assert (gearbox.sun_teeth, gearbox.ring_teeth) == (actuator.gears.sun_teeth, actuator.gears.ring_teeth)
+            assert gearbox.family == actuator.family
+            assert gearbox.mass_kg == pytest.approx(actuator.mass_kg, abs=1e-4)
+
+
+def test_cases_come_with_their_jump(payload):
+    (card,) = payload.studies
+    assert [case.name for case in card.cases] == list(PAPER_CASES)
+    for case in card.cases:
+        assert case.status == "ok"
+        assert case.jump.height_m == pytest.approx(case.height_m, abs=1e-4)
+
+
+def test_a_page_of_many_trials_keeps_the_front_and_says_what_it_leaves_out(data, extras, monkeypatch):
+    monkeypatch.setattr(payload_module, "MOST_ROWS", 1000)
+    big = grown(data, 3000)
+    (card,) = build([Source(database="big.db", data=big, extras=extras, models={})]).studies
+    assert len(card.trials.trial) == 1000
+    assert card.trials.total == card.counts["total"] == 3000
+    assert [card.trials.trial[row] for row in card.front] == big.front()["trial"].tolist()
+    assert card.counts["infeasible"] == int((big.trials["state"] == "infeasible").sum())
+
+
+def test_same_names_get_labels_that_differ(source):
+    other = replace(source, database="copy.db")
+    labels = [card.label for card in build([source, other, other]).studies]
+    assert len(set(labels)) == 3
+    assert all("small" in label for label in labels)
+
+
+def test_embedded_json_reads_back_and_holds_no_markup(data, extras):
+    nasty = "</script><script>alert(1)</script><!-- \u2028"
+    study = replace(data.study, name=nasty)
+    payload = build([Source(database="x.db", data=replace(data, study=study), extras=extras, models={})])
+    text = embedded(payload)
+    assert "<" not in text
+    assert "\u2028" not in text
+    assert json.loads(text)["studies"][0]["name"] == nasty
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_studies_with_nothing_to_choose_from_give_a_payload(data, extras, count):
+    keep = np.zeros(len(data.trials), dtype=bool)
+    keep[np.flatnonzero(data.trials["state"] == "feasible")[:count]] = True
+    (card,) = build(
+        [Source(database="x.db", data=cut(data, keep), extras=replace(extras, jumps={}), models={})]
+    ).studies
+    assert len(card.front) == count
+    assert len(card.picks) == min(count, 1) or count == 1
+    assert card.notes[0].startswith(f"Unfinished: {count} of ")
+
+
+def test_weighted_runs_give_the_trial_of_least_cost(weighted):
+    from pareto_monoped.report.physics import simulate_extras
+    from pareto_monoped.study.reader import read_study
+
+    data = read_study(weighted)
+    source = Source(database="w.db", data=data, extras=simulate_extras(data, most_jumps=1), models={})
+    (card,) = build([source]).studies
+    assert [weight for weight, _ in card.weighted] == [0.2, 0.6]
+    scale = data.study.algorithm.height_scale_j
+    for weight, row in card.weighted:
+        run = data.trials[(data.trials["height_weight"] == weight) & (data.trials["state"] == "feasible")]
+        costs = [
+            weight * scale * np.exp(-h) + (1.0 - weight) * e
+            for h, e in zip(run["height_m"], run["energy_j"], strict=True)
+        ]
+        assert card.trials.trial[row] == run["trial"].iloc[int(np.argmin(costs))]
