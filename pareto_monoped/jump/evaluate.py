@@ -2,20 +2,17 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pareto_monoped.actuator.search import ActuatorMap
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, NAMES
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
 from pareto_monoped.robot import RobotArrays, robot_arrays
-
-if TYPE_CHECKING:
-    from pareto_monoped.actuator.search import ActuatorMap
 
 Floats = NDArray[np.float64]
 
@@ -101,7 +98,7 @@ class Evaluator:
         workers: threads.
     """
 
-    def __init__(self, actuator_map: "ActuatorMap", calibration: Calibration, workers: int = 1) -> None:
+    def __init__(self, actuator_map: ActuatorMap, calibration: Calibration, workers: int = 1) -> None:
         self.actuator_map = actuator_map
         self.calibration = calibration
         self.workers = workers
@@ -143,10 +140,10 @@ def _nonsense(row: Floats) -> str:
     """Why seven numbers are no design; empty if they are one, within the paper's bounds or not."""
     for name, value in zip(NAMES, row.tolist(), strict=True):
         if not np.isfinite(value):
-            return f"{name} = {value}: must be a finite number"
+            return f"{name} = {value}: must be a finite number; give a number"
         least = _SHORTEST_LINK_M if name.endswith("length_m") else 0.0
         if value < least:
-            return f"{name} = {value:g}: must be at least {least:g}"
+            return f"{name} = {value:g}: must be at least {least:g}; give a larger value"
     return ""
 
 

@@ -6,12 +6,15 @@ the controller is off for good, ``fly`` goes through several recorded steps at a
 """
 
 import math
+from collections.abc import Callable
+from typing import TypeVar, cast
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Function = TypeVar("Function", bound=Callable[..., object])
 
 # Columns of ``constants``, one row a jump.
 (
@@ -47,7 +50,17 @@ SPEED_LIMIT = 1e4
 """A joint or slide faster than this (m/s, rad/s) is a failed simulation."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _compiled(function: Function) -> Function:
+    """Compile for the processor's own code; kept on disk where there is a place to write to."""
+    options = {"nogil": True, "error_model": "numpy"}
+    try:
+        compiled = numba.njit(cache=True, **options)(function)
+    except RuntimeError:  # numba has no folder that it may write its cache to
+        compiled = numba.njit(**options)(function)
+    return cast(Function, compiled)
+
+
+@_compiled
 def advance(
     ids: NDArray[np.int32],
     count: int,
@@ -74,7 +87,7 @@ def advance(
     return left
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def fly(
     ids: NDArray[np.int32],
     count: int,
@@ -117,7 +130,7 @@ def fly(
     return left
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _fine(q: Floats, v: Floats) -> bool:
     """Whether a state is finite and not absurdly fast."""
     fine = True
@@ -126,7 +139,7 @@ def _fine(q: Floats, v: Floats) -> bool:
     return fine
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _end(q: Floats, v: Floats, m: Floats, status: NDArray[np.int32], i: int, settings: Floats) -> None:
     """End a jump at the apex (the foot has stood and is off the ground, the base no longer rises), or in failure."""
     nv = v.shape[0]
@@ -138,7 +151,7 @@ def _end(q: Floats, v: Floats, m: Floats, status: NDArray[np.int32], i: int, set
         status[i] = TIMEOUT if m[OFF] > 0.0 else NO_LIFT_OFF
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _one(
     q: Floats, v: Floats, ctrl: Floats, c: Floats, m: Floats, status: NDArray[np.int32], i: int, settings: Floats
 ) -> None:
@@ -213,7 +226,7 @@ def _one(
     ctrl[0], ctrl[1] = m[JOINT_TORQUE_HIP], m[JOINT_TORQUE_KNEE]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _limited(torque: float, speed: float, m: Floats, c: Floats, settings: Floats, joint: int) -> float:
     """``torque`` within the motor's peak and, where it drives, within its voltage-speed line."""
     peak = c[PEAK_HIP + joint]
@@ -231,7 +244,7 @@ def _limited(torque: float, speed: float, m: Floats, c: Floats, settings: Floats
     return torque
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed: float) -> float:
     """What reaches the joint: load-dependent friction of gears and chain opposes the motion."""
     if loss == 0.0 or torque == 0.0:
@@ -240,7 +253,7 @@ def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed
     return min(max(after, -peak), peak)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@_compiled
 def _book(m: Floats, c: Floats, speed: tuple[float, float], timestep: float, mean_speed: bool) -> None:
     """Add the step just made: torque times the speed at its start, or times the mean of the speeds at its ends."""
     for joint in range(2):
