@@ -1,0 +1,120 @@
+import csv
+import json
+
+import mujoco
+import numpy as np
+import pytest
+
+from pareto_monoped.cli import main
+from pareto_monoped.design import NAMES, PAPER_CASES
+
+
+def run(capsys, *arguments):
+    with pytest.raises(SystemExit) as stopped:
+        main(list(arguments))
+    out = capsys.readouterr()
+    return stopped.value.code, out.out, out.err
+
+
+def test_simulate_json_has_what_others_rely_on(capsys):
+    code, out, err = run(capsys, "simulate", "--case", "C", "--json")
+    assert (code, err) == (0, "")
+    report = json.loads(out)
+    assert report["status"] == "ok"
+    assert report["calibration"] == "reference-1"
+    assert report["design"] == PAPER_CASES["C"].design.as_dict()
+    for name in ("height_m", "energy_j", "foot_clearance_m", "mass_kg"):
+        assert report[name] > 0.0
+
+
+def test_set_changes_a_variable_and_notes_what_lies_outside_the_paper(capsys):
+    code, out, err = run(capsys, "simulate", "--set", "thigh_length_m=0.55", "--set", "stiffness_n_per_m=30", "--json")
+    assert code == 0
+    design = json.loads(out)["design"]
+    assert (design["thigh_length_m"], design["stiffness_n_per_m"]) == (0.55, 30.0)
+    assert err.splitlines() == ["note: thigh_length_m = 0.55 is outside the paper's bounds, 0.3 to 0.5 m"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--set", "knee=6"), "thigh_length_m"),
+        (("--set", "knee_ratio"), "NAME=VALUE"),
+        (("--set", "knee_ratio=six"), "a number"),
+        (("--set", "knee_ratio=nan"), "finite"),
+        (("--set", "knee_ratio=40"), "knee_ratio"),
+        (("--set", "thigh_length_m=-0.4"), "at least"),
+        (("--case", "D"), "nominal"),
+        (("--calibration", "paperr"), "paper"),
+        (("--motor", "nosuchmotor"), "nosuchmotor"),
+        (("--set", "thigh_length_m=1.5", "--trace", "t.csv"), "cannot stand"),
+        (("--trace", "no/such/folder/t.csv"), "no/such/folder"),
+    ],
+)
+def test_bad_input_gets_one_line_and_leaves_nothing(capsys, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(capsys, "simulate", *arguments)
+    assert code == 2
+    assert out == ""
+    (line,) = [line for line in err.splitlines() if not line.startswith("note: ")]
+    assert line.startswith("error: ")
+    assert said in line
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_design_that_cannot_stand_is_a_result(capsys):
+    code, out, _ = run(capsys, "simulate", "--set", "thigh_length_m=1.5", "--json")
+    report = json.loads(out)
+    assert code == 0
+    assert report["status"] == "cannot_stand"
+    assert report["height_m"] is None
+    assert report["reason"]
+
+
+def test_trace_and_model_are_those_of_the_jump(capsys, tmp_path):
+    trace, model = tmp_path / "jump.csv", tmp_path / "robot.xml"
+    code, out, _ = run(capsys, "simulate", "--case", "B", "--json", "--trace", str(trace), "--model", str(model))
+    report = json.loads(out)
+    assert code == 0
+    with trace.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert max(float(row["base_z_m"]) for row in rows) == report["height_m"]
+    loaded = mujoco.MjModel.from_xml_path(str(model))
+    data = mujoco.MjData(loaded)
+    mujoco.mj_resetDataKeyframe(loaded, data, loaded.key("start").id)
+    # The recorded torques, played back in plain MuJoCo, make the same jump.
+    for row in rows[:-1]:
+        data.ctrl[:] = float(row["hip_torque_n_m"]), float(row["knee_torque_n_m"])
+        mujoco.mj_step(loaded, data)
+    mujoco.mj_kinematics(loaded, data)
+    assert data.body("base").xpos[2] == pytest.approx(float(rows[-1]["base_z_m"]), abs=1e-12)
+
+
+def test_audit_says_whether_to_trust_the_jump(capsys):
+    _, out, _ = run(capsys, "simulate", "--case", "C", "--audit", "--json")
+    audit = json.loads(out)["audit"]
+    assert audit["well_conditioned"]
+    assert audit["energy_balance_error"] < 0.01
+    energy = audit["energy"]
+    parts = sum(value for name, value in energy.items() if name != "actuator_work_j")
+    assert parts == pytest.approx(energy["actuator_work_j"])
+
+
+def test_table1_json_has_the_three_results_of_each_case(capsys):
+    code, out, _ = run(capsys, "table1", "--json")
+    rows = json.loads(out)
+    assert code == 0
+    assert [row["case"] for row in rows] == list(PAPER_CASES)
+    for row in rows:
+        assert row["published"]["height_m"] == PAPER_CASES[row["case"]].height_m
+        assert set(row["reference"]) == {"height_m", "energy_j"}
+        spread = row["paper"]
+        assert spread["height_p05_m"] <= spread["height_m"] <= spread["height_p95_m"]
+        assert spread["energy_p05_j"] <= spread["energy_j"] <= spread["energy_p95_j"]
+
+
+def test_tables_fit_eighty_columns(capsys):
+    for arguments in (("table1",), ("simulate", "--audit")):
+        _, out, _ = run(capsys, *arguments)
+        assert max(len(line) for line in out.splitlines()) <= 80
+        assert np.all([name in out for name in NAMES]) or arguments == ("table1",)
