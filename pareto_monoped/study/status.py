@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.lock import holder
 from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, read_study
 
@@ -39,7 +40,7 @@ def status(db: Path) -> dict[str, Any]:
         "evaluations_per_second": done / seconds if seconds > 0.0 else None,
         "front": len(front),
         "ill_conditioned": int((~data.audits["well_conditioned"].astype(bool)).sum()),
-        "hypervolume": float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
+        "hypervolume": hypervolume(front[["height_m", "energy_j"]].to_numpy(), data.reference_point),
         "reference_point": {"height_m": data.reference_point.height_m, "energy_j": data.reference_point.energy_j},
         "least_energy_at_0_8_m_j": float(high["energy_j"].iloc[0]) if len(high) else None,
         "hash": data.meta["hash"],

@@ -1,6 +1,6 @@
-"""A script for test_kill.py: runs a study once in one go and once killed by SIGKILL again and again.
+"""A script for test_kill.py: runs each folder's s.toml once in one go and once killed by SIGKILL again and again.
 
-    python -m tests.study.killed STUDY.toml FOLDER KILLS SEED
+    python -m tests.study.killed KILLS SEED FOLDER ...
 
 Everything heavy is imported once; each run is a process of its own, forked from here. Prints JSON.
 """
@@ -37,41 +37,55 @@ def start(study, db, workers):
         os._exit(code)
 
 
-def main():
-    study, folder = load_study(Path(sys.argv[1])), Path(sys.argv[2])
-    kills, generator = int(sys.argv[3]), random.Random(int(sys.argv[4]))
-    # Compiled code is loaded once, here; a single worker leaves no thread behind that a fork would lose.
-    load_physics(study, workers=1).probe()
-    create(study)
-
+def whole(study, db):
+    """Run in one go; the seconds before the first acknowledged generation, and those after."""
     began = time.monotonic()
-    child, pipe = start(study, folder / "whole.db", 1)
+    child, pipe = start(study, db, 1)
+    pipe.readline()
+    first = time.monotonic()
     pipe.read()
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    seconds = time.monotonic() - began
+    return first - began, time.monotonic() - first
 
-    db, report = folder / "killed.db", []
-    while len(report) < kills:
-        child, pipe = start(study, db, 1 + len(report) % 2)
-        # Every other kill comes while it is at work for sure; the rest may hit the start, too.
-        first = pipe.readline() if len(report) % 2 else ""
-        time.sleep(generator.uniform(0.0, seconds / kills))
-        os.kill(child, signal.SIGKILL)
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        lines = (first + pipe.read()).splitlines(keepends=True)
-        acknowledged = [int(line) for line in lines if line.endswith("\n")]
-        if not db.exists():
-            stored, sound = 0, "ok"
-        else:
-            stored = len(read_study(db).trials)
-            connection = sqlite3.connect(db)
-            sound = connection.execute("PRAGMA integrity_check").fetchone()[0]
-            connection.close()
-        report.append({"code": code, "acknowledged": max(acknowledged, default=0), "stored": stored, "sound": sound})
-    child, pipe = start(study, db, 2)
-    pipe.read()
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    print(json.dumps({"seconds": seconds, "kills": report}))
+
+def kill(study, db, workers, delay, *, at_work):
+    """Run, and kill after a delay: from the first acknowledged generation on, or from the start."""
+    child, pipe = start(study, db, workers)
+    first = pipe.readline() if at_work else ""
+    time.sleep(delay)
+    os.kill(child, signal.SIGKILL)
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    lines = (first + pipe.read()).splitlines(keepends=True)
+    acknowledged = max((int(line) for line in lines if line.endswith("\n")), default=0)
+    if not db.exists():
+        return {"code": code, "acknowledged": acknowledged, "stored": 0, "sound": "ok"}
+    stored = len(read_study(db).trials)
+    connection = sqlite3.connect(db)
+    sound = connection.execute("PRAGMA integrity_check").fetchone()[0]
+    connection.close()
+    return {"code": code, "acknowledged": acknowledged, "stored": stored, "sound": sound}
+
+
+def main():
+    kills, generator = int(sys.argv[1]), random.Random(int(sys.argv[2]))
+    # Compiled code is loaded once, here; a single worker leaves no thread behind that a fork would lose.
+    load_physics(load_study(Path(sys.argv[3]) / "s.toml"), workers=1).probe()
+    reports = []
+    for folder in map(Path, sys.argv[3:]):
+        study = load_study(folder / "s.toml")
+        create(study)
+        starting, working = whole(study, folder / "whole.db")
+        db, report = folder / "killed.db", []
+        for k in range(kills):
+            # Two of three kills come while it is at work for sure, the third may hit the start or the restore.
+            at_work = k % 3 != 2
+            delay = generator.uniform(0.0, working / kills if at_work else starting)
+            report.append(kill(study, db, 1 + k % 2, delay, at_work=at_work))
+        child, pipe = start(study, db, 2)
+        pipe.read()
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+        reports.append(report)
+    print(json.dumps(reports))
 
 
 if __name__ == "__main__":

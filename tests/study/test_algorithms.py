@@ -10,8 +10,11 @@ from pareto_monoped.study.algorithms import Scores, create
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.settings import ALGORITHMS
 
-NAMES = tuple(ALGORITHMS)
-GENETIC = ("nsga2", "sms_emoa", "age_moea2")
+# AGE-MOEA2 compiles itself for some six seconds in every process.
+SLOW = {"age_moea2": pytest.mark.long}
+NAMES = tuple(pytest.param(name, marks=SLOW.get(name, ())) for name in ALGORITHMS)
+LEARNING = tuple(param for param in NAMES if param.values[0] not in ("random", "weighted_cmaes"))
+GENETIC = LEARNING[:3]
 
 
 def study(name, *, seed=1, **more):
@@ -101,7 +104,7 @@ def test_restored_from_json_it_goes_on_exactly(name, told):
     assert json.dumps(restored.state()) == json.dumps(algorithm.state())
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in ("random", "weighted_cmaes")])
+@pytest.mark.parametrize("name", LEARNING)
 def test_beats_random_search_at_equal_evaluations(name):
     reference = ReferencePoint(height_m=0.0, energy_j=5.0)
 
