@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, is_dataclass
 from functools import lru_cache
 from importlib import resources
+from math import isfinite
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -62,7 +63,8 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.table1 import paper_spreads
 
-    return tuple(asdict(spread) for spread in paper_spreads(map_for("VT8020"), load_calibration("paper")))
+    spreads = paper_spreads(map_for("VT8020"), load_calibration("paper"), perturbations=40)
+    return tuple({k: v if isfinite(v) else None for k, v in asdict(spread).items()} for spread in spreads)
 
 
 def page(payload: Payload) -> str:

@@ -104,8 +104,8 @@ def browser() -> Iterator[object]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        # SwiftShader draws the 3D view where there is no graphics card.
-        drawing = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        # WebGL by SwiftShader, so that the 3D view is drawn without a graphics card; all else on the processor.
+        drawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         running = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", *drawing])
         yield running
         running.close()
@@ -132,6 +132,12 @@ class Tab:
 
     def text(self, selector: str) -> str:
         return self.page.inner_text(selector)
+
+    def expects(self, selector: str, words: str) -> None:
+        """Wait until an element has these words."""
+        from playwright.sync_api import expect
+
+        expect(self.page.locator(selector)).to_contain_text(words)
 
     def point(self, trace: str, index: int) -> tuple[float, float]:
         """Where a point of the front chart lies in the window."""

@@ -9,7 +9,7 @@ import pytest
 
 from pareto_monoped.report.page import page, write_report
 from pareto_monoped.report.payload import Source, build
-from tests.report.conftest import cut, grown
+from tests.report.conftest import Tab, cut, grown
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 
@@ -21,9 +21,21 @@ def report(folder, payload):
     return file
 
 
+@pytest.fixture(scope="module")
+def shared(report, browser):
+    """One tab for all tests that leave it as they found it."""
+    tab = Tab(browser, report)
+    yield tab
+    tab.context.close()
+
+
 @pytest.fixture
-def tab(report, open_tab):
-    return open_tab(report)
+def tab(shared):
+    shared.page.set_viewport_size({"width": 1440, "height": 900})
+    shared.page.evaluate("window.scrollTo(0, 0)")
+    shared.page.focus("#front-chart")
+    shared.page.keyboard.press("Home")
+    return shared
 
 
 def written(folder, name, sources):
@@ -39,7 +51,8 @@ def test_asks_for_nothing_and_complains_of_nothing(tab, report):
     tab.quiet(report)
 
 
-def test_begins_with_the_knee_and_the_sentence(tab, payload):
+def test_begins_with_the_knee_and_the_sentence(report, open_tab, payload):
+    tab = open_tab(report)
     (card,) = payload.studies
     assert f"Trial {card.trials.trial[card.picks[0].row]}" in tab.text("#subject")
     assert card.summary[0] in tab.text("header")
@@ -50,7 +63,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
     at = len(card.front) - 1
     row = card.front[at]
     tab.page.mouse.click(*tab.point("front", at))
-    tab.page.wait_for_function(f"document.querySelector('#subject').textContent.includes('{card.trials.trial[row]}')")
+    tab.expects("#subject", f"Trial {card.trials.trial[row]}")
     assert f"{card.trials.columns['height_m'][row]:.3f} m" in tab.text("#headline")
     assert f"{card.trials.columns['thigh_length_m'][row] * 1000:.1f} mm" in tab.text("#variables")
     knee = payload.gearboxes[card.trials.columns["knee_gearbox"][row]]
@@ -64,7 +77,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
 
 def test_a_click_on_the_papers_diamond_shows_that_case(tab, payload):
     tab.page.mouse.click(*tab.point("simulated", 0))
-    tab.page.wait_for_function("document.querySelector('#subject').textContent.includes('nominal design')")
+    tab.expects("#subject", "nominal design")
     assert f"{payload.studies[0].cases[0].energy_j:.2f} J" in tab.text("#headline")
     assert "simulate --case nominal" in tab.text("#commands")
 
@@ -142,6 +155,7 @@ def test_a_range_can_be_typed(tab, payload):
     tab.page.keyboard.press("Tab")
     inside = sum(card.trials.columns["height_m"][row] >= 0.9 for row in card.front)
     assert f"{inside} of {len(card.front)} designs on the front" in tab.text("#brush-note")
+    tab.page.click("#clear-ranges")
 
 
 def test_a_click_on_a_line_of_the_parallel_coordinates_selects_its_design(tab, payload):
@@ -161,7 +175,7 @@ def test_the_jump_plays_and_the_foot_stands_on_the_floor(tab):
     first = tab.page.get_attribute("#stage g:last-of-type", "transform")
     tab.page.select_option("#speed", "1")
     tab.page.click("#play")
-    tab.page.wait_for_function("document.querySelector('#play').textContent === 'Play'")
+    tab.expects("#play", "Play")
     assert float(tab.page.input_value("#scrub")) == 1000
     assert tab.page.get_attribute("#stage g:last-of-type", "transform") != first
 
@@ -177,14 +191,23 @@ def test_switches_hide_and_show(tab):
     tab.page.check("[data-show=infeasible]")
     assert not {"dominated", "published", "floor"} & set(names())
     assert "infeasible" in names()
+    for key in ("cloud", "published", "floor"):
+        tab.page.check(f"[data-show={key}]")
+    tab.page.uncheck("[data-show=infeasible]")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
-def test_nothing_sticks_out_sideways(report, open_tab, width, height, scheme):
-    tab = open_tab(report, width=width, height=height, color_scheme=scheme)
+def test_nothing_sticks_out_sideways(tab, report, width, height, scheme):
+    tab.page.set_viewport_size({"width": width, "height": height})
+    tab.page.emulate_media(color_scheme=scheme)
     tab.scroll_through()
     assert tab.page.evaluate("document.documentElement.scrollWidth") == width
+    background = tab.page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert background == {"light": "rgb(246, 248, 250)", "dark": "rgb(13, 17, 23)"}[scheme]
+    # Plotly draws with colours of its own: they follow the scheme, too.
+    ticks = tab.page.evaluate("document.getElementById('front-chart').layout.xaxis.color")
+    assert ticks == {"light": "#57606a", "dark": "#9ea7b3"}[scheme]
     tab.quiet(report)
 
 
@@ -250,7 +273,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     tab.page.uncheck("[data-study='1']")
     assert fronts() == 2
     tab.page.mouse.click(*tab.point("weighted", 0))
-    tab.page.wait_for_function("document.querySelector('#subject').textContent.includes('weighted')")
+    tab.expects("#subject", "weighted")
     tab.quiet(file)
 
 

@@ -197,7 +197,11 @@ function drawFront() {
   const x = axis("energy from start to apex, J", { range: [...home.x], constraintoward: "left" });
   const y = axis("jump height of the base, m", { range: [...home.y] });
   const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
-  const shape = layout(x, y, { annotations: labels(list), dragmode: "zoom" });
+  const shape = layout(x, y, {
+    annotations: labels(list), dragmode: "zoom",
+    // The chart's buttons have the strip above it to themselves: under them no point could be clicked.
+    margin: { l: 58, r: 14, t: 30, b: 46 },
+  });
   const done = Plotly.react(gd, list, shape, config);
   if (!gd.contains(ring)) gd.append(ring);
   placeRing();

@@ -55,6 +55,7 @@ function drawParallel() {
   par.lines = linesToDraw();
   drawAxes();
   drawLines();
+  drawSelected();
 }
 
 function polyline(context, [study, row]) {
@@ -90,11 +91,14 @@ function drawLines() {
     const own = par.lines.fronts.filter(([study]) => study === i);
     stroke(context, kept(own), several ? studyColour(i) : colour("c0"), 1.2, 0.55);
   }
-  if (state.row !== null) {
-    stroke(context, [[state.study, state.row]], colour("card"), 6, 1);
-    stroke(context, [[state.study, state.row]], colour("c1"), 3, 1);
-  }
   context.globalAlpha = 1;
+}
+
+// The selected design's line lies on top, so that the many below need not be drawn again.
+function drawSelected() {
+  const { columns } = current().trials;
+  const d = state.row === null ? "" : `M${AXES.map((name, i) => `${par.xs[i].toFixed(1)} ${axisY(name, columns[name][state.row] ?? par.limits[name][0]).toFixed(1)}`).join("L")}`;
+  for (const path of par.selected.children) path.setAttribute("d", d);
 }
 
 function drawAxes() {
@@ -199,7 +203,9 @@ function nearestLine(x, y) {
 function startParallel() {
   par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line a design across its variables, mass, height and energy" });
   par.svg = draw("svg", { "aria-hidden": "true" });
-  par.node.append(par.canvas, par.svg);
+  par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
+    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--c1)", "stroke-width": 3, id: "parallel-selected" }));
+  par.node.append(par.canvas, par.selected, par.svg);
   prepareParallel();
   buildFields();
   drawParallel();
@@ -235,7 +241,7 @@ function startParallel() {
     drag = null;
   });
   par.node.addEventListener("pointercancel", () => { drag = null; });
-  on("selection", drawLines);
+  on("selection", drawSelected);
   on("view", () => { par.lines = linesToDraw(); drawLines(); describeRanges(); });
   charts.push(drawParallel);
   window.addEventListener("resize", drawParallel);
