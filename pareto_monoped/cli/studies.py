@@ -31,7 +31,7 @@ _REASONS = {
 @click.command()
 @click.argument("study_file", metavar="STUDY.toml", type=click.Path(path_type=Path))
 @_evaluations
-@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Random seed, in place of the study's.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, in place of the study's.")
 @_workers
 @click.option("--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [STUDY.db beside STUDY.toml]")
 def run(study_file: Path, evaluations: int | None, seed: int | None, workers: int | None, db: Path | None) -> int:
