@@ -1,12 +1,16 @@
 """The page in headless Chromium, from a file, with the network off."""
 
+import io
 import re
 import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
+from PIL import Image
 
+from pareto_monoped.report.exports import model_of
 from pareto_monoped.report.page import page, write_report
 from pareto_monoped.report.payload import Source, build
 from tests.report.conftest import Tab, cut, grown
@@ -274,6 +278,30 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     assert fronts() == 2
     tab.page.mouse.click(*tab.point("weighted", 0))
     tab.expects("#subject", "weighted")
+    tab.quiet(file)
+
+
+def test_an_exported_design_can_be_turned(source, payload, folder, open_tab):
+    (card,) = payload.studies
+    trial = card.trials.trial[card.picks[0].row]
+    box = trimesh.creation.box(extents=(40.0, 80.0, 400.0)).triangles
+    file = written(folder, "model.html", [replace(source, models={trial: model_of([(box, (200, 80, 20))], 100)})])
+    tab = open_tab(file)
+    canvas = tab.page.locator("#viewer canvas")
+    canvas.scroll_into_view_if_needed()
+    before = canvas.screenshot()
+    canvas.focus()
+    for _ in range(4):
+        tab.page.keyboard.press("ArrowRight")
+    assert canvas.screenshot() != before
+    # Upright: the bar is much taller than wide in the picture.
+    pixels = np.asarray(Image.open(io.BytesIO(canvas.screenshot())).convert("RGB"), dtype=int)
+    orange = (pixels[..., 0] - pixels[..., 2]) > 40
+    rows, columns = np.flatnonzero(orange.any(axis=1)), np.flatnonzero(orange.any(axis=0))
+    assert np.ptp(rows) > 3 * np.ptp(columns) > 0
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("Home")
+    assert f"trial {trial}" in tab.text("#viewer")
     tab.quiet(file)
 
 

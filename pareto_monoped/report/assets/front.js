@@ -133,7 +133,7 @@ function traces() {
     }
   }
   const paper = (entries, name, symbol) => list.push(trace(name, entries,
-    { size: 11, symbol, color: colour("paper"), line: { width: 1.8, color: colour("paper") } },
+    { size: 11, symbol, color: entries.map((p) => p.tint ?? colour("paper")), line: { width: 1.8, color: colour("paper") } },
     { mode: "markers", customdata: entries.map((p) => p.label) }));
   if (show.published) {
     paper(page.published.map((c) => ({
@@ -151,8 +151,10 @@ function traces() {
       seen.add(key);
       for (const c of card.cases) {
         if (c.height_m === null || c.energy_j === null) continue;
+        // Names stand beside the first motor's only; the others have the same order and their study's colour.
         entries.push({
-          x: c.energy_j, y: c.height_m, label: c.name, stands: [study, c.name],
+          x: c.energy_j, y: c.height_m, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
+          tint: seen.size === 1 ? colour("paper") : studyColour(study),
           text: `<b>paper, ${c.name}</b>, simulated here<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J<br>motor ${plain(card.motor)}, calibration ${plain(card.calibration)}`,
         });
       }
@@ -177,6 +179,7 @@ function labels(list) {
     const names = one.name === "picks" ? (one === list.findLast((t) => t.name === "picks") ? one.x.map(() => "knee") : null) : one.customdata;
     if (!names) continue;
     names.forEach((text, i) => {
+      if (!text) return;
       const px = (one.x[i] - x[0]) / (x[1] - x[0]) * width, py = (one.y[i] - y[0]) / (y[1] - y[0]) * height;
       const size = 8 * text.length + 4;
       const spots = [[14, 0, "left"], [-14, 0, "right"], [0, 17, "center"], [0, -17, "center"], [14, 15, "left"], [14, -15, "left"], [-14, -15, "right"]];
@@ -200,7 +203,7 @@ function drawFront() {
   const shape = layout(x, y, {
     annotations: labels(list), dragmode: "zoom",
     // The chart's buttons have the strip above it to themselves: under them no point could be clicked.
-    margin: { l: 58, r: 14, t: 30, b: 46 },
+    margin: { l: 58, r: 14, t: 26, b: 46 },
   });
   const done = Plotly.react(gd, list, shape, config);
   if (!gd.contains(ring)) gd.append(ring);
