@@ -52,10 +52,10 @@ def pareto(
 
     click.echo("\nMade")
     for path, what in (
-        (table, "stage 1: the lightest actuator of every ratio"),
-        (db, "stage 2: every jump; resumable, opens in Optuna"),
-        (design, "stage 3: CAD and models of the knee design"),
-        (report, "the front to decide with: open it in a browser"),
+        (table, "the lightest actuator of every ratio"),
+        (db, "every jump; resumable, opens in Optuna"),
+        (design, "CAD and models of the knee design"),
+        (report, "the front: open it in a browser"),
     ):
         click.echo(f"  {path!s:<32} {what}")
     _compare(data, knee.trial)

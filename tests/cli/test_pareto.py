@@ -1,0 +1,98 @@
+"""The main job on a small budget, from the actuator map to the CAD, and again."""
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pareto_monoped.pareto.pick import Knee, pick
+from pareto_monoped.study.reader import read_study
+
+ROOT = Path(__file__).parents[2]
+
+
+def pareto(folder: Path) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "160"],
+        cwd=folder,
+        env=os.environ | {"COLUMNS": "80"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    """The folder in which the main job ran, and what it printed."""
+    folder = tmp_path_factory.mktemp("job")
+    (folder / "studies").mkdir()
+    shutil.copy(ROOT / "studies" / "quick.toml", folder / "studies")
+    done = pareto(folder)
+    assert done.returncode == 0, done.stderr
+    return folder, done
+
+
+@pytest.mark.cad
+@pytest.mark.xdist_group("main job")
+class TestMainJob:
+    def test_it_names_the_files_and_they_exist(self, job):
+        folder, done = job
+        named = [line.split()[0] for line in done.stdout.split("Made\n")[1].splitlines()[:4]]
+        assert len(named) == 4
+        for name in named:
+            assert (folder / name).exists(), name
+        assert not list(folder.rglob("*.tmp"))
+
+    def test_it_ends_with_the_paper_beside_the_front(self, job):
+        _, done = job
+        assert "as published" in done.stdout
+        assert "0.800" in done.stdout
+        assert "15.36" in done.stdout
+        assert all(len(line) <= 80 for line in done.stdout.splitlines())
+        assert "Traceback" not in done.stderr
+
+    def test_the_map_is_complete(self, job):
+        folder, _ = job
+        with (folder / "reports" / "quick" / "actuators.csv").open() as stream:
+            ratios = [float(row["ratio_low"]) for row in csv.DictReader(stream)]
+        assert ratios[0] == 4.0
+        assert ratios[-1] == 8.7
+
+    def test_the_study_is_whole_and_the_exported_design_is_its_knee(self, job):
+        folder, _ = job
+        data = read_study(folder / "studies" / "quick.db")
+        assert len(data.trials) == 160
+        knee = pick(data.front(), Knee()).trial
+        assert [path.name for path in (folder / "reports" / "quick" / "cad").iterdir()] == [f"trial_{knee}"]
+
+    def test_the_step_file_holds_every_solid_of_the_parts_list(self, job):
+        import build123d
+
+        folder, _ = job
+        (design,) = (folder / "reports" / "quick" / "cad").iterdir()
+        with (design / "bom.csv").open() as stream:
+            count = sum(int(row["count"]) for row in csv.DictReader(stream))
+        assert len(build123d.import_step(design / "assembly.step").solids()) == count
+
+    def test_a_second_time_nothing_is_made_again(self, job):
+        folder, first = job
+        before = {path: path.stat().st_mtime_ns for path in (folder / "reports" / "quick").rglob("*.*")}
+        again = pareto(folder)
+        assert again.returncode == 0, again.stderr
+        assert again.stderr.count("(up to date)") == 2
+        assert again.stdout == first.stdout
+        after = {path: path.stat().st_mtime_ns for path in before}
+        changed = {path.name for path in before if before[path] != after[path]}
+        assert changed <= {"actuators.csv"}
+
+
+def test_a_missing_study_is_one_line(tmp_path):
+    done = pareto(tmp_path)
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "studies/quick.toml" in done.stderr
