@@ -29,13 +29,15 @@ Floats = NDArray[np.float64]
 FITTED: dict[str, tuple[float, float, int]] = {
     # key in the TOML file: lower bound, upper bound, digits kept
     "damping_n_m_s_per_rad": (0.0, 5.0, 3),
-    "peak_torque_scale": (0.8, 1.2, 4),
-    "base_structure_mass_kg": (0.0, 0.5, 3),
+    "time_constant_s": (0.004, 0.06, 4),
+    "foot_mass_kg": (0.02, 0.6, 3),
     "link_mass_scale": (0.5, 1.2, 3),
 }
 PUBLISHED: Floats = np.array([[case.height_m, case.energy_j] for case in PAPER_CASES.values()])
-FIT_PERTURBATIONS = 40
-"""Fewer than the 100 that the result is shown with, and with other seeds."""
+FIT_PERTURBATIONS = 15
+"""Fewer than the 100 that the result is shown with, and with another seed."""
+LINK_SCALES = (0.99, 1.0, 1.01)
+"""Factors on the links' mass that a fit must bear."""
 
 
 def with_numbers(calibration: Calibration, numbers: Floats) -> Calibration:
@@ -56,13 +58,22 @@ def errors(spreads: tuple[Spread, ...]) -> Floats:
 
 
 def objective(start: Calibration) -> Callable[[Floats], float]:
-    """The worst of the eight errors, with a fifth of the mean so that the others matter too."""
+    """The worst of the eight errors, with a fifth of the mean so that the others matter too.
+
+    It is taken over links a little lighter and heavier, too: the literal model has islands a gram wide where a foot
+    that chatters never leaves the floor, and a fit must not sit beside one.
+    """
     actuators = map_for("VT8020")
 
     def value(numbers: Floats) -> float:
-        spreads = paper_spreads(actuators, with_numbers(start, numbers), perturbations=FIT_PERTURBATIONS, seed=1)
-        off = np.abs(errors(spreads))
-        return float(off.max() + 0.2 * off.mean())
+        found = []
+        for scale in LINK_SCALES:
+            calibration = with_numbers(start, numbers)
+            mass = replace(calibration.mass, link_mass_scale=scale * calibration.mass.link_mass_scale)
+            spreads = paper_spreads(actuators, replace(calibration, mass=mass), perturbations=FIT_PERTURBATIONS, seed=1)
+            off = np.abs(errors(spreads))
+            found.append(float(off.max() + 0.2 * off.mean()))
+        return max(found)
 
     return value
 
