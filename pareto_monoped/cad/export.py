@@ -193,8 +193,7 @@ def _write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> N
     for kind in product.unique:
         name = _safe(kind.name)
         if "step" in formats:
-            shape = step.part_shape(kind.solid, kind.name, kind.part.material.colour)
-            step.write_step(shape, _path(folder, f"parts/step/{name}.step"))
+            _write(folder, f"parts/step/{name}.step", step.part_step(kind.solid, kind.name, kind.part.material.colour))
         if "stl" in formats:
             _write(folder, f"parts/stl/{name}.stl", trianglefiles.stl(kind.mesh))
         if "3mf" in formats and kind.part.process == "3D printed":
@@ -202,7 +201,7 @@ def _write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> N
         if "dxf" in formats and drawing.is_flat(kind.part):
             _write(folder, f"laser/{name}.dxf", drawing.dxf(kind.part))
     if "step" in formats:
-        step.write_step(step.assembly_shape(product, "monoped"), _path(folder, "assembly.step"))
+        _write(folder, "assembly.step", step.assembly_step(product, "monoped"))
     if "glb" in formats:
         _write(folder, "assembly.glb", trianglefiles.glb(product))
     if "png" in formats:
@@ -266,6 +265,11 @@ def _beside(out_dir: Path) -> Iterator[Path]:
         os.umask(umask)
         folder.chmod(0o777 & ~umask)
         yield folder
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            f"output {str(out_dir)!r}: cannot be written ({reason}); make room or give another"
+        ) from error
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 

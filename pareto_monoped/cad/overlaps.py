@@ -20,7 +20,7 @@ ALLOWED_DEPTH_MM = 0.02
 GEARS = ("sun", "planet", "ring")
 """Names of the parts that mesh."""
 _GEAR_STEPS = 8
-_SWEEP_STEP_RAD = np.radians(10.0)
+_SWEEP_STEP_RAD = np.radians(15.0)
 _TOUCH_MM = 1e-6
 
 
@@ -105,7 +105,7 @@ def in_working_range(product: Product) -> tuple[list[Overlap], float]:
         there = [_thing(i.name, body, frame @ i.world) for i, body in by_body[moving]]
         reach = {thing.name: _radii(thing) for thing in (*here, *there)}
         pairs = [(a, b) for a in here for b in there if _may_meet(a, b, reach)]
-        angles = np.arange(limits[0], limits[1] + 1e-9, _SWEEP_STEP_RAD)
+        angles = _through(limits)
         for angle in angles:
             turned: dict[str, _Thing] = {}
             for one, other in pairs:
@@ -118,11 +118,16 @@ def in_working_range(product: Product) -> tuple[list[Overlap], float]:
     return found, _shank_clearance(product, by_body)
 
 
+def _through(limits: tuple[float, float]) -> NDArray[np.float64]:
+    """Angles from one limit to the other."""
+    return np.linspace(*limits, int(np.ceil((limits[1] - limits[0]) / _SWEEP_STEP_RAD)) + 1)
+
+
 def _shank_clearance(product: Product, by_body: dict[str, list[tuple[Instance, m3.Manifold]]]) -> float:
     base = [_thing(i.name, body, i.world) for i, body in by_body["base"]]
     reach = max(_radii(thing)[1] for thing in base)
     distance = np.inf
-    for angle in np.arange(KNEE_RANGE_RAD[0], KNEE_RANGE_RAD[1] + 1e-9, _SWEEP_STEP_RAD):
+    for angle in _through(KNEE_RANGE_RAD):
         frame = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=float(angle)))["shank"]
         for instance, body in by_body["shank"]:
             distance = min(distance, _radii(_thing(instance.name, body, frame @ instance.in_body))[0])

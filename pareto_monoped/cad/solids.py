@@ -27,44 +27,43 @@ def solid_of(part: Part) -> Solid:
     return pieces[0] if len(pieces) == 1 else _fused(pieces)
 
 
-def wire_of(loop: Loop) -> bd.Wire:
-    """A closed curve as a wire in the plane z = 0."""
+def wire_of(loop: Loop, z_mm: float = 0.0) -> bd.Wire:
+    """A closed curve as a wire in a plane across the z axis."""
     if loop.circle is not None:
         circle = loop.circle
-        plane = bd.Plane((float(circle.x_mm), float(circle.y_mm), 0.0))
+        plane = bd.Plane((float(circle.x_mm), float(circle.y_mm), z_mm))
         return bd.Wire([bd.Edge.make_circle(float(circle.radius_mm), plane)])
     edges = []
     for piece in loop.pieces:
         if isinstance(piece, Spline):
-            edges.append(bd.Edge.make_spline([(float(x), float(y), 0.0) for x, y in piece.points_mm]))
+            edges.append(bd.Edge.make_spline([(float(x), float(y), z_mm) for x, y in piece.points_mm]))
             continue
         first, last = ends(piece)
         if isinstance(piece, Line):
-            edges.append(bd.Edge.make_line((*first, 0.0), (*last, 0.0)))
+            edges.append(bd.Edge.make_line((*first, z_mm), (*last, z_mm)))
         else:
             middle = on_arc(piece, 0.5 * (float(piece.start_rad) + float(piece.end_rad)))
-            edges.append(bd.Edge.make_three_point_arc((*first, 0.0), (*middle, 0.0), (*last, 0.0)))
+            edges.append(bd.Edge.make_three_point_arc((*first, z_mm), (*middle, z_mm), (*last, z_mm)))
     return bd.Wire(edges)
 
 
 def _extruded(prism: Prism) -> Iterable[bd.Solid]:
-    holes = [wire_of(loop) for hole in prism.holes for loop in loops(hole)]
     z0, z1 = float(prism.z0_mm), float(prism.z1_mm)
+    holes = [wire_of(loop, z0) for hole in prism.holes for loop in loops(hole)]
     outlines = loops(prism.outline)
     for outline in outlines:
         # Holes belong to the one region; a pattern of discs has none.
-        face = bd.Face(wire_of(outline), holes if len(outlines) == 1 else None)
+        face = bd.Face(wire_of(outline, z0), holes if len(outlines) == 1 else None)
         if face.normal_at().Z < 0.0:
             face = -face
-        yield bd.Solid.extrude(face, bd.Vector(0.0, 0.0, z1 - z0)).moved(bd.Location((0.0, 0.0, z0)))
+        yield bd.Solid.extrude(face, bd.Vector(0.0, 0.0, z1 - z0))
 
 
 def _ball(ball: Ball) -> bd.Solid:
     radius, top, y = float(ball.radius_mm), float(ball.top_mm), float(ball.y_mm)
-    whole = bd.Solid.make_sphere(radius, angle1=-90, angle2=90)
+    centre = bd.Location((0.0, y, 0.0))
     above = bd.Solid.make_box(2.0 * radius, radius, 2.0 * radius, bd.Plane((-radius, top, -radius), z_dir=(0, 0, 1)))
-    tools = [above.moved(bd.Location((0.0, 0.0, 0.0)))]
-    shape = whole.moved(bd.Location((0.0, y, 0.0))).cut(*(tool.moved(bd.Location((0.0, y, 0.0))) for tool in tools))
+    shape = bd.Solid.make_sphere(radius, angle1=-90, angle2=90).moved(centre).cut(above.moved(centre))
     if ball.pocket is not None:
         shape = shape.cut(*_extruded(ball.pocket))
     return shape.solids()[0]

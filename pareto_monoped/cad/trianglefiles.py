@@ -61,10 +61,10 @@ def threemf(mesh: Mesh, name: str) -> bytes:
 
 
 def glb(product: Product) -> bytes:
-    """The assembly as binary glTF 2.0: metres, y up as glTF wants it, each unique part's triangles stored once."""
+    """The assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored once."""
     scene = trimesh.Scene(base_frame="world")
     metres = np.diag([1e-3, 1e-3, 1e-3, 1.0])
-    upright = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # z up -> y up
+    upright = np.array([[0.0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])  # x forward, y left, z up to that
     for kind in product.unique:
         mesh = trimesh.Trimesh(kind.mesh.points_mm.astype(np.float32), kind.mesh.triangles, process=False)
         material = trimesh.visual.material.PBRMaterial(

@@ -1,0 +1,31 @@
+"""Robots over the whole design space pass every check: both families, all published gear sets, all link lengths."""
+
+import numpy as np
+import pytest
+
+from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.cad.checks import run_checks
+from pareto_monoped.cad.product import build_product
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.robot import build_robot, robot_arrays
+
+# Lengths at and between their bounds; the published ratios 4.0, 6.0, 7.9, the ends of both families, and others.
+_RATIOS = (4.0, 6.0, 7.9, 8.6, 4.55, 5.25, 5.95, 6.45, 7.05, 8.25)
+_LENGTHS = np.random.default_rng(20250101).uniform(0.3, 0.5, size=(20, 2)).round(4)
+_LENGTHS[:4] = [(0.3, 0.3), (0.5, 0.5), (0.3, 0.5), (0.5, 0.3)]
+DESIGNS = [(*lengths, _RATIOS[k % 10], _RATIOS[(3 * k + k // 10) % 10]) for k, lengths in enumerate(_LENGTHS.tolist())]
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [pytest.param(numbers, marks=() if k in (2, 3) else pytest.mark.long) for k, numbers in enumerate(DESIGNS)],
+    ids=lambda numbers: "-".join(f"{number:g}" for number in numbers),
+)
+def test_a_design_passes_every_check(actuator_map, numbers):
+    thigh, shank, knee_ratio, hip_ratio = numbers
+    design = PAPER_CASES["C"].design.replace(
+        {"thigh_length_m": thigh, "shank_length_m": shank, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio}
+    )
+    product = build_product(build_robot(design, actuator_map), Pose(hip_rad=-0.6, knee_rad=1.2))
+    checks = run_checks(product, robot_arrays(design.as_array(), actuator_map))
+    assert [failure for check in checks for failure in check.failures] == []

@@ -1,0 +1,116 @@
+"""The folder is whole or not there, foreign files are safe, and the same design gives the same bytes."""
+
+import dataclasses
+import json
+
+import pytest
+
+from pareto_monoped.actuator import search
+from pareto_monoped.cad import batch, export
+from pareto_monoped.cad.checks import Check
+from pareto_monoped.cad.export import as_built, export_design
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
+
+DESIGN = PAPER_CASES["nominal"].design
+LIGHT = ("dxf", "3mf")
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Leave out the checks, which have tests of their own."""
+    monkeypatch.setattr(export, "run_checks", lambda product, arrays: ())
+
+
+def contents(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_as_built_rounds_lengths_and_takes_the_gearbox_s_ratio(actuator_map):
+    design = DESIGN.replace({"thigh_length_m": 0.43216, "shank_length_m": 0.33333, "knee_ratio": 7.97})
+    built = as_built(design, actuator_map)
+    assert (built.thigh_length_m, built.shank_length_m) == (0.4322, 0.3333)
+    assert built.knee_ratio == pytest.approx(1.0 + 152 / 22)
+    assert built.stiffness_n_per_m == design.stiffness_n_per_m
+    # Building what was built changes nothing.
+    assert as_built(built, actuator_map) == built
+
+
+def test_same_design_same_bytes_and_force_replaces_only_our_own_files(quick, actuator_map, calibration, tmp_path):
+    folder = tmp_path / "robot"
+    export_design(DESIGN, actuator_map, calibration, folder, formats=LIGHT)
+    first = contents(folder)
+    assert {"README.md", "bom.csv", "checks.json", "design.json", "print/thigh_core.3mf"} <= set(first)
+    assert not any(name.endswith((".step", ".stl", ".png", ".xml")) for name in first)
+    (folder / "mine.txt").write_text("keep me")
+    with pytest.raises(OutputError, match="is not empty; give another folder, or --force"):
+        export_design(DESIGN, actuator_map, calibration, folder, formats=LIGHT)
+    assert contents(folder) == first | {"mine.txt": b"keep me"}
+    export_design(DESIGN, actuator_map, calibration, folder, formats=("dxf",), force=True)
+    second = contents(folder)
+    assert second.pop("mine.txt") == b"keep me"
+    assert not any(name.endswith(".3mf") for name in second)
+    assert {n: d for n, d in second.items() if n.startswith("laser/")} == {
+        n: d for n, d in first.items() if n.startswith("laser/")
+    }
+    assert [path.name for path in tmp_path.iterdir()] == ["robot"]
+
+
+def test_a_record_cannot_make_force_delete_outside_the_folder(quick, actuator_map, calibration, tmp_path):
+    outside = tmp_path / "precious.txt"
+    outside.write_text("keep me")
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    (folder / "design.json").write_text(json.dumps({"files": ["../precious.txt", str(outside)]}))
+    export_design(DESIGN, actuator_map, calibration, folder, formats=(), force=True)
+    assert outside.read_text() == "keep me"
+    assert json.loads((folder / "design.json").read_text())["as_built"] == DESIGN.as_dict()
+
+
+def test_a_failed_check_names_the_parts_and_writes_nothing(monkeypatch, actuator_map, calibration, tmp_path):
+    failed = Check(name="no two parts overlap", looked_at="", worst="", failures=("a and b overlap by 3.00 mm3",))
+    monkeypatch.setattr(export, "run_checks", lambda product, arrays: (failed,))
+    with pytest.raises(CheckError, match=r"a and b overlap by 3\.00 mm3; nothing was written"):
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_while_writing_leaves_nothing(quick, monkeypatch, actuator_map, calibration, tmp_path):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(export.documents, "bom", full)
+    with pytest.raises(OutputError, match="No space left on device"):
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp_path):
+    with pytest.raises(InputError, match="format 'dwg': must be one of step, stl"):
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=("dwg",))
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="is a file"):
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "file")
+    with pytest.raises(DesignError):
+        export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot")
+    with pytest.raises(OutputError, match=r"part name '\.\./x'"):
+        export._safe("../x")
+
+
+def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, tmp_path):
+    job = batch.Job(
+        design=DESIGN,
+        motor="VT8020",
+        calibration="reference",
+        folder=tmp_path / "trial_1",
+        formats=(),
+        source={"trial": 1},
+    )
+    assert not batch.is_made(job)
+    assert search.map_for(job.motor) is actuator_map
+    batch.run(job)
+    assert batch.is_made(job)
+    assert batch.run_all([job], workers=2) == 0
+    assert not batch.is_made(dataclasses.replace(job, design=DESIGN.replace({"shank_length_m": 0.35})))
+    (tmp_path / "trial_1" / "bom.csv").unlink()
+    assert not batch.is_made(job)
