@@ -17,7 +17,7 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 class EvolutionSettings:
     """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
 
-    The defaults were chosen by measurement on Case C: benchmarks/search_algorithms.md.
+    The population was chosen by measurement on Case C (benchmarks/search_algorithms.md); the operators are pymoo's.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
