@@ -47,6 +47,7 @@ def jump(
     loss_speed: float = 0.5,
     time_limit: float = 3.0,
     mean_speed: bool = True,
+    gravity: float = 1.0,
 ) -> Jump:
     """Paper, section II-B, on the MJCF's robot.
 
@@ -61,6 +62,7 @@ def jump(
         loss_speed: of the smooth sign in the drive's losses.
         time_limit: in s.
         mean_speed: whether a step's work is booked with the mean of the speeds at its ends, or that at its start.
+        gravity: factor on m g in F_z.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)
@@ -69,7 +71,7 @@ def jump(
     radius = model.geom("foot").size[0]
     hinges = [model.joint(name).dofadr[0] for name in ("hip", "knee")]
     limits = model.actuator_ctrlrange[[model.actuator(name).id for name in ("hip", "knee")], 1]
-    weight = model.body_mass.sum() * 9.81
+    weight = gravity * model.body_mass.sum() * 9.81
     lift = model.joint("slide_z").dofadr[0]
     step = model.opt.timestep
     energy, height, lift_off = np.zeros(2), 0.0, 0.0

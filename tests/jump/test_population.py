@@ -44,6 +44,7 @@ def test_literal_jump_agrees_where_rounding_does_not_decide():
             oracle.motors_of(robots, i, calibration),
             lags=calibration.gate.lags,
             mean_speed=False,
+            gravity=calibration.controller.gravity_feed_forward,
         )
         agreed += bool(
             found.height_m[i] == pytest.approx(jump.height, rel=1e-6)
