@@ -15,7 +15,7 @@ from pareto_monoped.leg.dimensions import DEFAULT
 from pareto_monoped.leg.links import shank_parts, thigh_parts
 from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
 from pareto_monoped.report.comparison import compare, group_of
-from pareto_monoped.report.physics import Extras, Robots
+from pareto_monoped.report.physics import Extras
 from pareto_monoped.report.quantities import AUDIT, DIGITS, EVERY_TRIAL, QUANTITIES
 from pareto_monoped.report.records import (
     ActuatorTable,
@@ -158,8 +158,7 @@ def _card(source: Source, label: str, most: int, map_number: int, first_gearbox:
     row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
     picks = _picks(front, row_of)
     feasible = data.trials[data.trials["state"] == "feasible"]
-    robots = extras.robots(trials[list(NAMES)].to_numpy(dtype=np.float64))
-    front_robots = extras.robots(front[list(NAMES)].to_numpy(dtype=np.float64))
+    bodies_kg = extras.body_masses_kg(front[list(NAMES)].to_numpy(dtype=np.float64))
     counts = {state: int((data.trials["state"] == state).sum()) for state in _LETTER} | {"total": len(data.trials)}
     failed = data.trials.loc[data.trials["state"] == "failed", "status"].value_counts()
     return StudyCard(
@@ -188,11 +187,11 @@ def _card(source: Source, label: str, most: int, map_number: int, first_gearbox:
         },
         summary=sentences(data, front, extras.cases),
         notes=notes(data, extras),
-        trials=_trials(trials, robots, first_gearbox, len(data.trials)),
+        trials=_trials(trials, extras, first_gearbox, len(data.trials)),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(bad)],
         picks=picks,
-        more=_more(front, front_robots),
+        more=_more(front, bodies_kg),
         audits=_audits(data.audits),
         jumps={str(trial): jump for trial, jump in extras.jumps.items()},
         models={str(trial): model for trial, model in source.models.items()},
@@ -200,17 +199,18 @@ def _card(source: Source, label: str, most: int, map_number: int, first_gearbox:
         history=_history(data.history),
         weighted=[[weight, row_of[trial]] for weight, trial in weights],
         floor_mass_kg=float(feasible["mass_kg"].min()) if len(feasible) else None,
-        foot_mass_kg=front_robots.foot_kg,
+        foot_mass_kg=extras.foot_kg,
         foot_radius_m=extras.foot_radius_m,
         provenance=_provenance(source),
         reproduce=_reproduce(data),
     )
 
 
-def _trials(trials: pd.DataFrame, robots: Robots, first_gearbox: int, total: int) -> Trials:
+def _trials(trials: pd.DataFrame, extras: Extras, first_gearbox: int, total: int) -> Trials:
     names = [*NAMES, "height_m", "energy_j", *EVERY_TRIAL]
     columns: dict[str, Column] = {name: column(trials[name]) for name in names}
-    for joint, local in (("hip", robots.hip_gearbox), ("knee", robots.knee_gearbox)):
+    for joint in ("hip", "knee"):
+        local = extras.gearboxes(trials[f"{joint}_ratio"].to_numpy(dtype=np.float64))
         columns[f"{joint}_gearbox"] = np.where(local >= 0, local + first_gearbox, -1).tolist()
     return Trials(
         trial=trials["trial"].tolist(),
@@ -220,9 +220,9 @@ def _trials(trials: pd.DataFrame, robots: Robots, first_gearbox: int, total: int
     )
 
 
-def _more(front: pd.DataFrame, robots: Robots) -> dict[str, Column]:
+def _more(front: pd.DataFrame, bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
     names = [q.name for q in QUANTITIES if q.name in front.columns and q.name not in (*NAMES, "height_m", "energy_j")]
-    bodies = {f"{body}_kg": column(robots.body_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
+    bodies = {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
     return {name: column(front[name]) for name in names} | bodies
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, Design
+from pareto_monoped.design import LOWER, NAMES, PAPER_CASES
 from pareto_monoped.leg.dimensions import DEFAULT
 from pareto_monoped.leg.links import foot_part
 from pareto_monoped.report.records import ActuatorTable, Case, Gearbox, Jump, MapPoint, Number
@@ -38,16 +38,6 @@ SCALES: Mapping[str, float] = {
     "contact_z_n": 1e-1,
 }
 """Columns of a jump's trace that the page keeps, and the size of one count."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Robots:
-    """Gearbox numbers (-1: none), shape (n,), and masses of the bodies base, thigh and shank, shape (n, 3)."""
-
-    hip_gearbox: NDArray[np.intp]
-    knee_gearbox: NDArray[np.intp]
-    body_kg: NDArray[np.float64]
-    foot_kg: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,26 +94,25 @@ class Extras:
             )
         return Table(gearboxes=gearboxes, map=ActuatorTable(motor=self.actuator_map.motor.name, points=points))
 
-    def robots(self, designs: NDArray[np.float64]) -> Robots:
-        """Gearboxes and body masses of designs, shape (n, 7)."""
+    def gearboxes(self, ratios: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Numbers of the gearboxes of ratios, shape (n,), counted as in ``table`` from 0; -1 where there is none."""
+        has = np.array([entry.actuator is not None for entry in self.actuator_map.entries])
+        interval = self.actuator_map.interval_index(ratios)
+        return np.where(interval >= 0, (np.cumsum(has) - 1)[interval], -1)
+
+    def body_masses_kg(self, designs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Masses of base, thigh and shank of designs, shape (n, 7) -> (n, 3)."""
         from pareto_monoped.robot import robot_arrays
 
-        # Numbers of gearboxes leave out the intervals that have none, as in ``table``.
-        has = np.array([entry.actuator is not None for entry in self.actuator_map.entries])
-        number = np.where(has, np.cumsum(has) - 1, -1)
-        hip, knee = (
-            self.actuator_map.interval_index(designs[:, NAMES.index(name)]) for name in ("hip_ratio", "knee_ratio")
-        )
-        options = self.calibration.mass
-        foot = options.foot_mass_kg
-        return Robots(
-            hip_gearbox=np.where(hip >= 0, number[hip], -1),
-            knee_gearbox=np.where(knee >= 0, number[knee], -1),
-            body_kg=(
-                robot_arrays(designs, self.actuator_map, options).body_mass_kg if len(designs) else np.zeros((0, 3))
-            ),
-            foot_kg=float(foot_part(float(LOWER[1])).mass_kg()) if foot is None else foot,
-        )
+        if len(designs) == 0:
+            return np.zeros((0, 3))
+        return robot_arrays(designs, self.actuator_map, self.calibration.mass).body_mass_kg
+
+    @property
+    def foot_kg(self) -> float:
+        """Mass of the foot that was simulated, a part of the shank's."""
+        given = self.calibration.mass.foot_mass_kg
+        return float(foot_part(float(LOWER[1])).mass_kg()) if given is None else given
 
 
 def simulate_extras(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Extras:
@@ -138,20 +127,14 @@ def simulate_extras(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Extras:
     if len(front):
         knee = pick(front, Knee()).trial
         chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
-    jumps: dict[int, Jump] = {}
-    drift = 0.0
-    for place in sorted(chosen):
-        row = front.iloc[place]
-        jump = jump_of(Design.from_array(row[list(NAMES)].to_numpy(dtype=np.float64)), actuator_map, calibration)
-        if jump is not None:
-            jumps[int(row["trial"])] = jump
-            drift = max(drift, abs(jump.height_m - float(row["height_m"])))
+    rows = front.iloc[sorted(chosen)]
+    jumps = jumps_of(rows[list(NAMES)].to_numpy(dtype=np.float64), actuator_map, calibration)
     return Extras(
         actuator_map=actuator_map,
         calibration=calibration,
-        jumps=jumps,
-        cases=[_case(name, actuator_map, calibration) for name in PAPER_CASES],
-        drift_m=drift,
+        jumps=dict(zip(rows["trial"].astype(int).tolist(), jumps, strict=True)),
+        cases=paper_cases(actuator_map, calibration),
+        drift_m=max((abs(jump.height_m - h) for jump, h in zip(jumps, rows["height_m"], strict=True)), default=0.0),
     )
 
 
@@ -160,14 +143,19 @@ def _spread(n: int, most: int) -> list[int]:
     return sorted(set(np.linspace(0, n - 1, min(n, most)).round().astype(int).tolist())) if n else []
 
 
-def jump_of(design: Design, actuator_map: "ActuatorMap", calibration: "Calibration") -> Jump | None:
-    """The jump of a design in few frames; None if it does not jump."""
+def jumps_of(designs: NDArray[np.float64], actuator_map: "ActuatorMap", calibration: "Calibration") -> list[Jump]:
+    """The jumps of designs that can stand, shape (n, 7), in few frames each."""
+    from pareto_monoped.jump.rows import take
     from pareto_monoped.jump.single import trace_of
     from pareto_monoped.robot import robot_arrays
 
-    values = design.as_array()[None, :]
-    robots = robot_arrays(values, actuator_map, calibration.mass)
-    return in_few_frames(trace_of(robots, values[:, 4:7], calibration))
+    if len(designs) == 0:
+        return []
+    robots = robot_arrays(designs, actuator_map, calibration.mass)
+    return [
+        in_few_frames(trace_of(take(robots, np.array([i])), designs[i : i + 1, 4:7], calibration))
+        for i in range(len(designs))
+    ]
 
 
 def in_few_frames(trace: Mapping[str, NDArray[np.float64]], frames: int = FRAMES) -> Jump:
@@ -194,25 +182,29 @@ def in_few_frames(trace: Mapping[str, NDArray[np.float64]], frames: int = FRAMES
     )
 
 
-def _case(name: str, actuator_map: "ActuatorMap", calibration: "Calibration") -> Case:
+def paper_cases(actuator_map: "ActuatorMap", calibration: "Calibration") -> list[Case]:
+    """The paper's four designs, simulated."""
     from pareto_monoped.jump.evaluate import Evaluator
 
-    design = PAPER_CASES[name].design
-    result = Evaluator(actuator_map, calibration)(design.as_array())
-    status = str(result.status[0])
+    designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
+    result = Evaluator(actuator_map, calibration)(designs)
+    jumps = iter(jumps_of(designs[result.ok], actuator_map, calibration))
 
-    def number(values: NDArray[np.float64]) -> Number:
-        return round(float(values[0]), 4) if np.isfinite(values[0]) else None
+    def number(value: float) -> Number:
+        return round(float(value), 4) if np.isfinite(value) else None
 
-    return Case(
-        name=name,
-        status=status,
-        reason=result.reason[0],
-        height_m=number(result.height_m),
-        energy_j=number(result.energy_j),
-        mass_kg=number(result.mass_kg),
-        jump=jump_of(design, actuator_map, calibration) if status == "ok" else None,
-    )
+    return [
+        Case(
+            name=name,
+            status=str(result.status[i]),
+            reason=result.reason[i],
+            height_m=number(result.height_m[i]),
+            energy_j=number(result.energy_j[i]),
+            mass_kg=number(result.mass_kg[i]),
+            jump=next(jumps) if result.ok[i] else None,
+        )
+        for i, name in enumerate(PAPER_CASES)
+    ]
 
 
 def _gearbox(actuator: "Actuator") -> Gearbox:

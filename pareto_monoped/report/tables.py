@@ -114,11 +114,16 @@ def cases_table(payload: Payload) -> str:
                 row.append(_number(value, decimals) if value is not None else made.status)
             rows.append(row)
         parts.append(_table([f"{quantity}, {unit}", *names[1:]], rows))
-    parts.append(
-        '<p class="small">The literal model follows the paper word for word and was fitted to its table; it reacts to '
-        "the smallest changes, so it is shown as the median over many of them. The study's calibration is well-posed, "
-        "and its heights and energies compare with the front, not with the published ones.</p>"
+    words = (
+        "What is simulated here compares with the front; the published figures do not, because the paper leaves losses "
+        "and contact open."
     )
+    if literal:
+        words += (
+            " The literal model follows the paper word for word and was fitted to its table; it reacts to the smallest "
+            "changes, so it is shown as the median over many of them."
+        )
+    parts.append(f'<p class="small">{words}</p>')
     return "\n".join(parts)
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.jump.single import simulate
-from pareto_monoped.report.physics import FRAMES, SCALES, in_few_frames, jump_of
+from pareto_monoped.report.physics import FRAMES, SCALES, in_few_frames, jumps_of
 
 
 @pytest.fixture(scope="module")
@@ -15,7 +15,7 @@ def best(data, extras):
 
 def test_frames_follow_the_whole_trace(best, extras):
     design, row, result = best
-    jump = jump_of(design, extras.actuator_map, extras.calibration)
+    jump = jumps_of(design.as_array()[None], extras.actuator_map, extras.calibration)[0]
     time = np.array(jump.columns["time_s"]) * jump.scale["time_s"]
     assert len(time) <= FRAMES
     assert time[0] == 0.0
@@ -31,7 +31,7 @@ def test_frames_follow_the_whole_trace(best, extras):
 def test_joint_angles_of_the_frames_lead_from_the_base_to_the_foot(best, extras):
     """Kinematics as the page's animation has it, against the simulated foot."""
     design, _, _ = best
-    jump = jump_of(design, extras.actuator_map, extras.calibration)
+    jump = jumps_of(design.as_array()[None], extras.actuator_map, extras.calibration)[0]
     frame = {name: np.array(values) * jump.scale[name] for name, values in jump.columns.items()}
     hip, both = frame["hip_rad"], frame["hip_rad"] + frame["knee_rad"]
     foot_z = frame["base_z_m"] - design.thigh_length_m * np.cos(hip) - design.shank_length_m * np.cos(both)

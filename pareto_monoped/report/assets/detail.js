@@ -73,7 +73,7 @@ function showGears(chosen) {
   box.replaceChildren();
   const { hip, knee } = chosen ?? {};
   if (!hip || !knee) {
-    box.append(make("p", { class: "small" }, "No gearbox exists for this design's ratios."));
+    box.append(make("p", { class: "small" }, chosen ? "No gearbox exists for this design's ratios." : "Nothing is selected."));
     return;
   }
   const widest = Math.max(...[hip, knee].flatMap((g) => [g.motor_diameter_mm, g.module_mm * g.ring_teeth + 6]));
@@ -98,7 +98,7 @@ function showMass(chosen) {
   box.replaceChildren();
   const total = chosen?.measures.mass_kg;
   if (!total) {
-    box.append(make("p", { class: "small" }, "No robot was built from this design."));
+    box.append(make("p", { class: "small" }, chosen ? "No robot was built from this design." : "Nothing is selected."));
     return;
   }
   const { hip, knee, more, study } = chosen;
@@ -143,7 +143,7 @@ function showAudit(chosen) {
   box.replaceChildren();
   const audit = chosen?.audit;
   if (!audit) {
-    box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: that is done when the study has ended." : "Only designs of the front are audited."));
+    box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: that is done when the study has ended." : chosen ? "Only designs of the front are audited." : "Nothing is selected."));
     return;
   }
   box.append(make("p", { class: `verdict${audit.good ? "" : " no"}` }, audit.good ? "Well-conditioned: its height and energy can be trusted." : `Ill-conditioned: ${audit.reason}.`));

@@ -168,31 +168,33 @@ function traces() {
   return list;
 }
 
-// Names beside the paper's diamonds and the knee, moved apart where they would overlap.
+// Names beside the paper's diamonds and the knee, where they cover neither each other nor another of these marks.
 function labels(list) {
   const { x, y } = viewRange();
-  const width = Math.max(gd.clientWidth - 72, 100), height = Math.max(gd.clientHeight - 60, 100);
-  const taken = [];
-  const found = [];
-  for (const one of list) {
+  const width = Math.max(gd.clientWidth - 72, 100), height = Math.max(gd.clientHeight - 72, 100);
+  const lastPicks = list.findLast((t) => t.name === "picks");
+  const marks = list.flatMap((one) => {
+    if (one.name !== "picks" && !one.customdata) return [];
     // Of several studies' knees, which lie close together, the last drawn has its name beside it.
-    const names = one.name === "picks" ? (one === list.findLast((t) => t.name === "picks") ? one.x.map(() => "knee") : null) : one.customdata;
-    if (!names) continue;
-    names.forEach((text, i) => {
-      if (!text) return;
-      const px = (one.x[i] - x[0]) / (x[1] - x[0]) * width, py = (one.y[i] - y[0]) / (y[1] - y[0]) * height;
-      const size = 8 * text.length + 4;
-      const spots = [[14, 0, "left"], [-14, 0, "right"], [0, 17, "center"], [0, -17, "center"], [14, 15, "left"], [14, -15, "left"], [-14, -15, "right"]];
-      const spot = spots.find(([dx, dy, anchor]) => {
-        const start = px + dx - (anchor === "right" ? size : anchor === "center" ? size / 2 : 0);
-        return start >= 0 && start + size <= width && !taken.some((t) => start < t[1] && start + size > t[0] && Math.abs(py + dy - t[2]) < 14);
-      }) ?? spots[0];
-      const start = px + spot[0] - (spot[2] === "right" ? size : spot[2] === "center" ? size / 2 : 0);
-      taken.push([start, start + size, py + spot[1]], [px - 8, px + 8, py]);
-      found.push({ x: one.x[i], y: one.y[i], text, showarrow: false, xshift: spot[0], yshift: spot[1], xanchor: spot[2], font: { size: 12, color: colour("ink") }, bgcolor: "rgba(0,0,0,0)" });
-    });
-  }
-  return found;
+    const name = (i) => (one.name !== "picks" ? one.customdata[i] : one === lastPicks ? "knee" : "");
+    return one.x.map((value, i) => ({
+      x: value, y: one.y[i], text: name(i),
+      px: (value - x[0]) / (x[1] - x[0]) * width, py: (one.y[i] - y[0]) / (y[1] - y[0]) * height,
+    }));
+  });
+  const taken = marks.map(({ px, py }) => [px - 9, px + 9, py]);
+  const spots = [[14, 0, "left"], [-14, 0, "right"], [0, -18, "center"], [0, 18, "center"], [12, -16, "left"], [-12, -16, "right"], [12, 16, "left"], [-12, 16, "right"]];
+  return marks.filter((mark) => mark.text).map(({ x: energy, y: jump, text, px, py }) => {
+    const size = 7.5 * text.length + 4;
+    const start = ([dx, , anchor]) => px + dx - (anchor === "right" ? size : anchor === "center" ? size / 2 : 0);
+    const free = (spot) => {
+      const from = start(spot), at = py + spot[1];
+      return from >= 0 && from + size <= width && !taken.some((t) => from < t[1] && from + size > t[0] && Math.abs(at - t[2]) < 15);
+    };
+    const spot = spots.find(free) ?? spots[0];
+    taken.push([start(spot), start(spot) + size, py + spot[1]]);
+    return { x: energy, y: jump, text, showarrow: false, xshift: spot[0], yshift: spot[1], xanchor: spot[2], font: { size: 12, color: colour("ink") } };
+  });
 }
 
 function drawFront() {

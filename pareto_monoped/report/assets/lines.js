@@ -106,6 +106,10 @@ function drawAlong() {
   box.replaceChildren();
   dots = [];
   const shownStudies = [...state.visible].filter((i) => page.studies[i].front.length);
+  if (!shownStudies.length) {
+    byId("along-note").textContent = "There is no front to follow.";
+    return;
+  }
   const heights = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns.height_m[row])));
   const x = padded(heights, 0.03);
   const several = page.studies.length > 1;
@@ -138,9 +142,7 @@ function drawAlong() {
     box.append(chart.svg);
   }
   moveDots();
-  byId("along-note").textContent = shownStudies.length
-    ? `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`
-    : "There is no front to follow.";
+  byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
 }
 
 // Ratio from which on the external family has every interval; null if one family has them all.

@@ -14,6 +14,11 @@ function band(x, low, middle, high, tint, name) {
 
 function drawConvergence(node) {
   const comparison = page.comparison;
+  if (!page.studies.some((study) => study.history.evaluations.length)) {
+    node.replaceChildren(make("p", { class: "small" }, "No generation is complete yet, so there is no convergence to show."));
+    node.style.height = "auto";
+    return;
+  }
   const list = page.studies.map((study, i) => ({
     type: "scatter", mode: study.history.evaluations.length > 1 ? "lines" : "markers", name: plain(study.label),
     x: study.history.evaluations, y: study.history.hypervolume, line: { ...seriesStyle(i), shape: "hv" },
