@@ -33,3 +33,11 @@ def exported(actuator_map, calibration, tmp_path_factory):
     )
     folder = tmp_path_factory.mktemp("cad") / "case_c"
     return export_design(design, actuator_map, calibration, folder, source={"case": "C"})
+
+
+def pytest_collection_modifyitems(items):
+    # One worker builds the shared robots once.
+    for item in items:
+        if "tests/cad/" in item.path.as_posix():
+            item.add_marker(pytest.mark.xdist_group("cad"))
+            item.add_marker(pytest.mark.cad)
