@@ -66,7 +66,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
     (card,) = payload.studies
     at = len(card.front) - 1
     row = card.front[at]
-    tab.page.mouse.click(*tab.point("front", at))
+    tab.click_point("front", at)
     tab.expects("#subject", f"Trial {card.trials.trial[row]}")
     assert f"{card.trials.columns['height_m'][row]:.3f} m" in tab.text("#headline")
     assert f"{card.trials.columns['thigh_length_m'][row] * 1000:.1f} mm" in tab.text("#variables")
@@ -80,7 +80,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
 
 
 def test_a_click_on_the_papers_diamond_shows_that_case(tab, payload):
-    tab.page.mouse.click(*tab.point("simulated", 0))
+    tab.click_point("simulated", 0)
     tab.expects("#subject", "nominal design")
     assert f"{payload.studies[0].cases[0].energy_j:.2f} J" in tab.text("#headline")
     assert "simulate --case nominal" in tab.text("#commands")
@@ -276,7 +276,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     assert tab.page.locator("#search tbody tr").count() == 3
     tab.page.uncheck("[data-study='1']")
     assert fronts() == 2
-    tab.page.mouse.click(*tab.point("weighted", 0))
+    tab.click_point("weighted", 0)
     tab.expects("#subject", "weighted")
     tab.quiet(file)
 
