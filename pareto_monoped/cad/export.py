@@ -6,6 +6,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,6 +96,13 @@ def export_design(
     pose = _pose(arrays, calibration, hip_rad, knee_rad)
     progress("building")
     product = build_product(robot, pose)
+    # Drawing is array work that another thread does while the CAD kernel checks and writes.
+    drawing_thread = ThreadPoolExecutor(max_workers=1)
+    pictures = {
+        name: drawing_thread.submit(_drawn, scene)
+        for name, scene in (_scenes(product) if "png" in wanted else {}).items()
+    }
+    drawing_thread.shutdown(wait=False)
     progress("checking")
     checks = run_checks(product, robot_arrays(built.as_array(), actuator_map))
     failures = [failure for check in checks for failure in check.failures]
@@ -114,6 +122,8 @@ def export_design(
     progress("writing")
     with _beside(out_dir) as folder:
         _write_geometry(folder, product, wanted)
+        for name, picture in pictures.items():
+            _write(folder, name, picture.result())
         _write_models(folder, product, arrays, calibration, wanted)
         _write(folder, "bom.csv", documents.bom(product))
         _write(folder, "checks.json", documents.checks_record(checks))
@@ -189,6 +199,17 @@ def _pose(arrays: RobotArrays, calibration: Calibration, hip_rad: float | None, 
     return Pose(hip_rad=hip if hip_rad is None else hip_rad, knee_rad=knee if knee_rad is None else knee_rad)
 
 
+def _drawn(scene: scenes.Scene) -> bytes:
+    return png(scene.picture())
+
+
+def _scenes(product: Product) -> dict[str, scenes.Scene]:
+    return {
+        "assembly.png": scenes.assembly_scene(product),
+        "knee_actuator_section.png": scenes.section_scene(product, "knee_actuator"),
+    }
+
+
 def _write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> None:
     for kind in product.unique:
         name = _safe(kind.name)
@@ -204,9 +225,6 @@ def _write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> N
         _write(folder, "assembly.step", step.assembly_step(product, "monoped"))
     if "glb" in formats:
         _write(folder, "assembly.glb", trianglefiles.glb(product))
-    if "png" in formats:
-        _write(folder, "assembly.png", png(scenes.assembly_picture(product)))
-        _write(folder, "knee_actuator_section.png", png(scenes.section_picture(product, "knee_actuator")))
 
 
 def _write_models(

@@ -1,6 +1,8 @@
 """The pictures of an export: the assembly, and an actuator cut along its axis with a legend."""
 
 import colorsys
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import manifold3d as m3
 import numpy as np
@@ -19,7 +21,30 @@ _FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
 
 
-def assembly_picture(product: Product, *, width: int = 900, height: int = 1080) -> Image:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """What a picture is drawn from, apart from the product, so that another thread can draw it.
+
+    Attributes:
+        bodies: what to draw.
+        view: from where.
+        width, height: of the picture, in pixels, without the legend.
+        legend: name, count and colour, a row a part.
+    """
+
+    bodies: tuple[Body, ...]
+    view: View
+    width: int
+    height: int
+    legend: tuple[tuple[str, int, tuple[float, float, float]], ...] = ()
+
+    def picture(self) -> Image:
+        """Draw it."""
+        image = draw(self.bodies, self.view, width=self.width, height=self.height)
+        return np.concatenate([image, _legend(self.legend, 300, self.height)], axis=1) if self.legend else image
+
+
+def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
     """The robot in its pose."""
     bodies = []
     for instance, kind in product.placed():
@@ -27,10 +52,10 @@ def assembly_picture(product: Product, *, width: int = 900, height: int = 1080) 
             continue
         points = kind.mesh.points_mm @ instance.world[:3, :3].T + instance.world[:3, 3]
         bodies.append(Body(points_mm=points, triangles=kind.mesh.triangles, colour=kind.part.material.colour))
-    return draw(bodies, _FROM_THE_RIGHT, width=width, height=height)
+    return Scene(bodies=tuple(bodies), view=_FROM_THE_RIGHT, width=width, height=height)
 
 
-def section_picture(product: Product, unit_name: str, *, width: int = 1300, height: int = 820) -> Image:
+def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
     """An actuator with a quarter cut away, its output to the left, every part in a colour of its own."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
     upright = _to_section_frame() @ np.linalg.inv(unit_frame(unit))
@@ -48,8 +73,7 @@ def section_picture(product: Product, unit_name: str, *, width: int = 1300, heig
                 continue
             mesh = mesh_from(kept)
             bodies.append(Body(points_mm=mesh.points_mm, triangles=mesh.triangles, colour=colour))
-    image = draw(bodies, _ALONG_X, width=width - 300, height=height)
-    return np.concatenate([image, _legend(legend, 300, height)], axis=1)
+    return Scene(bodies=tuple(bodies), view=_ALONG_X, width=width, height=height, legend=tuple(legend))
 
 
 def _to_section_frame() -> NDArray[np.float64]:
@@ -72,7 +96,7 @@ def _colour(k: int, count: int) -> tuple[float, float, float]:
     return colorsys.hsv_to_rgb(hue, 0.34 if k % 2 else 0.52, 0.95 if k % 3 else 0.80)
 
 
-def _legend(rows: list[tuple[str, int, tuple[float, float, float]]], width: int, height: int) -> Image:
+def _legend(rows: Sequence[tuple[str, int, tuple[float, float, float]]], width: int, height: int) -> Image:
     from PIL import Image as Pillow
     from PIL import ImageDraw, ImageFont
 
