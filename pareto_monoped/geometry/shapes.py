@@ -4,12 +4,11 @@ A shape lies in the local x-y plane, in millimetres. Every number may be a float
 same code weighs one part or a whole population; results then have shape (n,).
 
 The six integrals of a region, area, x, y, xx, yy, xy over dA, add up over disjoint regions and subtract for holes. By
-Green's theorem each is an integral along the boundary: closed form for straight lines, Gauss-Legendre quadrature for
-arcs, which is exact to rounding up to a half turn.
+Green's theorem each is an integral along the boundary, in closed form for straight lines and arcs.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache, reduce
 from typing import Protocol
 
@@ -18,11 +17,6 @@ from numpy.typing import NDArray
 
 Numbers = float | NDArray[np.float64]
 """A float, or an array of shape (n,) with a value a design."""
-
-# 16 nodes integrate polynomials up to degree 31 exactly; sines over a half turn to about 1e-16.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-_NODES = 0.5 * (_NODES + 1.0)
-_WEIGHTS = 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +126,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """A circular piece of a boundary, from one angle to another (increasing: anticlockwise), at most a half turn."""
+    """A circular piece of a boundary, from one angle to another (increasing: anticlockwise)."""
 
     x_mm: Numbers
     y_mm: Numbers
@@ -156,71 +150,71 @@ class Path:
 
 
 def _boundary(pieces: tuple[Line | Arc, ...]) -> Moments:
-    total = Moments(0.0)
     lines = [(p.x0_mm, p.y0_mm, p.x1_mm, p.y1_mm) for p in pieces if isinstance(p, Line)]
-    if lines:
-        total = total + _line_sectors(*_stacked(lines))
     arcs = [(p.x_mm, p.y_mm, p.radius_mm, p.start_rad, p.end_rad) for p in pieces if isinstance(p, Arc)]
+    total = Moments(0.0)
+    if lines:
+        total = total + _added(_triangles(*_columns(lines)))
     if arcs:
-        total = total + _arc_sectors(*_stacked(arcs))
+        total = total + _arc_sectors(*_columns(arcs))
     return total
 
 
 _remembered = lru_cache(maxsize=256)(_boundary)
 
 
-def _stacked(rows: Sequence[tuple[Numbers, ...]]) -> list[NDArray[np.float64]]:
-    """Columns of a table of numbers, each of shape (pieces, ...)."""
-    flat = np.broadcast_arrays(*(value for row in rows for value in row))
-    table = np.array(flat, dtype=np.float64).reshape(len(rows), len(rows[0]), *flat[0].shape)
-    return [table[:, k] for k in range(len(rows[0]))]
+def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
+    """The columns of a table of numbers, each of shape (pieces, ...)."""
+    shape = next((value.shape for row in rows for value in row if isinstance(value, np.ndarray) and value.ndim), ())
+    table = np.empty((len(rows[0]), len(rows), *shape))
+    for piece, row in enumerate(rows):
+        for column, value in enumerate(row):
+            table[column, piece] = value
+    return table
 
 
-def _added(values: NDArray[np.float64]) -> Numbers:
+def _added(moments: Moments) -> Moments:
     """Sum over the pieces, one after the other: NumPy's own sum takes another order for other shapes."""
-    return reduce(np.add, values)[()]
+    return Moments(*(reduce(np.add, getattr(moments, field.name))[()] for field in fields(moments)))
 
 
-def _line_sectors(
+def _triangles(
     x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
 ) -> Moments:
-    """Triangles with the origin, closed form."""
+    """Triangles between the origin and straight lines, a row a line."""
     twice = x0 * y1 - x1 * y0
     return Moments(
-        _added(twice) / 2.0,
-        _added((x0 + x1) * twice) / 6.0,
-        _added((y0 + y1) * twice) / 6.0,
-        _added((x0 * x0 + x0 * x1 + x1 * x1) * twice) / 12.0,
-        _added((y0 * y0 + y0 * y1 + y1 * y1) * twice) / 12.0,
-        _added((x0 * (2.0 * y0 + y1) + x1 * (y0 + 2.0 * y1)) * twice) / 24.0,
+        twice / 2.0,
+        (x0 + x1) * twice / 6.0,
+        (y0 + y1) * twice / 6.0,
+        (x0 * x0 + x0 * x1 + x1 * x1) * twice / 12.0,
+        (y0 * y0 + y0 * y1 + y1 * y1) * twice / 12.0,
+        (x0 * (2.0 * y0 + y1) + x1 * (y0 + 2.0 * y1)) * twice / 24.0,
     )
 
 
 def _arc_sectors(
-    cx: NDArray[np.float64],
-    cy: NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
     r: NDArray[np.float64],
     start: NDArray[np.float64],
     end: NDArray[np.float64],
 ) -> Moments:
-    """Sectors with the origin, by quadrature: each is an integral of x^i y^j (x dy - y dx) along the arc."""
-    cx, cy, r, start, turn = (values[..., None] for values in (cx, cy, r, start, end - start))
-    angle = start + turn * _NODES
-    cos, sin = np.cos(angle), np.sin(angle)
-    x, y = cx + r * cos, cy + r * sin
-    twice = (x * cos + y * sin) * (r * turn * _WEIGHTS)
-
-    def along(values: NDArray[np.float64]) -> Numbers:
-        return _added(np.sum(values, axis=-1))
-
-    return Moments(
-        along(twice) / 2.0,
-        along(x * twice) / 3.0,
-        along(y * twice) / 3.0,
-        along(x * x * twice) / 4.0,
-        along(y * y * twice) / 4.0,
-        along(x * y * twice) / 4.0,
-    )
+    """What arcs span with the origin: the sector with the arc's centre, and two triangles from there to the origin."""
+    cos0, sin0, cos1, sin1 = np.cos(start), np.sin(start), np.cos(end), np.sin(end)
+    turn, wave = end - start, sin1 * cos1 - sin0 * cos0
+    r2, r3, r4 = r * r, r**3, r**4
+    sector = Moments(
+        r2 * turn / 2.0,
+        r3 * (sin1 - sin0) / 3.0,
+        r3 * (cos0 - cos1) / 3.0,
+        r4 * (turn + wave) / 8.0,
+        r4 * (turn - wave) / 8.0,
+        r4 * (sin1 * sin1 - sin0 * sin0) / 8.0,
+    ).moved(x, y)
+    towards = _triangles(x + r * cos0, y + r * sin0, x, y)
+    away = _triangles(x, y, x + r * cos1, y + r * sin1)
+    return _added(sector) + _added(towards) + _added(away)
 
 
 def rectangle(*, width_mm: Numbers, height_mm: Numbers, x_mm: Numbers = 0.0, y_mm: Numbers = 0.0) -> Path:

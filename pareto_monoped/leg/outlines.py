@@ -1,5 +1,7 @@
 """Outlines that only the leg needs: plates with a waist, windows, sprockets."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -61,6 +63,7 @@ def rounded(*, half_width_mm: Numbers, high_mm: Numbers, low_mm: Numbers, corner
     )
 
 
+@lru_cache(maxsize=8)
 def sprocket(*, teeth: int, pitch_mm: float, roller_mm: float) -> Path:
     """A chain sprocket around the origin, with the middle of a tooth gap on the +x axis.
 
