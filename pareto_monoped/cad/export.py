@@ -22,12 +22,13 @@ from pareto_monoped.cad.documents import FORMATS
 from pareto_monoped.cad.picture import png
 from pareto_monoped.cad.product import Product, build_product
 from pareto_monoped.design import Design
-from pareto_monoped.errors import CheckError, InputError, OutputError
+from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.robot import RobotArrays, build_robot, robot_arrays
+from pareto_monoped.leg.dimensions import DEFAULT
+from pareto_monoped.robot import Robot, RobotArrays, build_robot, robot_arrays
 
 LENGTH_STEP_M = 1e-4
 """Link lengths are made to 0.1 mm."""
@@ -83,13 +84,14 @@ def export_design(
     Raises:
         InputError: an unknown format.
         OutputError: the folder is not empty and ``force`` is not given, or cannot be written.
-        DesignError: the robot cannot be built.
+        DesignError: the robot cannot be built, or its motor does not fit the leg's plates.
         CheckError: a check failed; nothing is written.
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
     built = as_built(design, actuator_map)
     robot = build_robot(built, actuator_map)
+    _require_fit(robot)
     arrays = robot_arrays(built.as_array(), actuator_map, calibration.mass)
     progress("simulating")
     jumps = _jumps({"searched": design, "as_built": built}, actuator_map, calibration)
@@ -159,6 +161,19 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         raise OutputError(
             f"output {str(out_dir)!r}: is not empty; give another folder, or --force to replace an export"
         )
+
+
+def _require_fit(robot: Robot) -> None:
+    """The leg's plates are drilled for one bolt circle; a motor of another size needs other plates."""
+    drilled = 2.0 * DEFAULT.mount_pitch_radius_mm
+    for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
+        circle = actuator.mount.bolts.pitch_circle_mm
+        if abs(circle - drilled) > 0.05:
+            raise DesignError(
+                f"bolt circle of the {joint} actuator = {circle:.1f} mm: must be {drilled:.1f} mm, for which the leg's "
+                f"plates are drilled; export a design of another motor than {actuator.motor.name}, or change "
+                "mount_pitch_radius_mm in leg/dimensions.py"
+            )
 
 
 def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:

@@ -93,6 +93,8 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
         export_design(DESIGN, actuator_map, calibration, tmp_path / "file")
     with pytest.raises(DesignError):
         export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot")
+    with pytest.raises(DesignError, match=r"bolt circle of the hip actuator = 115\.8 mm: must be 98\.0 mm"):
+        export_design(DESIGN, search.map_for("U12"), calibration, tmp_path / "robot")
     with pytest.raises(OutputError, match=r"part name '\.\./x'"):
         export._safe("../x")
 
