@@ -36,8 +36,6 @@ def exported(actuator_map, calibration, tmp_path_factory):
 
 
 def pytest_collection_modifyitems(items):
-    # One worker builds the shared robots once.
     for item in items:
         if "tests/cad/" in item.path.as_posix():
-            item.add_marker(pytest.mark.xdist_group("cad"))
             item.add_marker(pytest.mark.cad)

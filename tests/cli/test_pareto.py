@@ -38,7 +38,6 @@ def job(tmp_path_factory):
 
 
 @pytest.mark.cad
-@pytest.mark.xdist_group("main job")
 class TestMainJob:
     def test_it_names_the_files_and_they_exist(self, job):
         folder, done = job

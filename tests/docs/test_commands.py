@@ -58,7 +58,6 @@ def missing(shown: list[str], printed: list[str]) -> str:
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: str(p.relative_to(ROOT)))
-@pytest.mark.xdist_group("docs")
 def test_commands_of_the_page_run_and_print_what_it_shows(page, tmp_path):
     shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
     (tmp_path / "reports").mkdir()

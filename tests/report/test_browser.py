@@ -15,7 +15,7 @@ from pareto_monoped.report.page import page, write_report
 from pareto_monoped.report.payload import Source, build
 from tests.report.conftest import Tab, cut, grown
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")
