@@ -121,12 +121,13 @@ def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
             raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
     hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
     shank_length_m = design.shank_length_m
+    journal = journal_parts(1e-3 * knee.length_mm, back_clearance_mm=_back_clearance_mm(knee))
     units = (
         Unit(name="base_frame", body="base", parts=base_parts(1e-3 * knee.length_mm), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=DEFAULT.hip_mount_mm),
         Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=DEFAULT.knee_mount_mm),
-        Unit(name="journal", body="thigh", parts=journal_parts(1e-3 * knee.length_mm), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="journal", body="thigh", parts=journal, turn=_UPRIGHT, z_mm=0.0),
         Unit(name="shank", body="shank", parts=shank_parts(shank_length_m), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="foot", body="shank", parts=(foot_part(shank_length_m),), turn=_UPRIGHT, z_mm=0.0),
     )
@@ -259,6 +260,7 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     length_m = np.array([1e-3 * a.length_mm for a in actuators])
+    clearance_mm = np.array([_back_clearance_mm(a) for a in actuators])
     masses = [total(part.mass_properties() for part in actuator.parts) for actuator in actuators]
     return _ActuatorTable(
         row=np.maximum(row, 0),
@@ -268,7 +270,7 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
             second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
         ),
         frame=_upright(base_parts(length_m)),
-        journal=_upright(journal_parts(length_m)),
+        journal=_upright(journal_parts(length_m, back_clearance_mm=clearance_mm)),
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
@@ -276,6 +278,11 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
         no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
         efficiency=np.array([a.efficiency for a in actuators]),
     )
+
+
+def _back_clearance_mm(actuator: Actuator) -> float:
+    """How much of an actuator's back the screws of its own pattern pass through before their threads begin."""
+    return actuator.mount.back_depth_mm if actuator.family == "ESSPG" else 0.0
 
 
 def _missing(actuator_map: ActuatorMap, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:

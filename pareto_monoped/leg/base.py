@@ -139,11 +139,15 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
     )
 
 
-def journal_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+def journal_parts(
+    knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT, *, back_clearance_mm: Numbers = 0.0
+) -> tuple[Part, ...]:
     """The journal on the knee actuator's back that turns in the far cheek; in the frame of the thigh, part of it.
 
     Args:
         knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
+        back_clearance_mm: how much of the knee actuator's back the screws pass through before their threads begin,
+            float or shape (n,).
         d: dimensions.
     """
     back, far0, _ = _far_z(knee_actuator_length_m, d)
@@ -172,7 +176,12 @@ def journal_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -
             name="journal_screw",
             material=STEEL,
             process="bought",
-            prisms=M5.prisms(seat_mm=flange, grip_mm=_JOURNAL_FLANGE, thread_mm=_BACK_THREAD, direction=-1.0),
+            prisms=M5.prisms(
+                seat_mm=flange,
+                grip_mm=_JOURNAL_FLANGE + back_clearance_mm,
+                thread_mm=_BACK_THREAD,
+                direction=-1.0,
+            ),
             count=d.back_holes,
             pitch_radius_mm=d.back_pitch_radius_mm,
             note="M5 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
