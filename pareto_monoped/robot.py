@@ -21,7 +21,7 @@ from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.shapes import Numbers
-from pareto_monoped.leg.dimensions import DEFAULT
+from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions, with_chain_for
 from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
 
 Floats = NDArray[np.float64]
@@ -33,6 +33,7 @@ PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0
 """Part frames have the joint axis along z and y up along the link; body frames have it along y and z up."""
 PART_TO_BODY.flags.writeable = False
 _UPRIGHT = np.eye(3)
+_THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 _OVER = np.diag([1.0, -1.0, -1.0])  # half a turn about x: the knee actuator looks at the thigh from outside
 
 
@@ -109,6 +110,32 @@ class Robot:
         return float(sum(unit.mass_properties().mass_kg for unit in self.units))
 
 
+@lru_cache(maxsize=16)
+def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
+    """The leg that fits a motor: its plates are drilled for its actuators, its chain carries their largest torque.
+
+    A map's actuators have one output; where its two families have different mounts, the leg has the first one's.
+    """
+    actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
+    if not actuators:
+        return DEFAULT
+    mount, output = actuators[0].mount, actuators[0].output
+    bare = LegDimensions(
+        mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
+        mount_holes=mount.bolts.count,
+        housing_radius_mm=mount.housing_radius_mm,
+        mount_thread_mm=mount.thread_depth_mm - _THREAD_SPARE_MM,
+        output_pitch_radius_mm=0.5 * output.bolts.pitch_circle_mm,
+        output_holes=output.bolts.count,
+        coupler_radius_mm=output.flange_radius_mm,
+        coupler_thread_mm=output.thread_depth_mm - _THREAD_SPARE_MM,
+        back_pitch_radius_mm=0.5 * mount.back_bolts.pitch_circle_mm,
+        back_holes=mount.back_bolts.count,
+        back_screw_mm=mount.back_bolts.diameter_mm,
+    )
+    return with_chain_for(bare, max(actuator.peak_torque_n_m for actuator in actuators))
+
+
 def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
     """The robot of a design, part by part.
 
@@ -121,15 +148,17 @@ def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
             raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
     hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
     shank_length_m = design.shank_length_m
-    journal = journal_parts(1e-3 * knee.length_mm, back_clearance_mm=_back_clearance_mm(knee))
+    leg = leg_dimensions(actuator_map)
+    knee_length_m = 1e-3 * knee.length_mm
+    journal = journal_parts(knee_length_m, leg, back_clearance_mm=_back_clearance_mm(knee))
     units = (
-        Unit(name="base_frame", body="base", parts=base_parts(1e-3 * knee.length_mm), turn=_UPRIGHT, z_mm=0.0),
-        Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=DEFAULT.hip_mount_mm),
-        Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m), turn=_UPRIGHT, z_mm=0.0),
-        Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=DEFAULT.knee_mount_mm),
+        Unit(name="base_frame", body="base", parts=base_parts(knee_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=leg.hip_mount_mm),
+        Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=leg.knee_mount_mm),
         Unit(name="journal", body="thigh", parts=journal, turn=_UPRIGHT, z_mm=0.0),
-        Unit(name="shank", body="shank", parts=shank_parts(shank_length_m), turn=_UPRIGHT, z_mm=0.0),
-        Unit(name="foot", body="shank", parts=(foot_part(shank_length_m),), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="shank", body="shank", parts=shank_parts(shank_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
+        Unit(name="foot", body="shank", parts=(foot_part(shank_length_m, leg),), turn=_UPRIGHT, z_mm=0.0),
     )
     return Robot(design=design, hip=hip, knee=knee, units=units)
 
@@ -189,7 +218,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
     """
     values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
     thigh_m, shank_m = values[:, 0], values[:, 1]
-    table = _actuator_table(actuator_map)
+    table, leg = _actuator_table(actuator_map), leg_dimensions(actuator_map)
     intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
     reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
     hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
@@ -197,21 +226,21 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
     frame = table.frame.rows(knee)
     if options.base_structure_mass_kg is not None:
         frame = frame.scaled(options.base_structure_mass_kg / frame.mass_kg)
-    thigh, shank = _upright(thigh_parts(thigh_m)), _upright(shank_parts(shank_m))
+    thigh, shank = _upright(thigh_parts(thigh_m, leg)), _upright(shank_parts(shank_m, leg))
     journal = table.journal.rows(knee)
-    foot = _upright((foot_part(shank_m),))
+    foot = _upright((foot_part(shank_m, leg),))
     if options.foot_mass_kg is not None:
         foot = foot.scaled(options.foot_mass_kg / foot.mass_kg)
     bodies = (
-        frame + table.placed(hip, _UPRIGHT, DEFAULT.hip_mount_mm),
-        thigh.scaled(options.link_mass_scale) + journal + table.placed(knee, _OVER, DEFAULT.knee_mount_mm),
+        frame + table.placed(hip, _UPRIGHT, leg.hip_mount_mm),
+        thigh.scaled(options.link_mass_scale) + journal + table.placed(knee, _OVER, leg.knee_mount_mm),
         shank.scaled(options.link_mass_scale) + foot,
     )
     rows = np.stack([hip, knee], axis=1)
     armature = table.armature_kg_m2[rows]
     if options.rotor_inertia_kg_m2 is not None:
         armature = options.rotor_inertia_kg_m2 * np.square(table.ratio[rows])
-    foot_radius_m = DEFAULT.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
+    foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
     motor = actuator_map.motor
     return RobotArrays(
         thigh_length_m=thigh_m.copy(),
@@ -258,6 +287,7 @@ class _ActuatorTable:
 @lru_cache(maxsize=16)
 def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
+    leg = leg_dimensions(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     length_m = np.array([1e-3 * a.length_mm for a in actuators])
     clearance_mm = np.array([_back_clearance_mm(a) for a in actuators])
@@ -269,8 +299,8 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
             first_kg_m=np.array([m.first_kg_m for m in masses]),
             second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
         ),
-        frame=_upright(base_parts(length_m)),
-        journal=_upright(journal_parts(length_m, back_clearance_mm=clearance_mm)),
+        frame=_upright(base_parts(length_m, leg)),
+        journal=_upright(journal_parts(length_m, leg, back_clearance_mm=clearance_mm)),
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),

@@ -27,8 +27,8 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.leg.dimensions import DEFAULT
-from pareto_monoped.robot import Robot, RobotArrays, build_robot, robot_arrays
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.robot import Robot, RobotArrays, build_robot, leg_dimensions, robot_arrays
 
 LENGTH_STEP_M = 1e-4
 """Link lengths are made to 0.1 mm."""
@@ -84,14 +84,14 @@ def export_design(
     Raises:
         InputError: an unknown format.
         OutputError: the folder is not empty and ``force`` is not given, or cannot be written.
-        DesignError: the robot cannot be built, or its motor does not fit the leg's plates.
+        DesignError: the robot cannot be built, or its actuators do not fit one leg.
         CheckError: a check failed; nothing is written.
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
     built = as_built(design, actuator_map)
     robot = build_robot(built, actuator_map)
-    _require_fit(robot)
+    _require_fit(robot, leg_dimensions(actuator_map))
     arrays = robot_arrays(built.as_array(), actuator_map, calibration.mass)
     progress("simulating")
     jumps = _jumps({"searched": design, "as_built": built}, actuator_map, calibration)
@@ -163,17 +163,28 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         )
 
 
-def _require_fit(robot: Robot) -> None:
-    """The leg's plates are drilled for one bolt circle; a motor of another size needs other plates."""
-    drilled = 2.0 * DEFAULT.mount_pitch_radius_mm
+def _require_fit(robot: Robot, leg: LegDimensions) -> None:
+    """A motor's leg is drilled for one bolt circle at either end, and its chain carries so much."""
+    drilled = {
+        "bolt circle": 2.0 * leg.mount_pitch_radius_mm,
+        "back's bolt circle": 2.0 * leg.back_pitch_radius_mm,
+    }
     for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
-        circle = actuator.mount.bolts.pitch_circle_mm
-        if abs(circle - drilled) > 0.05:
-            raise DesignError(
-                f"bolt circle of the {joint} actuator = {circle:.1f} mm: must be {drilled:.1f} mm, for which the leg's "
-                f"plates are drilled; export a design of another motor than {actuator.motor.name}, or change "
-                "mount_pitch_radius_mm in leg/dimensions.py"
-            )
+        mount = actuator.mount
+        circles = (mount.bolts.pitch_circle_mm, mount.back_bolts.pitch_circle_mm)
+        for (name, allowed), circle in zip(drilled.items(), circles, strict=True):
+            if abs(circle - allowed) > 0.05:
+                raise DesignError(
+                    f"{name} of the {joint} actuator = {circle:.1f} mm: must be {allowed:.1f} mm, for which this "
+                    f"motor's leg is drilled; choose ratios of one family, or give {actuator.motor.name} a frame as "
+                    "wide as its frameless kit"
+                )
+    torque, allowed = robot.knee.peak_torque_n_m, leg.chain_torque_limit_n_m
+    if torque > allowed:
+        raise DesignError(
+            f"peak torque of the knee actuator = {torque:.1f} N m: must be at most {allowed:.1f} N m, half of what "
+            f"breaks the thigh's chain ({leg.chain_name}); choose a lower knee_ratio"
+        )
 
 
 def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:

@@ -4,13 +4,14 @@ import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
-from pareto_monoped.leg.common import M3, M4, M5, Place, holes_at
+from pareto_monoped.leg.common import M3, M4, Place, holes_at, motor_screw
 from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, STEEL, LegDimensions
 
 # Our own layout, mm: the rods stand above the hip, outside the reach of the thigh's round hip end and, up to the end
 # of the hip's range, of its bar.
-_TOP_Y, _TOP_RADIUS = 66.0, 40.0
-_RODS: tuple[Place, ...] = ((-32.0, 60.0, 0.0), (32.0, 60.0, 0.0), (-18.0, 90.0, 0.0), (18.0, 90.0, 0.0))
+_TOP_RADIUS = 40.0
+_LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis
+_UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0
 _ROD_RADIUS = 5.0
 _ROD_THREAD = 10.0
 _JOURNAL_FLANGE = 4.0
@@ -26,6 +27,13 @@ def _far_z(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Numbers, 
     return back, inner, inner + d.far_cheek_mm
 
 
+def _rods(d: LegDimensions) -> tuple[Place, ...]:
+    """Where the rods stand: two as close to the hip axis as the thigh lets them, two above."""
+    x, y = (d.rod_circle_mm * share for share in _LOWER_ROD)
+    up = y + _UPPER_ROD_RISE
+    return ((-x, y, 0.0), (x, y, 0.0), (-_UPPER_ROD_X, up, 0.0), (_UPPER_ROD_X, up, 0.0))
+
+
 def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
     """The base frame in the frame of the base: origin on the hip axis in the middle plane, y up, z along the axis.
 
@@ -38,13 +46,15 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
     near0, near1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
     _, far0, far1 = _far_z(knee_actuator_length_m, d)
     seat1 = far0 + d.bearing_width_mm
-    rods = holes_at(_RODS, M4.hole)
-    window = hull(top_radius_mm=10.0, bottom_radius_mm=10.0, length_mm=14.0, y_mm=76.0)
+    places = _rods(d)
+    rods = holes_at(places, M4.hole)
+    low_y = places[0][1]
+    top_y = low_y + 6.0
+    window = hull(top_radius_mm=10.0, bottom_radius_mm=10.0, length_mm=14.0, y_mm=low_y + 16.0)
     outer_race = Circle(radius_mm=d.bearing_outer_radius_mm)
-    rim = d.mount_pitch_radius_mm + 6.0
 
     def cheek(bottom_radius_mm: float) -> Path:
-        return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=_TOP_Y, y_mm=_TOP_Y)
+        return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=top_y, y_mm=top_y)
 
     thread = Circle(radius_mm=M4.core)
     return (
@@ -54,7 +64,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=cheek(rim),
+                    outline=cheek(d.rim_radius_mm),
                     z0_mm=near0,
                     z1_mm=near1,
                     holes=(
@@ -117,7 +127,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             material=ALUMINIUM,
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(thread,)),),
-            places_mm=_RODS,
+            places_mm=places,
             note="10 mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
         ),
         Part(
@@ -125,7 +135,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             material=STEEL,
             process="bought",
             prisms=M4.prisms(seat_mm=near0, grip_mm=d.cheek_mm, thread_mm=_ROD_THREAD, direction=1.0),
-            places_mm=_RODS,
+            places_mm=places,
             note="M4 x 16 cap screw (ISO 4762) 8.8",
         ),
         Part(
@@ -133,7 +143,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             material=STEEL,
             process="bought",
             prisms=M4.prisms(seat_mm=far1, grip_mm=d.far_cheek_mm, thread_mm=_ROD_THREAD, direction=-1.0),
-            places_mm=_RODS,
+            places_mm=places,
             note="M4 x 18 cap screw (ISO 4762) 8.8",
         ),
     )
@@ -154,7 +164,8 @@ def journal_parts(
     flange = back + _JOURNAL_FLANGE
     seat1 = far0 + d.bearing_width_mm
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - 3.0)
-    holes = Pattern(radius_mm=M5.hole, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
+    screw = motor_screw(d.back_screw_mm)
+    holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
     return (
         Part(
             name="journal",
@@ -176,7 +187,7 @@ def journal_parts(
             name="journal_screw",
             material=STEEL,
             process="bought",
-            prisms=M5.prisms(
+            prisms=screw.prisms(
                 seat_mm=flange,
                 grip_mm=_JOURNAL_FLANGE + back_clearance_mm,
                 thread_mm=_BACK_THREAD,
@@ -184,6 +195,6 @@ def journal_parts(
             ),
             count=d.back_holes,
             pitch_radius_mm=d.back_pitch_radius_mm,
-            note="M5 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
+            note=f"M{d.back_screw_mm:g} cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
         ),
     )

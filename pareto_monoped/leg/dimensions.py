@@ -10,7 +10,8 @@ is bolted to the thigh's outer plate on the same axis; its output turns a sprock
 knee, one to one. The far cheek carries the knee actuator's free end in a bearing.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from pareto_monoped.geometry.parts import Material
 
@@ -20,12 +21,15 @@ PLASTIC = Material(name="printed plastic", density_kg_per_m3=1430.0, colour=(0.9
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.45, 0.46, 0.48))
 RUBBER = Material(name="rubber", density_kg_per_m3=1150.0, colour=(0.22, 0.23, 0.25))
 
+CHAIN_SAFETY = 2.0  # our own choice: breaking load over the pull of the largest knee torque of the motor
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LegDimensions:
     """Every dimension of links and base that does not follow from the link lengths.
 
-    The first block repeats the actuator's interface and is filled from the actuator; its defaults fit the VT8020.
+    The first block repeats the actuator's interface and is filled from the actuator (``robot.leg_dimensions``), as is
+    the chain by its torque; the defaults fit the VT8020.
     The others are our own design, sized so that a link weighs what the reference link does.
 
     Attributes:
@@ -36,15 +40,16 @@ class LegDimensions:
         coupler_height_mm: of the output flange's face above the housing's mounting face.
         coupler_thread_mm: depth of the thread in the output flange.
         mount_thread_mm: depth of the thread in the housing.
-        back_pitch_radius_mm, back_holes: bolts (M5) of the motor's own mounting pattern, at the back.
+        back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
+            their diameter.
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
         gap_mm: distance of the thigh's plates.
         play_mm: lateral distance between parts that turn past each other.
-        chain_pitch_mm, chain_roller_mm, chain_inner_width_mm, chain_pin_mm, chain_plate_mm, chain_kg_per_m: 05B-1
-            (ISO 606): pitch, roller diameter, width between the inner plates, length over the pins, height of a plate,
-            mass. Its breaking load of 4.4 kN is 2.3 times the pull of the largest knee torque, 48 N m.
-        sprocket_teeth, sprocket_width_mm: both sprockets (ISO 606: width 0.93 b1 = 2.8 mm).
+        chain_name, chain_pitch_mm, chain_roller_mm, chain_inner_width_mm, chain_pin_mm, chain_plate_mm,
+            chain_kg_per_m, chain_breaking_n: the chain (ISO 606): pitch, roller diameter, width between the inner
+            plates, length over the pins, height of a plate, mass, breaking load.
+        sprocket_teeth, sprocket_width_mm: both sprockets (ISO 606: width 0.93 b1).
         bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: 6804, 20 x 32 x 7 mm.
         thigh_half_width_mm, thigh_window_half_width_mm, thigh_core_half_width_mm: the thigh's bar.
         knee_radius_mm: of the thigh plates at the knee; covers the chain.
@@ -67,17 +72,20 @@ class LegDimensions:
     mount_thread_mm: float = 4.5
     back_pitch_radius_mm: float = 25.5
     back_holes: int = 4
+    back_screw_mm: float = 5.0
 
     plate_mm: float = 2.5
     shank_plate_mm: float = 3.0
     gap_mm: float = 24.0
     play_mm: float = 2.0
+    chain_name: str = "05B-1"
     chain_pitch_mm: float = 8.0
     chain_roller_mm: float = 5.0
     chain_inner_width_mm: float = 3.0
     chain_pin_mm: float = 8.6
     chain_plate_mm: float = 7.11
     chain_kg_per_m: float = 0.18
+    chain_breaking_n: float = 4400.0
     sprocket_teeth: int = 20
     sprocket_width_mm: float = 2.8
     bearing_bore_radius_mm: float = 10.0
@@ -105,6 +113,27 @@ class LegDimensions:
         return 0.5 * self.gap_mm + self.plate_mm
 
     @property
+    def rim_radius_mm(self) -> float:
+        """Of the round plates that carry an actuator's housing."""
+        return self.mount_pitch_radius_mm + 6.0
+
+    @property
+    def first_bridge_mm(self) -> float:
+        """Distance of the thigh's first bridge from the hip axis, clear of the actuator's case."""
+        return self.housing_radius_mm + 8.5
+
+    @property
+    def rod_circle_mm(self) -> float:
+        """Distance of the base's lower rods from the hip axis, 8 mm clear of the thigh's round hip end."""
+        return self.rim_radius_mm + 13.0
+
+    @property
+    def chain_torque_limit_n_m(self) -> float:
+        """Largest torque at the sprocket: the chain breaks at ``CHAIN_SAFETY`` times it."""
+        pitch_radius_mm = 0.5 * self.chain_pitch_mm / math.sin(math.pi / self.sprocket_teeth)
+        return 1e-3 * pitch_radius_mm * self.chain_breaking_n / CHAIN_SAFETY
+
+    @property
     def foot_flat_mm(self) -> float:
         """Height above its centre at which the foot is cut flat to sit under the shank."""
         return 0.6 * self.foot_radius_mm
@@ -127,6 +156,30 @@ class LegDimensions:
 
 DEFAULT = LegDimensions()
 """Dimensions that fit the default motor."""
+
+
+def with_chain_for(d: LegDimensions, knee_torque_n_m: float) -> LegDimensions:
+    """The same leg with the smallest chain that carries a torque; with the largest one if none does.
+
+    05B-1 with 20 teeth, or 06B-1 with 17, whose pitch circle is 0.7 mm larger, so that it fits the same plates (both:
+    ISO 606; mass from makers' catalogues).
+    """
+    if knee_torque_n_m <= d.chain_torque_limit_n_m:
+        return d
+    return replace(
+        d,
+        chain_name="06B-1",
+        chain_pitch_mm=9.525,
+        chain_roller_mm=6.35,
+        chain_inner_width_mm=5.72,
+        chain_pin_mm=13.5,
+        chain_plate_mm=8.26,
+        chain_kg_per_m=0.41,
+        chain_breaking_n=8900.0,
+        sprocket_teeth=17,
+        sprocket_width_mm=5.3,
+    )
+
 
 HIP_RANGE_RAD = (-1.92, 1.92)
 """Working range of the hip, 110 degrees to both sides of hanging straight down; checked on every exported leg."""

@@ -211,7 +211,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             material=STEEL,
             process="machined",
             prisms=(sprocket_prism(d),),
-            note=f"05B-1, {d.sprocket_teeth} teeth (ISO 606); the same part as drive_sprocket, countersunk",
+            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); the same part as drive_sprocket, countersunk",
         ),
         Part(
             name="knee_sprocket_screw",

@@ -17,15 +17,14 @@ from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, STEEL, Le
 from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm, waisted
 
 # Our own layout, mm along the thigh.
-_FIRST_BRIDGE = 60.0  # below the hip axis, clear of the actuator's case
 _KNEE_END = 32.0  # core above the knee axis, clear of the sprocket's teeth
 _STANDOFF_RADIUS, _STANDOFF_PITCH = 3.5, 36.5
 _CUP_THREAD = 4.5
 
 
-def bridges_of(length_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def bridges_of(length_mm: Numbers, d: LegDimensions = DEFAULT) -> tuple[Numbers, Numbers, Numbers]:
     """Heights of the three bridges that bolt the sandwich together, mm from the hip axis."""
-    first, last = -_FIRST_BRIDGE, _KNEE_END + BRIDGE - length_mm
+    first, last = -d.first_bridge_mm, _KNEE_END + BRIDGE - length_mm
     return first, 0.5 * (first + last), last
 
 
@@ -46,7 +45,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
 def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Both plates, the printed core between them, and what holds them together."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
-    bridges = bridges_of(length)
+    bridges = bridges_of(length, d)
     windows = windows_between(bridges, d.thigh_window_half_width_mm)
     bolts = holes_at(bolts_at(bridges), M3.hole)
     knee_hole = Circle(radius_mm=d.bearing_outer_radius_mm - 2.0, y_mm=-length)
@@ -61,6 +60,8 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     output = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
     mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - 2.5)
+    # Lightening holes between the bore and the mounting screws.
+    relief = min(11.0, 0.5 * (d.mount_pitch_radius_mm - d.coupler_radius_mm - 10.5))
     common = (*windows, *bolts, knee_hole, cup_holes, *standoff_holes)
 
     def plate(top_radius_mm: float) -> Shape:
@@ -72,7 +73,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         )
 
     core_end = _KNEE_END - length
-    core_top = BRIDGE - _FIRST_BRIDGE
+    core_top = BRIDGE - d.first_bridge_mm
     return (
         Part(
             name="thigh_plate_inner",
@@ -94,14 +95,14 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=plate(d.mount_pitch_radius_mm + 6.0),
+                    outline=plate(d.rim_radius_mm),
                     z0_mm=half_gap,
                     z1_mm=face,
                     holes=(
                         *common,
                         Circle(radius_mm=d.coupler_radius_mm + 1.0),
                         mount,
-                        Pattern(radius_mm=11.0, pitch_radius_mm=33.0, count=6),
+                        Pattern(radius_mm=relief, pitch_radius_mm=d.mount_pitch_radius_mm - 5.0 - relief, count=6),
                     ),
                 ),
             ),
@@ -202,7 +203,7 @@ def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             process="machined",
             prisms=(sprocket_prism(d),),
             group="knee_drive",
-            note=f"05B-1, {d.sprocket_teeth} teeth (ISO 606)",
+            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606)",
         ),
         Part(
             name="drive_coupling",
@@ -269,7 +270,8 @@ def _chain(length_mm: Numbers, d: LegDimensions) -> Part:
         process="bought",
         prisms=(rows(-half_pin, -half_inner), *strand, rows(half_inner, half_pin)),
         catalogue_mass_kg=d.chain_kg_per_m * metres,
-        note="05B-1 (ISO 606), cut to the whole pitch below; a turnbuckle in each free strand takes up the rest",
+        note=f"{d.chain_name} (ISO 606), cut to the whole pitch below; "
+        "a turnbuckle in each free strand takes up the rest",
     )
 
 

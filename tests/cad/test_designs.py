@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.cad.checks import run_checks
 from pareto_monoped.cad.product import build_product
@@ -26,6 +27,22 @@ def test_a_design_passes_every_check(actuator_map, numbers):
     design = PAPER_CASES["C"].design.replace(
         {"thigh_length_m": thigh, "shank_length_m": shank, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio}
     )
+    product = build_product(build_robot(design, actuator_map), Pose(hip_rad=-0.6, knee_rad=1.2))
+    checks = run_checks(product, robot_arrays(design.as_array(), actuator_map))
+    assert [failure for check in checks for failure in check.failures] == []
+
+
+# Both families, where a motor has both.
+_MOTORS = {"U12": (8.0, 4.5), "U8": (5.0, 6.8), "U10": (8.0, 4.5), "MN8014": (8.0, 4.5), "MAD_M6C12": (6.0, 5.0)}
+
+
+@pytest.mark.parametrize(
+    "motor", [name if name == "U12" else pytest.param(name, marks=pytest.mark.long) for name in _MOTORS]
+)
+def test_a_robot_of_any_motor_passes_every_check(motor):
+    knee_ratio, hip_ratio = _MOTORS[motor]
+    design = PAPER_CASES["C"].design.replace({"thigh_length_m": 0.3, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio})
+    actuator_map = map_for(motor)
     product = build_product(build_robot(design, actuator_map), Pose(hip_rad=-0.6, knee_rad=1.2))
     checks = run_checks(product, robot_arrays(design.as_array(), actuator_map))
     assert [failure for check in checks for failure in check.failures] == []

@@ -11,6 +11,7 @@ from pareto_monoped.cad.checks import Check
 from pareto_monoped.cad.export import as_built, export_design
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
+from pareto_monoped.robot import build_robot, leg_dimensions
 
 DESIGN = PAPER_CASES["nominal"].design
 LIGHT = ("dxf", "3mf")
@@ -93,10 +94,19 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
         export_design(DESIGN, actuator_map, calibration, tmp_path / "file")
     with pytest.raises(DesignError):
         export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot")
-    with pytest.raises(DesignError, match=r"bolt circle of the hip actuator = 115\.8 mm: must be 98\.0 mm"):
-        export_design(DESIGN, search.map_for("U12"), calibration, tmp_path / "robot")
     with pytest.raises(OutputError, match=r"part name '\.\./x'"):
         export._safe("../x")
+
+
+def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
+    robot, leg = build_robot(DESIGN, actuator_map), leg_dimensions(actuator_map)
+    export._require_fit(robot, leg)
+    with pytest.raises(DesignError, match=r"^bolt circle of the hip actuator = 98\.0 mm: must be 100\.0 mm.*drilled"):
+        export._require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
+    with pytest.raises(DesignError, match=r"^back's bolt circle of the hip actuator = 51\.0 mm: must be 50\.0 mm"):
+        export._require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
+    with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 12\.8 N m.*05B-1.*lower knee_ratio"):
+        export._require_fit(robot, dataclasses.replace(leg, chain_breaking_n=1000.0))
 
 
 def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, tmp_path):

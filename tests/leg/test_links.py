@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import Design
 from pareto_monoped.geometry.parts import total
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg import links
 from pareto_monoped.leg.dimensions import DEFAULT
-from pareto_monoped.robot import build_robot
+from pareto_monoped.robot import build_robot, leg_dimensions
 
 LENGTHS = np.linspace(0.3, 0.5, 9)
 
@@ -105,3 +106,19 @@ def test_journal_screws_hold_5_mm_of_thread_and_reach_no_rotor(ratio, family, cl
                 if prism.z0_mm < tip:
                     bore = max((hole.radius_mm for hole in prism.holes if isinstance(hole, Circle)), default=0.0)
                     assert bore > high or prism.outline.radius_mm < low, part.name
+
+
+def test_the_default_leg_is_the_default_motor_s():
+    assert leg_dimensions(map_for("VT8020")) == DEFAULT
+
+
+@pytest.mark.parametrize("motor", motor_names())
+def test_a_motor_s_leg_is_drilled_for_all_its_actuators_and_its_chain_holds_twice_their_torque(motor):
+    actuators = [entry.actuator for entry in map_for(motor).entries if entry.actuator is not None]
+    leg = leg_dimensions(map_for(motor))
+    for actuator in actuators:
+        assert 2.0 * leg.mount_pitch_radius_mm == pytest.approx(actuator.mount.bolts.pitch_circle_mm)
+        assert 2.0 * leg.back_pitch_radius_mm == pytest.approx(actuator.mount.back_bolts.pitch_circle_mm)
+        assert leg.back_screw_mm == actuator.mount.back_bolts.diameter_mm
+    pitch_radius_m = 0.5e-3 * leg.chain_pitch_mm / np.sin(np.pi / leg.sprocket_teeth)
+    assert leg.chain_breaking_n * pitch_radius_m >= 2.0 * max(a.peak_torque_n_m for a in actuators)
