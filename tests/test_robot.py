@@ -118,6 +118,18 @@ def test_link_scale_touches_links_only(designs, actuator_map):
             assert plain.body_mass_kg[i, body] - light.body_mass_kg[i, body] == pytest.approx(half, rel=1e-9)
 
 
+@pytest.mark.parametrize("length_m", [0.1, 0.2499, 0.2501, 0.5499, 0.5501, 1.2])
+def test_links_of_any_length_weigh_what_their_parts_weigh(actuator_map, length_m):
+    """Also beyond the tables of link masses, beside links that are within them."""
+    design = PAPER_CASES["C"].design.replace({"thigh_length_m": length_m, "shank_length_m": length_m})
+    values = np.stack([PAPER_CASES["C"].design.as_array(), design.as_array()])
+    arrays = robot_arrays(values, actuator_map)
+    for b, mass in enumerate(build_robot(design, actuator_map).body_mass_properties().values()):
+        np.testing.assert_allclose(arrays.body_mass_kg[1, b], mass.mass_kg, rtol=1e-12)
+        np.testing.assert_allclose(arrays.body_com_m[1, b], mass.com_m, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(arrays.body_inertia_kg_m2[1, b], mass.inertia_kg_m2, rtol=1e-9, atol=1e-12)
+
+
 def test_a_ratio_without_gearbox_is_a_reason_not_an_exception(actuator_map):
     design = PAPER_CASES["C"].design.replace({"knee_ratio": 14.95})
     (reason,) = robot_arrays(design.as_array(), actuator_map).reason
