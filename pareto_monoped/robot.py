@@ -6,7 +6,7 @@ Both the simulation and the CAD read the robot from here: ``build_robot`` gives 
 A continuous gear ratio gets the gearbox of its interval of 0.1 (stage 1), and the robot has that gearbox's real ratio.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated
@@ -157,7 +157,7 @@ def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
         Unit(name="base_frame", body="base", parts=base_parts(knee_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="hip_actuator", body="base", parts=hip.parts, turn=_UPRIGHT, z_mm=leg.hip_mount_mm),
         Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
-        Unit(name="knee_actuator", body="thigh", parts=knee.parts, turn=_OVER, z_mm=leg.knee_mount_mm),
+        Unit(name="knee_actuator", body="thigh", parts=knee.parts_bolted_at_back, turn=_OVER, z_mm=leg.knee_mount_mm),
         Unit(name="journal", body="thigh", parts=journal, turn=_UPRIGHT, z_mm=0.0),
         Unit(name="shank", body="shank", parts=shank_parts(shank_length_m, leg), turn=_UPRIGHT, z_mm=0.0),
         Unit(name="foot", body="shank", parts=(foot_part(shank_length_m, leg),), turn=_UPRIGHT, z_mm=0.0),
@@ -291,16 +291,10 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     length_m = np.array([1e-3 * a.length_mm for a in actuators])
     clearance_mm = np.array([_back_clearance_mm(a) for a in actuators])
-    masses = [total(part.mass_properties() for part in actuator.parts) for actuator in actuators]
-    mass = MassProperties(
-        mass_kg=np.array([m.mass_kg for m in masses]),
-        first_kg_m=np.array([m.first_kg_m for m in masses]),
-        second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
-    )
     return _ActuatorTable(
         row=np.maximum(row, 0),
-        at_hip=_in_body(mass, _UPRIGHT, leg.hip_mount_mm),
-        at_knee=_in_body(mass, _OVER, leg.knee_mount_mm),
+        at_hip=_in_body(_stacked(a.parts for a in actuators), _UPRIGHT, leg.hip_mount_mm),
+        at_knee=_in_body(_stacked(a.parts_bolted_at_back for a in actuators), _OVER, leg.knee_mount_mm),
         frame=_upright(base_parts(length_m, leg)),
         journal=_upright(journal_parts(length_m, leg, back_clearance_mm=clearance_mm)),
         ratio=np.array([a.ratio for a in actuators]),
@@ -309,6 +303,16 @@ def _actuator_table(actuator_map: ActuatorMap) -> _ActuatorTable:
         continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
         no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
         efficiency=np.array([a.efficiency for a in actuators]),
+    )
+
+
+def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
+    """Mass properties of several units, a row a unit."""
+    masses = [total(part.mass_properties() for part in parts) for parts in units]
+    return MassProperties(
+        mass_kg=np.array([m.mass_kg for m in masses]),
+        first_kg_m=np.array([m.first_kg_m for m in masses]),
+        second_kg_m2=np.array([m.second_kg_m2 for m in masses]),
     )
 
 

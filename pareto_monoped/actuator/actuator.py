@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from pareto_monoped.actuator.external import external_parts
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency
-from pareto_monoped.actuator.internal import internal_parts
-from pareto_monoped.actuator.layout import Family, Layout, layout
+from pareto_monoped.actuator.internal import BACK_THREAD_MM, internal_parts
+from pareto_monoped.actuator.layout import STATOR_SCREW, Family, Layout, layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
@@ -66,9 +66,9 @@ class Actuator:
         efficiency: of the gear mesh.
         contact_ratio_sun, contact_ratio_ring: of sun with planet, planet with ring.
         reflected_inertia_kg_m2: of everything that turns with the motor or in the gearbox, at the output.
-        length_mm: from the output face to the back.
+        length_mm: from the output face to the back, from which the heads of screws stand out.
         output, mount: where the links are bolted on.
-        parts: every part.
+        parts: every part, the screws that hold a framed motor among them.
     """
 
     motor: Motor
@@ -88,6 +88,11 @@ class Actuator:
     output: OutputInterface
     mount: MountInterface
     parts: tuple[Part, ...]
+
+    @property
+    def parts_bolted_at_back(self) -> tuple[Part, ...]:
+        """Every part where something is bolted to the back: its screws hold the framed motor too."""
+        return tuple(part for part in self.parts if part.name != STATOR_SCREW)
 
     def mass_breakdown_kg(self) -> dict[str, float]:
         """Mass by part, all instances of each."""
@@ -130,7 +135,7 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
         contact_ratio_sun=float(outer),
         contact_ratio_ring=float(inner),
         reflected_inertia_kg_m2=reflected_inertia_kg_m2(parts, gears, motor),
-        length_mm=-min(float(prism.z0_mm) for part in parts for prism in part.prisms),
+        length_mm=-min(float(p.z0_mm) for part in parts if not part.name.endswith("_screw") for p in part.prisms),
         output=output_interface(settings),
         mount=mount_interface(motor, family, settings),
         parts=parts,
@@ -192,5 +197,5 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
         ),
         thread_depth_mm=case.rim_mm,
         back_bolts=motor.mount_holes,
-        back_depth_mm=case.rim_mm if family == "ISSPG" else case.plate_mm,
+        back_depth_mm=BACK_THREAD_MM if family == "ISSPG" else case.plate_mm,
     )

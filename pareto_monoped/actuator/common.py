@@ -7,12 +7,21 @@ from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.settings import ActuatorSettings, PartData
 from pareto_monoped.geometry.gears import DEDENDUM
 from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 
-M3_THREAD_MM = 1.25
+M3_THREAD_MM = M3.core
 """Radius of a tapping hole for M3 (2.5 mm)."""
-M3_CLEARANCE_MM = 1.6
+M3_CLEARANCE_MM = M3.hole
 """Radius of a clearance hole for M3, fine (ISO 273: 3.2 mm)."""
+BUSH_PLAY_MM = 0.2
+"""Between the ends of a planet's bush and the carriers: the bush stands out of the planet and holds it in its place."""
+PIN_THREAD_MM = 6.0
+"""Of the screw in a planet pin: twice the diameter of M3; its hole is 2 mm deeper."""
+SPIGOT_MM = 1.5
+"""Height of the steps that centre one piece of the housing in another."""
+RING_GROOVE_MM = 1.0
+"""Depth of a retaining ring's groove: DIN 471 and DIN 472 have 1.0 to 1.5 mm in the range used."""
 
 _ALUMINIUM_COLOUR = (0.78, 0.80, 0.83)
 _STEEL_COLOUR = (0.45, 0.46, 0.48)
@@ -76,6 +85,11 @@ def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern
     return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)
 
 
+def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
+    """The backplate's step that centres it in the casing."""
+    return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_case, at.r_case - settings.parts.case.vent_wall_mm)
+
+
 def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str, note: str) -> Part:
     """A ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
@@ -117,12 +131,14 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Planets with bushes and pins, ring."""
+    """Planets with bushes, pins and the pins' screws, ring."""
     data = settings.parts
     carrier, gears = data.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     material = gear_steel(data)
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
+    pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
+    stands_out = carrier.planet_clearance_mm - BUSH_PLAY_MM
     return (
         Part(
             name="planet",
@@ -131,6 +147,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             process="machined",
             group="planet",
             note=f"hardened and wire-cut; backlash {data.gears.backlash_mm} mm",
+            joined="pressed onto planet_bush",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
@@ -139,22 +156,41 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             material=Material(
                 name="bush bronze", density_kg_per_m3=data.density.bush_kg_per_m3, colour=(0.72, 0.53, 0.26)
             ),
-            prisms=tube(at.z_gear_back, at.z_gear_front, 0.5 * data.gears.planet_bore_mm, pin),
+            prisms=tube(
+                at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * data.gears.planet_bore_mm, pin
+            ),
             process="bought",
             group="planet",
-            note="PTFE bronze bush, pressed into the planet, cut to its width",
+            note=f"PTFE bronze bush, {stands_out:g} mm longer than the planet on either side",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="planet_pin",
             material=steel(data),
-            prisms=slab(pin_low, z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm), pin),
+            prisms=(
+                *slab(pin_low, pin_low + PIN_THREAD_MM + 2.0, pin, M3_THREAD_MM),
+                *slab(pin_low + PIN_THREAD_MM + 2.0, pin_front, pin),
+            ),
             process="machined",
             group="output",
             note="hardened dowel, pressed into both carriers, M3 thread in the rear end",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
+        ),
+        screw_part(
+            "planet_pin_screw",
+            M3,
+            head="countersunk",
+            seat_mm=at.z_secondary_back,
+            grip_mm=carrier.secondary_thickness_mm - carrier.pin_depth_mm,
+            room_mm=PIN_THREAD_MM,
+            direction=1.0,
+            material=steel(data),
+            count=gears.planets,
+            pitch_radius_mm=at.r_pins,
+            group="output",
+            note="holds the secondary carrier on its pin",
         ),
         Part(
             name="ring",
@@ -162,7 +198,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
             process="machined",
             group="housing",
-            note="wire-cut; bonded into its housing",
+            note="wire-cut",
+            joined="bonded into ring_housing",
         ),
     )
 
@@ -185,10 +222,13 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     seat = 0.5 * at.end_bearing.outer_diameter_mm
     z_ring = at.z_bearing_front + RETAINING_RING_MM
     z_split = at.z_secondary_front - carrier.pin_depth_mm
+    r_groove = at.r_bore - RING_GROOVE_MM
     body = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads),
-        *slab(z_diaphragm, -carrier.flange_thickness_mm, at.r_bore, seat, threads),
-        *slab(z_pins, z_diaphragm, at.r_bore, seat - data.case.lip_mm),
+        *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads),
+        *slab(z_diaphragm, z_ring, r_groove, seat, threads),
+        *slab(at.z_bearing_front, z_diaphragm, r_groove, seat - data.case.lip_mm),
+        *slab(z_pins, at.z_bearing_front, at.r_bore, seat - data.case.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
     )
@@ -203,15 +243,15 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group="output",
-            note="countersunk M3 screws into the pins",
+            note="countersink the screws' holes at the back",
         ),
         Part(
             name="retaining_ring",
             material=steel(data),
-            prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, at.r_bore),
+            prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, r_groove),
             process="bought",
             group="output",
-            note="as DIN 471, on the carrier in front of the main bearing",
+            note="as DIN 471, in the carrier's groove in front of the main bearing",
         ),
         bought_bearing("main_bearing", at.bearing, at.z_bearing_front, "output", "thin-section ball bearing"),
         bought_bearing("end_bearing", at.end_bearing, 0.0, "output", "619/6: carries the sun's end in the carrier"),

@@ -7,21 +7,24 @@ from pareto_monoped.actuator.common import (
     M3_THREAD_MM,
     MOTOR_ROTOR,
     MOTOR_STATOR,
+    RING_GROOVE_MM,
     aluminium,
     carrier_parts,
     case_holes,
     gear_parts,
     gear_steel,
     slab,
+    spigot,
     steel,
     tube,
     vents,
 )
 from pareto_monoped.actuator.internal import back_holes
-from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.layout import STATOR_SCREW, Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.screws import M3, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
 _END_PLAY_MM = 0.5
@@ -29,8 +32,14 @@ _BORE_RING_MM = 1.5
 """Thickness of the retaining ring behind the main bearing: DIN 472 has 1.5 to 2.5 mm in the range used."""
 _GROOVE_WALL_MM = 1.0
 """What is left of the bearing's seat behind that ring's groove."""
-_FLANGE_WIDTH_MM = 5.5
-"""Of the flange between ring housing and casing: an M3 thread with 1.5 mm of metal to either side."""
+_FLANGE_WIDTH_MM = 6.0
+_FLANGE_BOLTS_MM = 3.2
+"""Of the flange between ring housing and casing, and from the tube to its bolt circle: a hexagon head of M3, 6.01 mm
+over its corners, turns beside the tube; a spanner reaches it from the side, where the front plate bars a key."""
+_RING_STEP_MM = 1.0
+"""How far the ring stands out of its housing into the casing, which it centres."""
+MOTOR_THREAD_MM = 5.0
+"""How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
 _HUB_MM = 4.0
 """Metal around the sun's shaft in the coupling."""
 
@@ -38,7 +47,7 @@ _HUB_MM = 4.0
 def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """All parts of an ESSPG, or of many at once.
 
-    The motor's base is bolted to the backplate, its turning face carries the coupling with the sun's shaft; the casing
+    The motor's base is screwed to the backplate, its turning face carries the coupling with the sun's shaft; the casing
     is the bridge around the motor from the backplate to the ring housing, which carries ring and main bearing.
     """
     data = settings.parts
@@ -52,15 +61,17 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
     z_motor = z_coupling - coupling.thickness_mm
     z_plate = z_motor - frame.length_mm
     z_end = z_plate - case.plate_mm
-    z_seat_back = at.z_bearing_back - _BORE_RING_MM - _GROOVE_WALL_MM
-    z_web = at.z_gear_back - case.flange_mm
+    z_groove_back = at.z_bearing_back - _BORE_RING_MM
+    z_seat_back = z_groove_back - _GROOVE_WALL_MM
+    z_flange = at.z_gear_back + _RING_STEP_MM
+    z_web = z_flange - case.flange_mm
 
     r_boss = at.r_seat + case.seat_wall_mm
     r_tube = np.maximum(at.r_ring + case.ring_wall_mm, r_boss)
     r_tube_in = np.maximum(at.r_ring - case.ring_lip_mm, r_boss)
     r_flange = r_tube + _FLANGE_WIDTH_MM
     r_web = np.maximum(r_flange, at.r_case + case.wall_mm)
-    bolts = r_tube + 0.5 * _FLANGE_WIDTH_MM
+    bolts = r_tube + _FLANGE_BOLTS_MM
     count = data.interface.mount_bolt_count
     threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=bolts, count=count)
     screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=bolts, count=count)
@@ -96,7 +107,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
             group="rotor",
-            note="pressed on its shaft",
+            joined="pressed onto sun_shaft",
         ),
         Part(
             name="sun_shaft",
@@ -104,7 +115,8 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             prisms=slab(z_motor, -_END_PLAY_MM, shaft),
             process="machined",
             group="rotor",
-            note="hardened dowel, pressed into the coupling",
+            note="hardened dowel",
+            joined="pressed into coupling",
         ),
         Part(
             name="coupling",
@@ -112,7 +124,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             prisms=slab(z_motor, z_coupling, r_coupling, shaft, rotor_screws, *windows),
             process="machined",
             group="rotor",
-            note="bolted to the motor's turning face",
+            note="screwed to the motor's turning face",
         ),
         Part(
             name="ring_housing",
@@ -121,11 +133,13 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount),
                 *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
                 *tube(at.z_bearing_front, -case.plate_mm, r_boss, at.r_open),
-                *tube(z_seat_back, at.z_bearing_front, r_boss, at.r_seat),
+                *tube(at.z_bearing_back, at.z_bearing_front, r_boss, at.r_seat),
+                *tube(z_groove_back, at.z_bearing_back, r_boss, at.r_seat + RING_GROOVE_MM),
+                *tube(z_seat_back, z_groove_back, r_boss, at.r_seat),
                 *tube(z_seat_back, -case.plate_mm, r_tube, r_tube_in),
                 *tube(at.z_gear_front, z_seat_back, r_tube, at.r_ring - case.ring_lip_mm),
-                *tube(at.z_gear_back + case.flange_mm, at.z_gear_front, r_tube, at.r_ring),
-                *tube(at.z_gear_back, at.z_gear_back + case.flange_mm, r_flange, at.r_ring, screws),
+                *tube(z_flange, at.z_gear_front, r_tube, at.r_ring),
+                *tube(z_flange, z_flange + case.flange_mm, r_flange, r_tube, screws),
             ),
             process="machined",
             group="housing",
@@ -134,15 +148,16 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="bore_retaining_ring",
             material=steel(data),
-            prisms=tube(at.z_bearing_back - _BORE_RING_MM, at.z_bearing_back, at.r_seat, at.r_open),
+            prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
             process="bought",
             group="housing",
-            note="as DIN 472, behind the main bearing",
+            note="as DIN 472, in the ring housing's groove behind the main bearing",
         ),
         Part(
             name="casing",
             material=alu,
             prisms=(
+                *tube(at.z_gear_back, z_flange, r_web, at.r_ring, threads),
                 *tube(z_web, at.z_gear_back, r_web, at.r_ring - case.ring_lip_mm, threads),
                 *tube(z_plate + case.flange_mm, z_web, at.r_case + case.wall_mm, at.r_case),
                 *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
@@ -153,9 +168,68 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="backplate",
             material=alu,
-            prisms=slab(z_end, z_plate, at.r_plate, 8.0, back, back_holes(motor, 0.5), *back_vents),
+            prisms=(
+                *slab(z_end, z_plate, at.r_plate, 8.0, back, back_holes(motor, 0.5), *back_vents),
+                *spigot(z_plate, at, settings),
+            ),
             process="machined",
             group="housing",
+        ),
+        screw_part(
+            "casing_screw",
+            M3,
+            head="hexagon",
+            seat_mm=z_flange + case.flange_mm,
+            grip_mm=case.flange_mm,
+            room_mm=case.flange_mm,
+            direction=-1.0,
+            material=steel(data),
+            count=count,
+            pitch_radius_mm=bolts,
+            group="housing",
+            note="from the ring housing into the casing",
+        ),
+        screw_part(
+            "backplate_screw",
+            M3,
+            head="cap",
+            seat_mm=z_end,
+            grip_mm=case.plate_mm,
+            room_mm=case.flange_mm,
+            direction=1.0,
+            material=steel(data),
+            count=count,
+            pitch_radius_mm=at.r_bolts,
+            group="housing",
+            note="into the casing",
+        ),
+        screw_part(
+            "coupling_screw",
+            screw_for(output.diameter_mm, 0.5 * output.diameter_mm - 0.25),
+            head="countersunk",
+            seat_mm=z_coupling,
+            grip_mm=coupling.thickness_mm,
+            room_mm=base,
+            direction=-1.0,
+            material=steel(data),
+            count=output.count,
+            pitch_radius_mm=0.5 * output.pitch_circle_mm,
+            group="rotor",
+            note="into the motor's turning face, flush",
+        ),
+        screw_part(
+            STATOR_SCREW,
+            screw_for(mount_holes.diameter_mm, 0.5 * mount_holes.diameter_mm - 0.4),
+            head="cap",
+            seat_mm=z_end,
+            grip_mm=case.plate_mm,
+            room_mm=MOTOR_THREAD_MM,
+            direction=1.0,
+            material=steel(data),
+            count=mount_holes.count,
+            pitch_radius_mm=0.5 * mount_holes.pitch_circle_mm,
+            group="housing",
+            note="into the motor's base; left out where the journal's screws go there",
         ),
         Part(
             name="motor_stator",

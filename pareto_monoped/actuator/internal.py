@@ -14,6 +14,8 @@ from pareto_monoped.actuator.common import (
     gear_parts,
     gear_steel,
     slab,
+    spigot,
+    steel,
     tube,
     vents,
 )
@@ -21,10 +23,19 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
 _END_PLAY_MM = 0.5
 """From the sun shaft's end to the output face."""
+_NECK_RADIUS_MM = 3.8
+"""Of the sun's neck, which touches the inner ring of its end bearing only (619/6: abutment from 7.6 mm diameter)."""
+_NECK_PLAY_MM = 0.2
+"""Axial play of the rotor between end bearing and rear bearing."""
+_HUB_WALL_MM = 1.2
+"""Of the coupling's hub, which touches the inner ring of the rear bearing only (6800: abutment 12 mm)."""
+BACK_THREAD_MM = 6.0
+"""Depth of the motor's own pattern in the backplate: M5 screws need more than the case's M3."""
 
 
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
@@ -74,6 +85,8 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         at.r_bore + data.carrier.shoulder_height_mm + case.rotor_clearance_mm,
     )
     shaft, journal = coupling.shaft_radius_mm, 0.5 * at.end_bearing.inner_diameter_mm
+    z_neck = -at.end_bearing.width_mm - _NECK_PLAY_MM
+    neck = np.maximum(journal, np.minimum(_NECK_RADIUS_MM, at.r_carrier_in - case.rotor_clearance_mm))[()]
     rear_seat = 0.5 * at.rear_bearing.outer_diameter_mm
     rotor_share = motor.rotor_share()
     mount_holes = motor.mount_holes
@@ -91,21 +104,26 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="sun",
             material=gear_steel(data),
             prisms=(
-                *slab(at.z_gear_front, -_END_PLAY_MM, journal),
+                *slab(z_neck, -_END_PLAY_MM, journal),
+                *slab(at.z_gear_front, z_neck, neck),
                 *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
                 *slab(z_plate, at.z_gear_back, shaft),
             ),
             process="machined",
             group="rotor",
             note="one piece with its shaft",
+            joined="pressed into coupling",
         ),
         Part(
             name="coupling",
             material=alu,
-            prisms=slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
+            prisms=(
+                *slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
+                *tube(z_seat, z_coupling - coupling.thickness_mm, shaft + _HUB_WALL_MM, shaft),
+            ),
             process="machined",
             group="rotor",
-            note="pressed on the sun's shaft, bolted to the bell",
+            note="screwed to the bell",
         ),
         Part(
             name="casing",
@@ -138,18 +156,61 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
-            note="carries main bearing, ring and stator; the stator is bonded on",
+            note="carries main bearing, ring and stator",
         ),
         Part(
             name="backplate",
             material=alu,
             prisms=(
                 *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_threads, *back_vents),
-                *tube(z_plate, z_end + case.rim_mm, r_mount + 0.5, r_pad, back_threads),
+                *tube(z_plate, z_end + BACK_THREAD_MM, r_mount + 0.5, r_pad, back_threads),
                 *tube(z_plate, z_seat, rear_seat + case.seat_wall_mm, rear_seat),
+                *spigot(z_plate, at, settings),
             ),
             process="machined",
             group="housing",
+        ),
+        screw_part(
+            "ring_housing_screw",
+            M3,
+            head="countersunk",
+            seat_mm=0.0,
+            grip_mm=case.plate_mm,
+            room_mm=case.flange_mm,
+            direction=-1.0,
+            material=steel(data),
+            count=count,
+            pitch_radius_mm=flange_bolts,
+            group="housing",
+            note="flush with the mounting face",
+        ),
+        screw_part(
+            "backplate_screw",
+            M3,
+            head="cap",
+            seat_mm=z_end,
+            grip_mm=case.wall_mm,
+            room_mm=case.flange_mm,
+            direction=1.0,
+            material=steel(data),
+            count=count,
+            pitch_radius_mm=at.r_bolts,
+            group="housing",
+            note="into the casing",
+        ),
+        screw_part(
+            "coupling_screw",
+            M3,
+            head="countersunk",
+            seat_mm=z_bell,
+            grip_mm=bell,
+            room_mm=coupling.thickness_mm,
+            direction=-1.0,
+            material=steel(data),
+            count=coupling.bolt_count,
+            pitch_radius_mm=bell_circle,
+            group="rotor",
+            note="through the bell into the coupling, flush",
         ),
         bought_bearing("rear_bearing", at.rear_bearing, z_seat, "housing", "6800: carries the rotor"),
         Part(
@@ -160,6 +221,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             group="housing",
             catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
             note=f"{motor.name}, frameless",
+            joined="bonded onto ring_housing",
         ),
         Part(
             name="motor_rotor",

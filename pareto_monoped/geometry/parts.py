@@ -221,6 +221,9 @@ class Part:
         group: what it moves with, such as ``housing``, ``output``, ``rotor``, ``planet``; ``fixed`` in a link.
         catalogue_mass_kg: mass of one, if it is bought and its solid is only an envelope; the density follows.
         note: what the maker should know (standard, fit, catalogue number).
+        joined: how it is held where its shape does not do it, ending in the name of the part that does, such as
+            ``pressed on sun_shaft``.
+        countersunk_mm: heights of the flush faces of countersunk heads, which are drawn as plain shanks.
     """
 
     name: str
@@ -235,6 +238,8 @@ class Part:
     group: str = "fixed"
     catalogue_mass_kg: Numbers | None = None
     note: str = field(default="", compare=False)
+    joined: str = ""
+    countersunk_mm: tuple[Numbers, ...] = ()
 
     def volume_mm3(self) -> Numbers:
         """Volume of one instance."""

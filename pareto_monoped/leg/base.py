@@ -3,8 +3,9 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.screws import M3, M4, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
-from pareto_monoped.leg.common import M3, M4, Place, holes_at, motor_screw
+from pareto_monoped.leg.common import Place, holes_at, motor_screw
 from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, STEEL, LegDimensions
 
 # Our own layout, mm: the rods stand above the hip, outside the reach of the thigh's round hip end and, up to the end
@@ -16,7 +17,7 @@ _ROD_RADIUS = 5.0
 _ROD_THREAD = 10.0
 _JOURNAL_FLANGE = 4.0
 _JOURNAL_STEP = 6.5  # room for the screws' heads
-_BACK_THREAD = 5.0
+_BACK_THREAD = 6.0  # M5 x 10 in the backplate of an ISSPG, M5 x 12 through that of an ESSPG, 5 mm into its motor
 _SHOULDER = 11.8  # radius that touches the bearing's inner ring only
 
 
@@ -83,14 +84,19 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             ),
             note="6 mm sheet EN AW-6082 T6; countersink the screw holes on the thigh's side",
         ),
-        Part(
-            name="hip_mount_screw",
+        screw_part(
+            "hip_mount_screw",
+            M3,
+            head="countersunk",
+            seat_mm=near1,
+            grip_mm=d.cheek_mm,
+            room_mm=d.mount_thread_mm,
+            direction=-1.0,
             material=STEEL,
-            process="bought",
-            prisms=M3.flush(seat_mm=near1, grip_mm=d.cheek_mm, thread_mm=d.mount_thread_mm, direction=-1.0),
             count=d.mount_holes,
             pitch_radius_mm=d.mount_pitch_radius_mm,
-            note="M3 countersunk (ISO 10642) 10.9, flush, into the hip actuator's case",
+            grade="10.9",
+            note="flush, into the hip actuator's case",
         ),
         Part(
             name="base_far_cheek",
@@ -130,21 +136,27 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             places_mm=places,
             note="10 mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
         ),
-        Part(
-            name="base_rod_screw_near",
+        screw_part(
+            "base_rod_screw_near",
+            M4,
+            head="cap",
+            seat_mm=near0,
+            grip_mm=d.cheek_mm,
+            room_mm=_ROD_THREAD,
+            direction=1.0,
             material=STEEL,
-            process="bought",
-            prisms=M4.prisms(seat_mm=near0, grip_mm=d.cheek_mm, thread_mm=_ROD_THREAD, direction=1.0),
             places_mm=places,
-            note="M4 x 16 cap screw (ISO 4762) 8.8",
         ),
-        Part(
-            name="base_rod_screw_far",
+        screw_part(
+            "base_rod_screw_far",
+            M4,
+            head="cap",
+            seat_mm=far1,
+            grip_mm=d.far_cheek_mm,
+            room_mm=_ROD_THREAD,
+            direction=-1.0,
             material=STEEL,
-            process="bought",
-            prisms=M4.prisms(seat_mm=far1, grip_mm=d.far_cheek_mm, thread_mm=_ROD_THREAD, direction=-1.0),
             places_mm=places,
-            note="M4 x 18 cap screw (ISO 4762) 8.8",
         ),
     )
 
@@ -183,18 +195,17 @@ def journal_parts(
             ),
             note="EN AW-7075; seat 20 h6; the bore takes the knee actuator's cables",
         ),
-        Part(
-            name="journal_screw",
+        screw_part(
+            "journal_screw",
+            screw,
+            head="cap",
+            seat_mm=flange,
+            grip_mm=_JOURNAL_FLANGE + back_clearance_mm,
+            room_mm=_BACK_THREAD,
+            direction=-1.0,
             material=STEEL,
-            process="bought",
-            prisms=screw.prisms(
-                seat_mm=flange,
-                grip_mm=_JOURNAL_FLANGE + back_clearance_mm,
-                thread_mm=_BACK_THREAD,
-                direction=-1.0,
-            ),
             count=d.back_holes,
             pitch_radius_mm=d.back_pitch_radius_mm,
-            note=f"M{d.back_screw_mm:g} cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
+            note="into the knee motor's own mounting pattern",
         ),
     )

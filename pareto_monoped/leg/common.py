@@ -1,78 +1,56 @@
 """What all links share: metric screws, the sandwich's bolted bridges and windows, the sprocket."""
 
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
-import numpy as np
-
-from pareto_monoped.geometry.parts import Prism
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_for, screw_length_mm
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
-from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.dimensions import STEEL, LegDimensions
 from pareto_monoped.leg.outlines import rounded, sprocket
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Screw:
-    """Radii of a metric screw in mm, and the height of its head.
-
-    Attributes:
-        shank: nominal.
-        hole: clearance hole (ISO 273, fine).
-        core: tapping hole; screws are drawn with it where they are in a thread, so that nothing overlaps.
-        head, head_height: cap screw (ISO 4762).
-    """
-
-    shank: float
-    hole: float
-    core: float
-    head: float
-    head_height: float
-
-    def prisms(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
-        """A cap screw on the z axis: head on its seat, through a grip into a thread, in ``direction`` (-1 or 1)."""
-        return (
-            _stretch(self.head, seat_mm - direction * self.head_height, seat_mm),
-            *self.flush(seat_mm=seat_mm, grip_mm=grip_mm, thread_mm=thread_mm, direction=direction),
-        )
-
-    def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
-        """The same with a countersunk head, drawn as a plain shank."""
-        split = seat_mm + direction * grip_mm
-        return (_stretch(self.shank, seat_mm, split), _stretch(self.core, split, split + direction * thread_mm))
-
-
-def _stretch(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
-    """A cylinder between two heights in either order."""
-    low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
-    return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=low, z1_mm=high)
-
-
-M25 = Screw(shank=1.25, hole=1.35, core=1.025, head=2.25, head_height=2.5)
-M3 = Screw(shank=1.5, hole=1.6, core=1.25, head=2.75, head_height=3.0)
-M4 = Screw(shank=2.0, hole=2.15, core=1.65, head=3.5, head_height=4.0)
-M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0)
+Place = tuple[Numbers, Numbers, Numbers]
 
 
 def motor_screw(diameter_mm: float) -> Screw:
     """The cap screw for holes of a motor; its core fits the threads that the actuator draws, 0.8 mm below nominal."""
-    known = {2.0 * screw.shank: screw for screw in (M25, M3, M4, M5)}
-    # Between the standard sizes: proportions that are no smaller than those of ISO 4762 from M3 up.
-    other = Screw(
-        shank=0.5 * diameter_mm,
-        hole=0.5 * diameter_mm + 0.15,
-        core=0.0,
-        head=0.92 * diameter_mm,
-        head_height=diameter_mm,
+    return screw_for(diameter_mm, 0.5 * diameter_mm - 0.4)
+
+
+# A screw in a sleeve nut, both countersunk: outer diameter of the sleeve 1 mm above the thread's, as sold for furniture
+# and cases; their lengths overlap by 6 to 8 mm.
+_SLEEVE_WALL = 0.5
+_OVERLAP = (6.0, 8.0)
+
+
+def sleeve_hole(screw: Screw) -> float:
+    """Radius of the hole for a sleeve nut, 0.1 mm of play around it."""
+    return screw.shank + _SLEEVE_WALL + 0.1
+
+
+def sleeve_bolt(name: str, screw: Screw, half_stack_mm: float, places_mm: tuple[Place, ...]) -> Part:
+    """A countersunk screw in a countersunk sleeve nut, flush on both sides of a stack centred on z = 0."""
+    stack = 2.0 * half_stack_mm
+    sleeve = float(screw_length_mm(stack, -_OVERLAP[0]))
+    long = float(screw_length_mm(stack - sleeve, _OVERLAP[1]))
+    return Part(
+        name=name,
+        material=STEEL,
+        process="bought",
+        prisms=(
+            cylinder(screw.shank + _SLEEVE_WALL, -half_stack_mm, sleeve - half_stack_mm),
+            cylinder(screw.shank, sleeve - half_stack_mm, half_stack_mm),
+        ),
+        places_mm=places_mm,
+        countersunk_mm=(-half_stack_mm, half_stack_mm),
+        note=f"{screw.name} x {long:g} countersunk (ISO 10642) 8.8 in a countersunk sleeve nut {screw.name} x "
+        f"{sleeve:g}, flush, {stack:g} mm together",
     )
-    return replace(known.get(diameter_mm, other), core=0.5 * diameter_mm - 0.4)
 
 
 # Our own layout: half height of the solid bridges between windows, where the sandwich is bolted, and the bolts' x.
 BRIDGE = 5.5
 BRIDGE_BOLT_X = 12.0
 WINDOW_CORNER = 6.0
-
-Place = tuple[Numbers, Numbers, Numbers]
 
 
 def bolts_at(heights: tuple[Numbers, ...]) -> tuple[Place, ...]:
@@ -93,16 +71,25 @@ def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple
     )
 
 
-def sprocket_prism(d: LegDimensions) -> Prism:
-    """The sprocket of hip and knee, with its bolts' holes, a bore and a ring of holes that lighten it."""
+def sprocket_prisms(d: LegDimensions, bolt_radius_mm: float = M3.hole) -> tuple[Prism, ...]:
+    """The sprocket of hip and knee, with its bolts' holes, a bore and a ring of holes that lighten it.
+
+    A wide one is counterbored at -z, so that screws of the same length do for any width.
+    """
     half = 0.5 * d.sprocket_width_mm
-    return Prism(
-        outline=sprocket(teeth=d.sprocket_teeth, pitch_mm=d.chain_pitch_mm, roller_mm=d.chain_roller_mm),
-        z0_mm=-half,
-        z1_mm=half,
-        holes=(
-            Circle(radius_mm=d.bearing_bore_radius_mm - 1.0),
-            Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
-            Pattern(radius_mm=3.0, pitch_radius_mm=18.3, count=15),
-        ),
-    )
+
+    def slice_of(z0_mm: float, z1_mm: float, radius_mm: float) -> Prism:
+        return Prism(
+            outline=sprocket(teeth=d.sprocket_teeth, pitch_mm=d.chain_pitch_mm, roller_mm=d.chain_roller_mm),
+            z0_mm=z0_mm,
+            z1_mm=z1_mm,
+            holes=(
+                Circle(radius_mm=d.bearing_bore_radius_mm - 1.0),
+                Pattern(radius_mm=radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+                Pattern(radius_mm=3.0, pitch_radius_mm=18.3, count=15),
+            ),
+        )
+
+    seat = d.sprocket_recess_mm - half
+    whole = slice_of(seat, half, bolt_radius_mm)
+    return (whole,) if d.sprocket_recess_mm == 0.0 else (slice_of(-half, seat, M3.head + 0.15), whole)

@@ -45,10 +45,12 @@ class LegDimensions:
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
         gap_mm: distance of the thigh's plates.
-        play_mm: lateral distance between parts that turn past each other.
-        chain_name, chain_pitch_mm, chain_roller_mm, chain_inner_width_mm, chain_pin_mm, chain_plate_mm,
-            chain_kg_per_m, chain_breaking_n: the chain (ISO 606): pitch, roller diameter, width between the inner
-            plates, length over the pins, height of a plate, mass, breaking load.
+        play_mm: lateral distance between thigh and shank.
+        hip_play_mm: lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.
+        chain_name, chain_pitch_mm, chain_roller_mm, chain_inner_width_mm, chain_inner_link_mm, chain_pin_mm,
+            chain_pin_diameter_mm, chain_plate_mm, chain_kg_per_m, chain_breaking_n: the chain (ISO 606): pitch, roller
+            diameter, width between the inner plates and over them, length and diameter of the pins, height of a plate,
+            mass, breaking load.
         sprocket_teeth, sprocket_width_mm: both sprockets (ISO 606: width 0.93 b1).
         bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: 6804, 20 x 32 x 7 mm.
         thigh_half_width_mm, thigh_window_half_width_mm, thigh_core_half_width_mm: the thigh's bar.
@@ -78,11 +80,14 @@ class LegDimensions:
     shank_plate_mm: float = 3.0
     gap_mm: float = 24.0
     play_mm: float = 2.0
+    hip_play_mm: float = 3.0
     chain_name: str = "05B-1"
     chain_pitch_mm: float = 8.0
     chain_roller_mm: float = 5.0
     chain_inner_width_mm: float = 3.0
+    chain_inner_link_mm: float = 4.77
     chain_pin_mm: float = 8.6
+    chain_pin_diameter_mm: float = 2.31
     chain_plate_mm: float = 7.11
     chain_kg_per_m: float = 0.18
     chain_breaking_n: float = 4400.0
@@ -134,6 +139,11 @@ class LegDimensions:
         return 1e-3 * pitch_radius_mm * self.chain_breaking_n / CHAIN_SAFETY
 
     @property
+    def sprocket_recess_mm(self) -> float:
+        """How deep the screws' heads are sunk in a sprocket: what it is wider than 4 mm."""
+        return max(0.0, self.sprocket_width_mm - 4.0)
+
+    @property
     def foot_flat_mm(self) -> float:
         """Height above its centre at which the foot is cut flat to sit under the shank."""
         return 0.6 * self.foot_radius_mm
@@ -146,7 +156,7 @@ class LegDimensions:
     @property
     def hip_mount_mm(self) -> float:
         """Height z of the near cheek's face that carries the hip actuator, whose output points to +z."""
-        return -(self.thigh_face_mm + self.play_mm + self.cheek_mm)
+        return -(self.thigh_face_mm + self.hip_play_mm + self.cheek_mm)
 
     @property
     def knee_mount_mm(self) -> float:
@@ -172,7 +182,9 @@ def with_chain_for(d: LegDimensions, knee_torque_n_m: float) -> LegDimensions:
         chain_pitch_mm=9.525,
         chain_roller_mm=6.35,
         chain_inner_width_mm=5.72,
+        chain_inner_link_mm=8.53,
         chain_pin_mm=13.5,
+        chain_pin_diameter_mm=3.28,
         chain_plate_mm=8.26,
         chain_kg_per_m=0.41,
         chain_breaking_n=8900.0,

@@ -3,15 +3,16 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, cylinder, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, hull, rectangle
 from pareto_monoped.leg.common import (
     BRIDGE,
-    M3,
-    M4,
     WINDOW_CORNER,
     bolts_at,
     holes_at,
-    sprocket_prism,
+    sleeve_bolt,
+    sleeve_hole,
+    sprocket_prisms,
     windows_between,
 )
 from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, RUBBER, STEEL, LegDimensions
@@ -22,6 +23,8 @@ _AXLE_BOLT_PITCH = 5.5
 _NECK = 9.0  # radius of the axle inside the sprocket
 _SHOULDER = 11.8  # radius that touches the bearing's inner ring only
 _FOOT_BLOCK = 34.0  # height of the foot's block above the ball's flat
+_NUT_HEIGHT, _NUT_SPARE = 3.2, 0.7  # M4 (ISO 4032), and a pitch that stands out of it
+_NUT_RADIUS = 3.68  # of a disc with the nut's area, 7 mm across flats
 _TONGUE = 15.0  # how deep the foot's tongue reaches into the ball
 
 
@@ -38,9 +41,9 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
     flat = d.foot_flat_mm - length
     block_top = flat + _FOOT_BLOCK
     bridges = (-d.fork_mm - BRIDGE, block_top + 1.0 + BRIDGE)
-    bolts = holes_at(bolts_at(bridges), M3.hole)
-    foot_bolts = tuple((0.0, flat + up, 0.0) for up in (7.0, _FOOT_BLOCK - 7.0))
-    foot_holes = holes_at(foot_bolts, M4.hole)
+    bolts = holes_at(bolts_at(bridges), sleeve_hole(M3))
+    foot_bolts = tuple((0.0, flat + up, 0.0) for up in (6.5, _FOOT_BLOCK - 6.5))
+    foot_holes = holes_at(foot_bolts, sleeve_hole(M4))
     return (
         Part(
             name="shank_plate",
@@ -90,14 +93,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
             ),
             note="print lying on a plate side, solid",
         ),
-        Part(
-            name="shank_bolt",
-            material=STEEL,
-            process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3.shank), z0_mm=-face, z1_mm=face),),
-            places_mm=bolts_at(bridges),
-            note="M3 x 40 countersunk (ISO 10642) with flush sleeve nut",
-        ),
+        sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges)),
         *_axle_parts(d),
         Part(
             name="foot_block",
@@ -114,14 +110,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
             ),
             note="holds the foot between the shank plates",
         ),
-        Part(
-            name="foot_bolt",
-            material=STEEL,
-            process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M4.shank), z0_mm=-face, z1_mm=face),),
-            places_mm=foot_bolts,
-            note="M4 x 40 countersunk (ISO 10642) with flush sleeve nut",
-        ),
+        sleeve_bolt("foot_bolt", M4, face, foot_bolts),
     )
 
 
@@ -141,7 +130,8 @@ def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part
                 pocket=_tongue(y_mm + d.foot_flat_mm),
             ),
         ),
-        note="moulded and bonded onto the tongue of the foot block, 60 Shore A",
+        note="60 Shore A",
+        joined="moulded onto the tongue of foot_block",
     )
 
 
@@ -161,8 +151,9 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
     face = half_gap + d.shank_plate_mm
     half_tooth = 0.5 * d.sprocket_width_mm
     shoulder = half_thigh_gap - d.bearing_width_mm
-    flange = shoulder - 0.6
+    flange = shoulder - 0.4  # clear of the bearing's outer ring; leaves 3.2 mm of thread for the sprocket's screws
     bolts = _axle_holes()
+    bolt_mm = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
     threads = Pattern(radius_mm=M3.core, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
 
     def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
@@ -210,32 +201,36 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             name="knee_sprocket",
             material=STEEL,
             process="machined",
-            prisms=(sprocket_prism(d),),
+            prisms=sprocket_prisms(d),
             note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); the same part as drive_sprocket, countersunk",
         ),
-        Part(
-            name="knee_sprocket_screw",
+        screw_part(
+            "knee_sprocket_screw",
+            M3,
+            head="countersunk",
+            seat_mm=d.sprocket_recess_mm - half_tooth,
+            grip_mm=2.0 * half_tooth - d.sprocket_recess_mm,
+            room_mm=flange - half_tooth,
+            direction=1.0,
             material=STEEL,
-            process="bought",
-            prisms=M3.flush(
-                seat_mm=-half_tooth, grip_mm=2.0 * half_tooth, thread_mm=flange - half_tooth, direction=1.0
-            ),
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
-            note="M3 x 6 countersunk (ISO 10642) 10.9, flush",
+            grade="10.9",
+            note="flush, into the axle; the four long bolts clamp the sprocket as well",
         ),
         Part(
             name="knee_bolt",
             material=STEEL,
             process="bought",
             prisms=(
-                Prism(outline=Circle(radius_mm=M4.head), z0_mm=-face - M4.head_height, z1_mm=-face),
-                Prism(outline=Circle(radius_mm=M4.shank), z0_mm=-face, z1_mm=face),
-                Prism(outline=Circle(radius_mm=M4.head), z0_mm=face, z1_mm=face + M4.head_height),
+                cylinder(M4.head, -face - M4.head_height, -face),
+                cylinder(M4.shank, -face, face),
+                cylinder(_NUT_RADIUS, face, face + _NUT_HEIGHT),
+                cylinder(M4.core, face + _NUT_HEIGHT, bolt_mm - face),
             ),
             count=4,
             pitch_radius_mm=_AXLE_BOLT_PITCH,
             phase_rad=np.pi / 4,
-            note="M4 x 50 cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
+            note=f"M4 x {bolt_mm:g} cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
         ),
     )

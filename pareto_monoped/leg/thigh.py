@@ -1,25 +1,20 @@
-"""The thigh as a list of parts: sandwich, chain drive, hip coupling and knee bearings."""
+"""The thigh as a list of parts: sandwich, hip joints, chain, and knee bearings."""
 
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
-from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, hull, rectangle
-from pareto_monoped.leg.common import (
-    BRIDGE,
-    M3,
-    M25,
-    bolts_at,
-    holes_at,
-    sprocket_prism,
-    windows_between,
-)
+from pareto_monoped.geometry.screws import M3, M25, screw_part
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
+from pareto_monoped.leg.chain import chain_parts
+from pareto_monoped.leg.common import BRIDGE, bolts_at, holes_at, sleeve_bolt, sleeve_hole, windows_between
 from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, STEEL, LegDimensions
-from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm, waisted
+from pareto_monoped.leg.drive import hip_joints
+from pareto_monoped.leg.outlines import waisted
 
 # Our own layout, mm along the thigh.
 _KNEE_END = 32.0  # core above the knee axis, clear of the sprocket's teeth
 _STANDOFF_RADIUS, _STANDOFF_PITCH = 3.5, 36.5
-_CUP_THREAD = 4.5
+_CUP_THREAD = 6.0
 
 
 def bridges_of(length_mm: Numbers, d: LegDimensions = DEFAULT) -> tuple[Numbers, Numbers, Numbers]:
@@ -39,7 +34,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         d: dimensions.
     """
     length = 1000.0 * thigh_length_m
-    return (*_sandwich(length, d), *_hip_joints(d), _chain(length, d), *_knee_seats(length, d))
+    return (*_sandwich(length, d), *hip_joints(d), *chain_parts(length, d), *_knee_seats(length, d))
 
 
 def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
@@ -47,7 +42,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bridges = bridges_of(length, d)
     windows = windows_between(bridges, d.thigh_window_half_width_mm)
-    bolts = holes_at(bolts_at(bridges), M3.hole)
+    bolts = holes_at(bolts_at(bridges), sleeve_hole(M3))
     knee_hole = Circle(radius_mm=d.bearing_outer_radius_mm - 2.0, y_mm=-length)
     cup_pitch = d.bearing_outer_radius_mm + 2.5
     cup_holes = Pattern(radius_mm=M25.hole, pitch_radius_mm=cup_pitch, count=4, phase_rad=np.pi / 4, y_mm=-length)
@@ -56,7 +51,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         (_STANDOFF_PITCH * float(np.cos(a)), _STANDOFF_PITCH * float(np.sin(a)), 0.0)
         for a in (np.pi / 6, np.pi / 2, 5 * np.pi / 6)
     )
-    standoff_holes = holes_at(standoffs, M3.hole)
+    standoff_holes = holes_at(standoffs, sleeve_hole(M3))
     output = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
     mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - 2.5)
@@ -135,143 +130,13 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                     outline=Circle(radius_mm=_STANDOFF_RADIUS),
                     z0_mm=-half_gap,
                     z1_mm=half_gap,
-                    holes=(Circle(radius_mm=M3.hole),),
+                    holes=(Circle(radius_mm=sleeve_hole(M3)),),
                 ),
             ),
             places_mm=standoffs,
-            note="7 x 3.2 mm tube",
+            note="tube, 7 mm outside, bored 4.2 mm",
         ),
-        Part(
-            name="thigh_bolt",
-            material=STEEL,
-            process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M3.shank), z0_mm=-face, z1_mm=face),),
-            places_mm=(*bolts_at(bridges), *standoffs),
-            note="M3 x 30 countersunk (ISO 10642) with flush sleeve nut",
-        ),
-    )
-
-
-def _hip_joints(d: LegDimensions) -> tuple[Part, ...]:
-    """What joins the thigh to both actuators at the hip."""
-    half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
-    coupler_face = d.hip_mount_mm + d.coupler_height_mm
-    drive_face = d.knee_mount_mm - d.coupler_height_mm
-    half_tooth = 0.5 * d.sprocket_width_mm
-    coupling_holes = (
-        Circle(radius_mm=d.bearing_bore_radius_mm - 2.5),
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
-    )
-    return (
-        Part(
-            name="hip_coupling",
-            material=ALUMINIUM,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=d.coupler_radius_mm), z0_mm=coupler_face, z1_mm=-face, holes=coupling_holes
-                ),
-            ),
-            note="between hip output and inner plate; friction joint, dry",
-        ),
-        Part(
-            name="hip_coupling_screw",
-            material=STEEL,
-            process="bought",
-            prisms=M3.prisms(
-                seat_mm=-half_gap,
-                grip_mm=-half_gap - coupler_face,
-                thread_mm=d.coupler_thread_mm,
-                direction=-1.0,
-            ),
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
-            note="M3 cap screw (ISO 4762) 12.9, from inside the thigh into the hip's output flange",
-        ),
-        Part(
-            name="knee_mount_screw",
-            material=STEEL,
-            process="bought",
-            prisms=M3.prisms(seat_mm=half_gap, grip_mm=d.plate_mm, thread_mm=d.mount_thread_mm, direction=1.0),
-            count=d.mount_holes,
-            pitch_radius_mm=d.mount_pitch_radius_mm,
-            note="M3 cap screw (ISO 4762) 12.9, from inside the thigh into the knee actuator's case",
-        ),
-        Part(
-            name="drive_sprocket",
-            material=STEEL,
-            process="machined",
-            prisms=(sprocket_prism(d),),
-            group="knee_drive",
-            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606)",
-        ),
-        Part(
-            name="drive_coupling",
-            material=ALUMINIUM,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=d.coupler_radius_mm),
-                    z0_mm=half_tooth,
-                    z1_mm=drive_face,
-                    holes=coupling_holes,
-                ),
-            ),
-            group="knee_drive",
-            note="between knee output and drive sprocket",
-        ),
-        Part(
-            name="drive_screw",
-            material=STEEL,
-            process="bought",
-            prisms=M3.prisms(
-                seat_mm=-half_tooth, grip_mm=drive_face + half_tooth, thread_mm=d.coupler_thread_mm, direction=1.0
-            ),
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
-            group="knee_drive",
-            note="M3 cap screw (ISO 4762) 12.9, through the sprocket into the knee's output flange",
-        ),
-    )
-
-
-def _chain(length_mm: Numbers, d: LegDimensions) -> Part:
-    """The chain: its two rows of link plates all around and the rollers of the free strands as bars."""
-    pitch_radius = sprocket_pitch_radius_mm(teeth=d.sprocket_teeth, pitch_mm=d.chain_pitch_mm)
-    inner, outer = pitch_radius - 0.5 * d.chain_plate_mm, pitch_radius + 0.5 * d.chain_plate_mm
-    half_inner, half_pin = 0.5 * d.chain_inner_width_mm, 0.5 * d.chain_pin_mm
-
-    def around(radius: float) -> Shape:
-        return hull(top_radius_mm=radius, bottom_radius_mm=radius, length_mm=length_mm)
-
-    def rows(z0_mm: float, z1_mm: float) -> Prism:
-        return Prism(outline=around(outer), z0_mm=z0_mm, z1_mm=z1_mm, holes=(around(inner),))
-
-    # From where on no tooth reaches the strand, whatever the sprocket's angle.
-    clear = 2.0 * d.chain_pitch_mm
-    strand = tuple(
-        Prism(
-            outline=rectangle(
-                width_mm=d.chain_roller_mm,
-                height_mm=length_mm - 2.0 * clear,
-                x_mm=side * pitch_radius,
-                y_mm=-0.5 * length_mm,
-            ),
-            z0_mm=-half_inner,
-            z1_mm=half_inner,
-        )
-        for side in (-1.0, 1.0)
-    )
-    # One whole turn in pitches, and both strands.
-    metres = 1e-3 * (2.0 * length_mm + d.sprocket_teeth * d.chain_pitch_mm)
-    return Part(
-        name="chain",
-        material=STEEL,
-        process="bought",
-        prisms=(rows(-half_pin, -half_inner), *strand, rows(half_inner, half_pin)),
-        catalogue_mass_kg=d.chain_kg_per_m * metres,
-        note=f"{d.chain_name} (ISO 606), cut to the whole pitch below; "
-        "a turnbuckle in each free strand takes up the rest",
+        sleeve_bolt("thigh_bolt", M3, face, (*bolts_at(bridges), *standoffs)),
     )
 
 
@@ -299,16 +164,23 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             places_mm=places,
             note="seat 32 J7, threads M2.5; the plate's lip holds the bearing outwards",
         ),
-        Part(
-            name="knee_cup_screw",
-            material=STEEL,
-            process="bought",
-            prisms=(Prism(outline=Circle(radius_mm=M25.core), z0_mm=0.0, z1_mm=d.plate_mm + _CUP_THREAD),),
-            count=4,
-            pitch_radius_mm=pitch,
-            phase_rad=np.pi / 4,
-            places_mm=((0.0, -length, half_gap - _CUP_THREAD), (0.0, -length, -half_gap - d.plate_mm)),
-            note="M2.5 x 7 countersunk (ISO 10642), flush, from outside",
+        *(
+            screw_part(
+                f"knee_cup_screw_{side}",
+                M25,
+                head="countersunk",
+                seat_mm=-direction * d.thigh_face_mm,
+                grip_mm=d.plate_mm,
+                room_mm=_CUP_THREAD,
+                direction=direction,
+                material=STEEL,
+                count=4,
+                pitch_radius_mm=pitch,
+                phase_rad=np.pi / 4,
+                places_mm=((0.0, -length, 0.0),),
+                note="flush, from outside",
+            )
+            for side, direction in (("near", 1.0), ("far", -1.0))
         ),
         Part(
             name="knee_bearing",

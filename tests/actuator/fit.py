@@ -57,9 +57,10 @@ def gap_mm(a: Ring, b: Ring) -> float:
 
 def holes_for_pins(carrier: Part, pin: Part) -> bool:
     """Whether every prism of a carrier that a pin runs through has holes just where the pins are."""
-    (body,) = pin.prisms
+    low, high = min(prism.z0_mm for prism in pin.prisms), max(prism.z1_mm for prism in pin.prisms)
+    radius = pin.prisms[0].outline.radius_mm
     for prism in carrier.prisms:
-        if prism.z1_mm <= body.z0_mm + 1e-9 or prism.z0_mm >= body.z1_mm - 1e-9:
+        if prism.z1_mm <= low + 1e-9 or prism.z0_mm >= high - 1e-9:
             continue
         fitting = [
             hole
@@ -67,12 +68,38 @@ def holes_for_pins(carrier: Part, pin: Part) -> bool:
             if isinstance(hole, Pattern)
             and hole.count == pin.count
             and abs(hole.pitch_radius_mm - pin.pitch_radius_mm) < 1e-9
-            and abs(hole.radius_mm - body.outline.radius_mm) < 1e-9
+            and abs(hole.radius_mm - radius) < 1e-9
             and hole.phase_rad == pin.phase_rad
         ]
         if not fitting:
             return False
     return True
+
+
+def screw_clashes(screw: Part, other: Part) -> list[str]:
+    """Where a screw runs through material of another part that has no hole for it, or turns past it too closely."""
+    found = []
+    for body in screw.prisms:
+        radius, middle = float(body.outline.radius_mm), float(screw.pitch_radius_mm)
+        play = 0.2 if other.group != screw.group else 0.0
+        for prism in other.prisms:
+            if min(prism.z1_mm, body.z1_mm) - max(prism.z0_mm, body.z0_mm) < 1e-9 - play:
+                continue
+            if outer_mm(prism.outline) <= middle - radius - play + 1e-9:
+                continue
+            if inner_mm(prism.holes) >= middle + radius + play - 1e-9:
+                continue
+            if any(
+                isinstance(hole, Pattern)
+                and hole.count == screw.count
+                and abs(hole.pitch_radius_mm - middle) < 1e-9
+                and hole.radius_mm >= radius - 1e-9
+                and hole.phase_rad == screw.phase_rad
+                for hole in prism.holes
+            ):
+                continue
+            found.append(f"{screw.name} has no hole in {other.name} between {prism.z0_mm} and {prism.z1_mm}")
+    return found
 
 
 def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
@@ -84,8 +111,13 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
         if pair in MESHING:
             continue
         if a.pitch_radius_mm and b.pitch_radius_mm:
-            # Planet, bush and pin on one axis: nested, seen from that axis.
-            rings_a, rings_b = (rings_about_own_axis(part) for part in (a, b))
+            # Planet, bush, pin and its screw on one axis: nested, seen from that axis. All others: side by side.
+            one_axis = abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
+            rings_a, rings_b = (rings_about_own_axis(part) if one_axis else rings(part) for part in (a, b))
+        elif any(part.name.endswith("_screw") for part in (a, b)):
+            screw, other = (a, b) if a.name.endswith("_screw") else (b, a)
+            found += screw_clashes(screw, other)
+            continue
         elif "planet_pin" in pair and pair & {"carrier", "secondary_carrier"}:
             carrier = parts["carrier"] if "carrier" in pair else parts["secondary_carrier"]
             if not holes_for_pins(carrier, parts["planet_pin"]):

@@ -1,0 +1,152 @@
+"""Screws of catalogue lengths, as parts: sizes, standards, heads."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Numbers
+
+Head = Literal["cap", "countersunk", "hexagon"]
+
+LENGTHS_MM = np.array([3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60], dtype=np.float64)
+"""Lengths in which screws are sold (the standards below have the same series)."""
+HEXAGON_HEIGHT_MM = {3.0: 2.0, 4.0: 2.8, 5.0: 3.5}
+"""Of the head (ISO 4017), by thread."""
+HEXAGON_FLATS_MM = {3.0: 5.5, 4.0: 7.0, 5.0: 8.0}
+"""Width across flats (ISO 4017), by thread."""
+_STANDARDS = {"cap": "cap screw (ISO 4762)", "hexagon": "hexagon screw (ISO 4017)"}
+_FROM_8_MM = "countersunk (ISO 10642)"
+_SHORTER = "countersunk (ISO 14581)"  # ISO 10642 begins at 8 mm
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Screw:
+    """Radii of a metric screw in mm, and the height of its cap head.
+
+    Attributes:
+        shank: nominal.
+        hole: clearance hole (ISO 273, fine).
+        core: tapping hole; screws are drawn with it where they are in a thread, so that nothing overlaps.
+        head, head_height: cap screw (ISO 4762).
+    """
+
+    shank: float
+    hole: float
+    core: float
+    head: float
+    head_height: float
+
+    def prisms(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
+        """A cap screw on the z axis: head on its seat, through a grip into a thread, in ``direction`` (-1 or 1)."""
+        return (
+            cylinder(self.head, seat_mm - direction * self.head_height, seat_mm),
+            *self.flush(seat_mm=seat_mm, grip_mm=grip_mm, thread_mm=thread_mm, direction=direction),
+        )
+
+    def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
+        """The same with a countersunk head, drawn as a plain shank."""
+        split = seat_mm + direction * grip_mm
+        return (cylinder(self.shank, seat_mm, split), cylinder(self.core, split, split + direction * thread_mm))
+
+    @property
+    def name(self) -> str:
+        """Such as ``M3``."""
+        return f"M{2.0 * self.shank:g}"
+
+
+def cylinder(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
+    """A cylinder on the z axis between two heights in either order."""
+    low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
+    return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=low, z1_mm=high)
+
+
+M25 = Screw(shank=1.25, hole=1.35, core=1.025, head=2.25, head_height=2.5)
+M3 = Screw(shank=1.5, hole=1.6, core=1.25, head=2.75, head_height=3.0)
+M4 = Screw(shank=2.0, hole=2.15, core=1.65, head=3.5, head_height=4.0)
+M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0)
+
+
+def screw_for(diameter_mm: float, core_mm: float) -> Screw:
+    """The screw for threads of a motor, whose core is drawn as the actuator draws it."""
+    known = {2.0 * screw.shank: screw for screw in (M25, M3, M4, M5)}
+    # Between the standard sizes: proportions that are no smaller than those of ISO 4762 from M3 up.
+    other = Screw(
+        shank=0.5 * diameter_mm,
+        hole=0.5 * diameter_mm + 0.15,
+        core=0.0,
+        head=0.92 * diameter_mm,
+        head_height=diameter_mm,
+    )
+    return replace(known.get(diameter_mm, other), core=core_mm)
+
+
+def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
+    """The longest catalogue length whose thread has room behind the grip; from seat or flush face to the end."""
+    row = np.searchsorted(LENGTHS_MM, np.asarray(grip_mm + room_mm) + 1e-9, side="right") - 1
+    return LENGTHS_MM[row][()]
+
+
+def screw_part(
+    name: str,
+    screw: Screw,
+    *,
+    head: Head,
+    seat_mm: Numbers,
+    grip_mm: Numbers,
+    room_mm: Numbers,
+    direction: float,
+    material: Material,
+    count: Numbers = 1,
+    pitch_radius_mm: Numbers = 0.0,
+    phase_rad: float = 0.0,
+    places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] | None = None,
+    group: str = "fixed",
+    grade: str = "8.8",
+    note: str = "",
+) -> Part:
+    """A bought screw as long as its thread has room.
+
+    Args:
+        name: of the part.
+        screw: its size.
+        head: ``cap`` and ``hexagon`` stand on the seat; ``countersunk`` is flush with it.
+        seat_mm: height of the seat.
+        grip_mm: from there to where the thread begins.
+        room_mm: depth of the thread.
+        direction: in which it is driven along z, -1 or 1.
+        material: steel.
+        count: see ``Part``, as for the next four.
+        pitch_radius_mm: of the circle.
+        phase_rad: of the first on it.
+        places_mm: of the circle's centre.
+        group: what it moves with.
+        grade: property class (ISO 898-1).
+        note: what else the maker should know.
+    """
+    length = screw_length_mm(grip_mm, room_mm)
+    drawn = screw.flush(seat_mm=seat_mm, grip_mm=grip_mm, thread_mm=length - grip_mm, direction=direction)
+    size = 2.0 * screw.shank
+    if head == "cap":
+        drawn = (cylinder(screw.head, seat_mm - direction * screw.head_height, seat_mm), *drawn)
+    elif head == "hexagon":
+        # A disc of the hexagon's area.
+        radius = HEXAGON_FLATS_MM[size] * np.sqrt(np.sqrt(3.0) / 2.0 / np.pi)
+        drawn = (cylinder(float(radius), seat_mm - direction * HEXAGON_HEIGHT_MM[size], seat_mm), *drawn)
+    # In a population the lengths differ, and nobody reads the note.
+    long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
+    standard = _STANDARDS.get(head) or (_FROM_8_MM if np.min(length) >= 8.0 else _SHORTER)
+    part = Part(
+        name=name,
+        material=material,
+        prisms=drawn,
+        process="bought",
+        count=count,
+        pitch_radius_mm=pitch_radius_mm,
+        phase_rad=phase_rad,
+        group=group,
+        countersunk_mm=(seat_mm,) if head == "countersunk" else (),
+        note=f"{screw.name}{long} {standard} {grade}{', ' + note if note else ''}",
+    )
+    return part if places_mm is None else replace(part, places_mm=places_mm)
