@@ -140,8 +140,8 @@ class LegDimensions:
 
     @property
     def sprocket_recess_mm(self) -> float:
-        """How deep the screws' heads are sunk in a sprocket: what it is wider than 4 mm."""
-        return max(0.0, self.sprocket_width_mm - 4.0)
+        """How deep the screws' heads are sunk in a sprocket, so that M3 x 6 hold a wide one too."""
+        return max(0.0, self.sprocket_width_mm - 4.05)
 
     @property
     def foot_flat_mm(self) -> float:
