@@ -1,6 +1,5 @@
 """Designs in, evaluations out, in order: the one door to the jump for search, report and command line."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -20,6 +19,7 @@ STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "tim
 """How a jump can end; every status but ``ok`` comes with a reason and without height and energy."""
 # A length below this has no room for the actuators' output couplings; it only keeps nonsense from the part models.
 _SHORTEST_LINK_M = 0.05
+_LEAST = np.array([_SHORTEST_LINK_M if name.endswith("length_m") else 0.0 for name in NAMES])
 # Jumps that are stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
@@ -110,12 +110,10 @@ class Evaluator:
             designs: shape (n, 7), in the order of ``design.NAMES``.
         """
         values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
-        reasons = [_nonsense(row) for row in values]
-        sane = np.flatnonzero([not reason for reason in reasons])
-        table = _Table(len(values))
-        for i in range(len(values)):
-            if reasons[i]:
-                table.fail(i, "bad_input", reasons[i])
+        table, reasons = _Table(len(values)), _nonsense(values)
+        for i, reason in reasons.items():
+            table.fail(i, "bad_input", reason)
+        sane = np.setdiff1d(np.arange(len(values)), list(reasons))
         if len(sane):
             robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
             _jump(robots, values[sane, 4:7], self.calibration, self.workers, table, sane)
@@ -136,15 +134,19 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
     return table.evaluations()
 
 
-def _nonsense(row: Floats) -> str:
-    """Why seven numbers are no design; empty if they are one, within the paper's bounds or not."""
-    for name, value in zip(NAMES, row.tolist(), strict=True):
-        if not np.isfinite(value):
-            return f"{name} = {value}: must be a finite number; give a number"
-        least = _SHORTEST_LINK_M if name.endswith("length_m") else 0.0
-        if value < least:
-            return f"{name} = {value:g}: must be at least {least:g}; give a larger value"
-    return ""
+def _nonsense(values: Floats) -> dict[int, str]:
+    """Which rows are no design, and why; the paper's bounds do not matter. ``values`` has shape (n, 7)."""
+    with np.errstate(invalid="ignore"):
+        wrong = ~(np.isfinite(values) & (values >= _LEAST))
+    reasons: dict[int, str] = {}
+    for i, column in np.argwhere(wrong):
+        name, value, least = NAMES[column], float(values[i, column]), _LEAST[column]
+        if np.isfinite(value):
+            reason = f"{name} = {value:g}: must be at least {least:g}; give a larger value"
+        else:
+            reason = f"{name} = {value}: must be a finite number; give a number"
+        reasons.setdefault(int(i), reason)
+    return reasons
 
 
 class _Table:
@@ -176,30 +178,20 @@ def _jump(
     for i in np.flatnonzero(built & ~stands):
         table.fail(rows[i], "cannot_stand", pose.reason[i])
     ready = np.flatnonzero(built & stands)
-    # A thread has its own batch: threads that share one would have to wait for each other at every step.
-    parts = max(workers, -(-len(ready) // _CHUNK))
-    chunks = [chunk for chunk in np.array_split(ready, parts) if len(chunk)]
-
-    def run(chosen: NDArray[np.intp]) -> None:
-        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration)
+    for start in range(0, len(ready), _CHUNK):
+        chosen = ready[start : start + _CHUNK]
+        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration, workers)
         population.run()
         _collect(population, calibration, table, rows[chosen])
-
-    if workers == 1 or len(chunks) == 1:
-        for chunk in chunks:
-            run(chunk)
-    else:
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(run, chunks))
 
 
 def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:
     from pareto_monoped.jump import kernel as k
 
-    memory, step = population.memory, calibration.simulation.timestep_s
+    memory, step = population.rows, calibration.simulation.timestep_s
     complaints = population.complaints()
     for i, row in enumerate(rows):
-        status = population.status[i]
+        status = memory[i, k.STATUS]
         time = (memory[i, k.STEPS] - 1) * step
         if complaints[i] or status == k.DIVERGED:
             table.fail(row, "diverged", complaints[i] or f"positions or speeds left all bounds after {time:.3f} s")

@@ -43,8 +43,13 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
     return _document(fields, start, calibration, {name: values[0] for name, values in springs.items()}, comment)
 
 
-def template_mjcf(calibration: Calibration) -> str:
-    """The MJCF document of a robot with round numbers, whose fields a batch overwrites."""
+def template_mjcf(calibration: Calibration, user_data: int) -> str:
+    """The MJCF document of a robot with round numbers, whose fields a batch overwrites.
+
+    Args:
+        calibration: names, losses, contact, integrator.
+        user_data: numbers that every simulation carries along.
+    """
     fields = {
         "body_mass": np.ones(4),
         "body_ipos": np.zeros((4, 3)),
@@ -56,7 +61,8 @@ def template_mjcf(calibration: Calibration) -> str:
         "actuator_ctrlrange": np.array([[-1.0, 1.0], [-1.0, 1.0]]),
     }
     start = start_qpos(calibration, np.zeros(1), np.ones(1))[0]
-    return _document(fields, start, calibration, None, "")
+    size = f'<size nuserdata="{user_data}"/>'
+    return _document(fields, start, calibration, None, "").replace("<worldbody>", f"{size}\n  <worldbody>", 1)
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:

@@ -136,29 +136,23 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     import mujoco
 
     from pareto_monoped.jump import kernel as k
-    from pareto_monoped.jump.population import constants, first_memory, settings
+    from pareto_monoped.jump.population import first_rows
 
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    ids, status = np.zeros(1, dtype=np.int32), np.zeros(1, dtype=np.int32)
-    ctrl, memory = np.zeros((1, 2)), first_memory(1)
-    numbers, shared = constants(robots, control, calibration), settings(calibration)
+    row = first_rows(robots, control, calibration)[0]
+    # This loop asks once a step, whatever the integrator.
+    row[k.STAGES] = 1.0
     while True:
         qpos, qvel = data.qpos.copy(), data.qvel.copy()
-        if status[0] == k.RUNNING:
-            k.advance(ids, 1, qpos[None], qvel[None], ctrl, numbers, memory, status, shared)
-        else:
-            k.fly(ids, 1, qpos[None, None], qvel[None, None], numbers, memory, status, shared)
-        running = status[0] in (k.RUNNING, k.FLYING)
-        if not running:
-            ctrl[:] = 0.0
-        data.ctrl[:] = ctrl[0]
+        k.control(qpos, qvel, data.ctrl, row)
+        running = row[k.STATUS] <= k.FLYING
         if running:
             mujoco.mj_step(model, data)
         else:
             mujoco.mj_forward(model, data)
-        yield _Moment(model=model, data=data, qpos=qpos, qvel=qvel, memory=memory[0], last=not running)
+        yield _Moment(model=model, data=data, qpos=qpos, qvel=qvel, memory=row, last=not running)
         if not running:
             return
 

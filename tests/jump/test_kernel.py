@@ -14,22 +14,22 @@ NO_LOAD, CORNER = 80.0, 60.0
 
 def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, memory=None, latch=True):
     """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the memory after one call."""
-    constants = np.zeros((1, k.N_CONSTANTS))
-    constants[0, : k.WEIGHT + 1] = THIGH, SHANK, RADIUS, STIFFNESS, DAMPING, TORSION, WEIGHT
-    constants[0, k.PEAK_HIP : k.PEAK_KNEE + 1] = peak
-    constants[0, k.NO_LOAD_HIP : k.NO_LOAD_KNEE + 1] = NO_LOAD
-    constants[0, k.CORNER_HIP : k.CORNER_KNEE + 1] = CORNER
-    constants[0, k.LOSS_HIP : k.LOSS_KNEE + 1] = loss
-    settings = np.zeros(k.N_SETTINGS)
-    settings[[k.REST_LENGTH, k.TIMESTEP, k.STEP_LIMIT, k.FADE_LENGTH]] = 10.0, 0.001, 3000, fade
-    settings[[k.LATCH, k.LOSS_SPEED, k.VOLTAGE_LIMIT]] = latch, 0.5, 1.0
+    if memory is None:
+        memory = np.zeros(k.N_ROW)
+    memory[[k.THIGH, k.SHANK, k.FOOT_RADIUS, k.STIFFNESS, k.DAMPING, k.TORSION, k.WEIGHT]] = (
+        THIGH, SHANK, RADIUS, STIFFNESS, DAMPING, TORSION, WEIGHT,
+    )  # fmt: skip
+    memory[k.PEAK_HIP : k.PEAK_KNEE + 1] = peak
+    memory[k.NO_LOAD_HIP : k.NO_LOAD_KNEE + 1] = NO_LOAD
+    memory[k.CORNER_HIP : k.CORNER_KNEE + 1] = CORNER
+    memory[k.LOSS_HIP : k.LOSS_KNEE + 1] = loss
+    memory[[k.REST_LENGTH, k.TIMESTEP, k.STEP_LIMIT, k.FADE_LENGTH]] = 10.0, 0.001, 3000, fade
+    memory[[k.STAGES, k.LATCH, k.LOSS_SPEED, k.VOLTAGE_LIMIT]] = 1.0, latch, 0.5, 1.0
     foot = -THIGH * np.cos(hip) - SHANK * np.cos(hip + knee)
-    qpos = np.array([[0.0, clearance + RADIUS - foot, hip, knee]])
-    qvel = np.array([[0.0, 0.1, *speeds]])
-    ctrl, status, ids = np.zeros((1, 2)), np.zeros(1, dtype=np.int32), np.zeros(1, dtype=np.int32)
-    memory = np.zeros((1, k.N_MEMORY)) if memory is None else memory
-    k.advance(ids, 1, qpos, qvel, ctrl, constants, memory, status, settings)
-    return np.array([memory[0, k.TORQUE_HIP], memory[0, k.TORQUE_KNEE], *ctrl[0]]), status[0], memory
+    qpos, qvel = np.array([0.0, clearance + RADIUS - foot, hip, knee]), np.array([0.0, 0.1, *speeds])
+    ctrl = np.zeros(2)
+    k.control(qpos, qvel, ctrl, memory)
+    return np.array([memory[k.TORQUE_HIP], memory[k.TORQUE_KNEE], *ctrl]), memory[k.STATUS], memory
 
 
 def foot(hip, knee):

@@ -1,5 +1,7 @@
 """The batch against the independent loop of ``oracle``, and against itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -88,3 +90,17 @@ def test_inputs_are_not_changed(many):
     np.testing.assert_array_equal(designs, before)
     np.testing.assert_array_equal(robots.body_mass_kg, fresh.body_mass_kg)
     np.testing.assert_array_equal(robots.efficiency, fresh.efficiency)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+def test_torque_is_held_during_a_step_whatever_the_integrator(integrator):
+    """A Runge-Kutta step asks the callback four times; the oracle sets the torque once."""
+    calibration, designs = load_calibration(), random_designs(8, seed=12)
+    calibration = replace(calibration, simulation=replace(calibration.simulation, integrator=integrator))
+    robots = plausible_robots(designs)
+    found = evaluate_robots(robots, designs[:, 4:], calibration)
+    for i, design in enumerate(designs):
+        motors = oracle.motors_of(robots, i, calibration)
+        jump = oracle.jump(mjcf(robots, calibration, i), *design[4:], motors, fade=calibration.gate.length_m)
+        assert found.height_m[i] == pytest.approx(jump.height, rel=1e-9)
+        assert found.energy_j[i] == pytest.approx(jump.energy, rel=1e-9)

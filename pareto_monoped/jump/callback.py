@@ -1,0 +1,100 @@
+"""The controller inside MuJoCo's step: many steps of many jumps without going back to Python.
+
+MuJoCo calls ``mjcb_control`` in every step, after positions and speeds are known and before forces are (its
+documentation, "Programming, Simulation, Simulation loop"). A compiled callback keeps the batch's threads free of
+Python. A jump's row of numbers is the user data of its simulation, part of MuJoCo's own state, so that the callback
+needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C functions.
+"""
+
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import mujoco
+import numba
+import numpy as np
+from numba import types
+
+from pareto_monoped.errors import SimulationError
+from pareto_monoped.jump.kernel import N_ROW, control
+
+_POSITION = types.CPointer(types.float64)
+_STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
+_get_state = types.ExternalFunction("mj_getState", types.void(*_STATE))
+_set_state = types.ExternalFunction("mj_setState", types.void(*_STATE))
+_state_size = types.ExternalFunction("mj_stateSize", types.int32(types.voidptr, types.int32))
+
+# MuJoCo lays a state out in the order of these bits.
+_USER = int(mujoco.mjtState.mjSTATE_USERDATA)
+_POSITIONS = int(mujoco.mjtState.mjSTATE_QPOS)
+_WRITTEN = int(mujoco.mjtState.mjSTATE_CTRL) | _USER
+_READ = _POSITIONS | int(mujoco.mjtState.mjSTATE_QVEL) | _WRITTEN
+_JOINTS = 2
+
+_lock = threading.Lock()
+_users = 0
+_before: Callable[..., object] | None = None
+
+
+@contextmanager
+def controlled() -> Iterator[None]:
+    """Let the controller act in every simulation that carries a jump's row as its user data; in no other.
+
+    The callback is one for the whole process: what was installed before comes back when the last user leaves.
+
+    Raises:
+        SimulationError: MuJoCo's library is not where its package has it.
+    """
+    global _users, _before
+    callback = _compiled()
+    with _lock:
+        if _users == 0:
+            _before = mujoco.get_mjcb_control()
+            mujoco.set_mjcb_control(callback)
+        _users += 1
+    try:
+        yield
+    finally:
+        with _lock:
+            _users -= 1
+            if _users == 0:
+                mujoco.set_mjcb_control(_before)
+
+
+@lru_cache(maxsize=1)
+def _compiled() -> Any:
+    """The callback as a C function."""
+    library = ctypes.CDLL(str(_library()))
+    for name in ("mj_getState", "mj_setState", "mj_stateSize"):
+        llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
+    signature = types.void(types.voidptr, types.voidptr)
+    try:
+        compiled = numba.cfunc(signature, cache=True, error_model="numpy")(_control)
+    except RuntimeError:  # numba has no folder that it may write its cache to
+        compiled = numba.cfunc(signature, error_model="numpy")(_control)
+    return compiled.ctypes
+
+
+def _library() -> Path:
+    """MuJoCo's shared library, which its package loads, too."""
+    folder = Path(mujoco.__file__).parent
+    for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
+        for path in sorted(folder.glob(pattern)):
+            return path
+    raise SimulationError(f"mujoco {mujoco.__version__}: has no libmujoco beside its package; install mujoco from PyPI")
+
+
+def _control(model: Any, data: Any) -> None:
+    """``mjcb_control``: compiled, called in every step of every simulation of the process."""
+    if _state_size(model, _USER) != N_ROW:
+        return
+    nv = _state_size(model, _POSITIONS)
+    state = np.empty(2 * nv + _JOINTS + N_ROW)
+    _get_state(model, data, state.ctypes, _READ)
+    control(state[:nv], state[nv : 2 * nv], state[2 * nv : 2 * nv + _JOINTS], state[2 * nv + _JOINTS :])
+    _set_state(model, data, state[2 * nv :].ctypes, _WRITTEN)

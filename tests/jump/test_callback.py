@@ -1,0 +1,86 @@
+"""The controller acts in the batches of this package, on any thread, and nowhere else."""
+
+import ctypes
+from concurrent.futures import ThreadPoolExecutor
+
+import mujoco
+import numpy as np
+import pytest
+
+from pareto_monoped.errors import SimulationError
+from pareto_monoped.jump import callback
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.callback import controlled
+from pareto_monoped.jump.evaluate import evaluate_robots
+from tests.jump.robots import plausible_robots, random_designs
+
+PENDULUM = """<mujoco><size nuserdata="{user}"/><worldbody><body><joint name="j" axis="0 1 0"/>
+<geom type="capsule" size="0.02" fromto="0 0 0 0.3 0 -0.1"/></body></worldbody>
+<actuator><motor joint="j"/></actuator></mujoco>"""
+
+
+def swing(user):
+    """The angle of a pendulum of somebody else after 50 steps under a torque."""
+    model = mujoco.MjModel.from_xml_string(PENDULUM.format(user=user))
+    data = mujoco.MjData(model)
+    data.ctrl[0] = 0.05
+    data.userdata[:] = 7.0
+    for _ in range(50):
+        mujoco.mj_step(model, data)
+    assert np.all(data.userdata == 7.0)
+    return data.qpos[0], data.ctrl[0]
+
+
+@pytest.mark.parametrize("user", [0, 3])
+def test_other_simulations_of_the_process_are_left_alone(user):
+    alone = swing(user)
+    with controlled():
+        assert swing(user) == alone
+
+
+def test_a_callback_of_the_user_comes_back():
+    seen = []
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+    def own(model, data):
+        seen.append(1)
+
+    try:
+        mujoco.set_mjcb_control(own)
+        designs = random_designs(3, seed=2)
+        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration())
+        seen.clear()
+        swing(0)
+        assert len(seen) >= 50
+    finally:
+        mujoco.set_mjcb_control(None)
+
+
+def test_nothing_stays_installed():
+    with controlled(), controlled():
+        assert mujoco.get_mjcb_control() is not None
+    assert mujoco.get_mjcb_control() is None
+    with pytest.raises(ZeroDivisionError), controlled():
+        raise ZeroDivisionError
+    assert mujoco.get_mjcb_control() is None
+
+
+def test_two_calibrations_on_two_threads_do_not_meet():
+    designs = random_designs(30, seed=4)
+    robots = plausible_robots(designs)
+
+    def jump(name):
+        return evaluate_robots(robots, designs[:, 4:], load_calibration(name)).as_columns()
+
+    names = ["reference", "ideal"] * 3
+    alone = {name: jump(name) for name in set(names)}
+    with ThreadPoolExecutor(2) as pool:
+        for name, columns in zip(names, pool.map(jump, names), strict=True):
+            for column, values in columns.items():
+                np.testing.assert_array_equal(values, alone[name][column], err_msg=f"{name} {column}")
+
+
+def test_a_mujoco_without_its_library_is_said(monkeypatch, tmp_path):
+    monkeypatch.setattr(callback.mujoco, "__file__", str(tmp_path / "__init__.py"))
+    with pytest.raises(SimulationError, match="libmujoco"):
+        callback._library()
