@@ -2,8 +2,8 @@
 
 Raw: the same steps of the same models with the recorded torques, (a) by ``mujoco.rollout``, whose loop over ``mj_step``
 is compiled, and (b) by a Python loop over ``mj_step``. Naive: the XML of each design compiled, and the controller in
-Python and NumPy (the tests' oracle). All are timed in turn in every round, medians are compared, and answers are
-compared before any ratio is printed. Ratios are of processor time, which other work on the machine disturbs little; the
+Python and NumPy (the tests' oracle). All are timed in turn in every round, medians of the rounds' ratios are printed,
+and answers are compared before. Ratios are of processor time, which other work on the machine disturbs little; the
 gain by two threads is of wall time and needs a quiet machine. The last two columns leave out weighing the robots.
 
     python benchmarks/jump_speed.py [ROUNDS]
@@ -72,13 +72,16 @@ def main(rounds: int) -> None:
                 wall[name].append(time.perf_counter() - start)
                 cpu[name].append(time.process_time() - busy)
         steps = sum(len(t) for t in torques)
-        median = {name: statistics.median(values) for name, values in cpu.items()}
-        scaling = statistics.median(wall["ours"]) / statistics.median(wall["two"])
-        naive = median["naive"] / naive_steps
-        ours, raw_time = median["ours"] / steps, median["raw"]
-        cells = (ours * 1e6, raw_time / median["ours"], median["python"] / median["ours"], naive / ours, scaling)
-        built = (median["built"] / steps * 1e6, raw_time / median["built"])
-        print(f"{size:9d} {steps:9d} " + " ".join(f"{cell:9.2f}" for cell in (*cells, *built)))
+        cells = (
+            statistics.median(cpu["ours"]) / steps * 1e6,
+            _ratio(cpu["raw"], cpu["ours"]),
+            _ratio(cpu["python"], cpu["ours"]),
+            _ratio(cpu["naive"], cpu["ours"]) * steps / naive_steps,
+            _ratio(wall["ours"], wall["two"]),
+            statistics.median(cpu["built"]) / steps * 1e6,
+            _ratio(cpu["raw"], cpu["built"]),
+        )
+        print(f"{size:9d} {steps:9d} " + " ".join(f"{cell:9.2f}" for cell in cells))
 
 
 class Raw:
@@ -124,6 +127,11 @@ def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibrati
     stiffness, damping, torsion = design[4:].tolist()
     motors = motors_of(robots, i, calibration)
     return jump(document, stiffness, damping, torsion, motors, fade=gate.length_m)
+
+
+def _ratio(these: list[float], those: list[float]) -> float:
+    """The median of the rounds' ratios."""
+    return statistics.median(a / b for a, b in zip(these, those, strict=True))
 
 
 def _same(name: str, values: Floats, *expected: Floats) -> None:
