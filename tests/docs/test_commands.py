@@ -16,6 +16,8 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.actuator.search import map_for
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "studies").glob("*.md")])
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -91,3 +93,11 @@ def test_no_link_is_broken():
     for page in PAGES:
         for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name} links to {target}, which does not exist"
+
+
+def test_the_motor_shown_for_copying_has_a_map(tmp_path):
+    (text,) = re.findall(r"^```toml\n(.*?)^```", (ROOT / "docs" / "actuators.md").read_text("utf-8"), re.S | re.M)
+    path = tmp_path / "my_motor.toml"
+    path.write_text(text, encoding="utf-8")
+    entries = map_for(str(path)).entries
+    assert {entry.actuator.family for entry in entries if entry.actuator} == {"ESSPG"}
