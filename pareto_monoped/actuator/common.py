@@ -90,7 +90,7 @@ def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple
     return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_case, at.r_case - settings.parts.case.vent_wall_mm)
 
 
-def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str, note: str) -> Part:
+def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str, note: str, joined: str = "") -> Part:
     """A ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
     return Part(
@@ -101,6 +101,7 @@ def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str,
         group=group,
         catalogue_mass_kg=bearing.mass_kg,
         note=note,
+        joined=joined,
     )
 
 
@@ -174,7 +175,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group="output",
-            note="hardened dowel, pressed into both carriers, M3 thread in the rear end",
+            note="hardened dowel, M3 thread in the rear end",
+            joined="pressed into secondary_carrier and carrier",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),

@@ -254,6 +254,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             group="rotor",
             catalogue_mass_kg=rotor_share * frame.mass_kg,
             note=f"{motor.name}, framed: rotor with its face",
+            joined="in the motor's own bearings on motor_stator",
         ),
     )
 

@@ -212,7 +212,14 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             group="rotor",
             note="through the bell into the coupling, flush",
         ),
-        bought_bearing("rear_bearing", at.rear_bearing, z_seat, "housing", "6800: carries the rotor"),
+        bought_bearing(
+            "rear_bearing",
+            at.rear_bearing,
+            z_seat,
+            "housing",
+            "6800: carries the rotor",
+            joined="pressed into backplate",
+        ),
         Part(
             name="motor_stator",
             material=MOTOR_STATOR,

@@ -1,6 +1,5 @@
-"""What every export must pass: solids, meshes, masses, overlaps, working range, bolts."""
+"""What every export must pass: solids, meshes, masses, overlaps, working range, bolts, retention."""
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ from OCP.GProp import GProp_GProps
 from pareto_monoped.cad.assembly import Instance
 from pareto_monoped.cad.overlaps import Overlap, in_gear_cycle, in_pose, in_working_range
 from pareto_monoped.cad.product import Product, UniquePart
+from pareto_monoped.cad.retention import FASTENER, PLAY_MM, loose_parts
 from pareto_monoped.geometry.parts import MassProperties, Prism, total
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.robot import BODIES, RobotArrays
@@ -23,7 +23,6 @@ BODY_MASS_SHARE = 0.005
 BODY_INERTIA_SHARE = 0.03
 MESH_VOLUME_SHARE = 0.01
 BOLT_OFFSET_MM = 0.05
-_FASTENER = re.compile(r"(screw|bolt)(_near|_far)?$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +60,7 @@ def run_checks(product: Product, arrays: RobotArrays) -> tuple[Check, ...]:
         _overlaps("gears mesh", f"sun, planets and ring in {steps} steps of one tooth", gears),
         _range(moving, clearance),
         _bolts(product),
+        _retention(product),
     )
 
 
@@ -194,12 +194,23 @@ def _range(moving: list[Overlap], clearance_mm: float) -> Check:
     )
 
 
+def _retention(product: Product) -> Check:
+    """Every part that is pushed along or across its axis pushes on the base in the end."""
+    loose, count = loose_parts(product.robot)
+    return Check(
+        name="every part is held",
+        looked_at=f"{count} parts in 6 directions, with {PLAY_MM} mm of play",
+        worst=f"{len(loose)} loose",
+        failures=tuple(str(part) for part in loose),
+    )
+
+
 def _bolts(product: Product) -> Check:
     """Every screw and bolt stands in a hole of at least two other parts, on the holes' axis."""
     holes = _axes_of_holes(product)
     failures, worst, count = [], 0.0, 0
     for instance in product.instances:
-        if not _FASTENER.search(instance.part.name):
+        if not FASTENER.search(instance.part.name):
             continue
         count += 1
         centre, low, high = _shaft(instance)

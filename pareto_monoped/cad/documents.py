@@ -64,7 +64,7 @@ def bom(product: Product) -> str:
                 "bought" if kind.part.process == "bought" else "made",
                 " x ".join(f"{size:.1f}" for size in extent_mm(kind.mesh)),
                 " ".join(kind.units),
-                kind.part.note,
+                "; ".join(filter(None, (kind.part.note, kind.part.joined))),
             )
         )
     return stream.getvalue()

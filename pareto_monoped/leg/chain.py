@@ -63,9 +63,13 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
                 catalogue_mass_kg=d.chain_kg_per_m * metres,
+                joined=f"around the teeth of {sprocket}",
                 note=f"{d.chain_name} (ISO 606), {count[end]} of {d.chain_pitch_mm:g} mm, an inner link at both ends",
             )
-            for end, y_mm, sign in (("hip", 0.0, 1.0), ("knee", -length_mm, -1.0))
+            for end, y_mm, sign, sprocket in (
+                ("hip", 0.0, 1.0, "drive_sprocket"),
+                ("knee", -length_mm, -1.0, "knee_sprocket"),
+            )
         ),
         Part(
             name="turnbuckle_barrel",
@@ -101,27 +105,31 @@ def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: L
         d: dimensions.
     """
     half_inner, half_pin, half_plate = 0.5 * d.chain_inner_width_mm, 0.5 * d.chain_pin_mm, 0.5 * d.chain_plate_mm
-    rows = _around(y_mm, sign, reach_mm - half_plate - _GAP, radius_mm - half_plate, radius_mm + half_plate)
-    # From where on no tooth reaches the strand, whatever the sprocket's angle; up to the last link's round end.
-    first, last = 2.0 * d.chain_pitch_mm, reach_mm + 0.5 * d.chain_roller_mm
+    end = reach_mm - half_plate - _GAP
+    rows = _around(y_mm, sign, end, radius_mm - half_plate, radius_mm + half_plate)
     pin = 0.5 * d.chain_pin_diameter_mm + _PIN_PLAY
-    strands = tuple(
-        Prism(
-            outline=rectangle(
-                width_mm=d.chain_roller_mm,
-                height_mm=last - first,
-                x_mm=side * radius_mm,
-                y_mm=y_mm - sign * 0.5 * (first + last),
-            ),
-            z0_mm=-half_inner,
-            z1_mm=half_inner,
-            holes=(Circle(radius_mm=pin, x_mm=side * radius_mm, y_mm=y_mm - sign * reach_mm),),
+
+    def bars(first_mm: Numbers, last_mm: Numbers, half_mm: float, *, pinned: bool) -> tuple[Prism, ...]:
+        return tuple(
+            Prism(
+                outline=rectangle(
+                    width_mm=d.chain_roller_mm,
+                    height_mm=last_mm - first_mm,
+                    x_mm=x,
+                    y_mm=y_mm - sign * 0.5 * (first_mm + last_mm),
+                ),
+                z0_mm=-half_mm,
+                z1_mm=half_mm,
+                holes=(Circle(radius_mm=pin, x_mm=x, y_mm=y_mm - sign * reach_mm),) if pinned else (),
+            )
+            for x in (-radius_mm, radius_mm)
         )
-        for side in (-1.0, 1.0)
-    )
+
     return (
         Prism(outline=rows, z0_mm=-half_pin, z1_mm=-half_inner),
-        *strands,
+        # From where on no tooth reaches the strand, whatever the sprocket's angle; then the last link in its fork.
+        *bars(2.0 * d.chain_pitch_mm, end, half_inner, pinned=False),
+        *bars(end, reach_mm + 0.5 * d.chain_roller_mm, 0.5 * d.chain_inner_link_mm, pinned=True),
         Prism(outline=rows, z0_mm=half_inner, z1_mm=half_pin),
     )
 

@@ -39,7 +39,7 @@ def with_unit(product, unit_name, change):
 
 def test_nothing_overlaps_and_every_check_passes(product, actuator_map):
     checks = run_checks(product, robot_arrays(product.robot.design.as_array(), actuator_map))
-    assert len(checks) == 10
+    assert len(checks) == 11
     assert [failure for check in checks for failure in check.failures] == []
 
 
