@@ -13,6 +13,8 @@ from pareto_monoped.errors import MotorError
 from pareto_monoped.records import checked, read_toml
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+# The search tries all tooth numbers that fit; beyond this size it takes many seconds, and no leg is built for it.
+Diameter = Annotated[float, Field(gt=0.0, le=400.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
 
 PEAK_TO_CONTINUOUS = 5.5 / 3.82
@@ -58,7 +60,7 @@ class FramedMotor:
     __pydantic_config__ = _STRICT
 
     mass_kg: Positive
-    outer_diameter_mm: Positive
+    outer_diameter_mm: Diameter
     length_mm: Positive
 
 
@@ -72,7 +74,7 @@ class FramelessMotor:
     __pydantic_config__ = _STRICT
 
     mass_kg: Positive
-    outer_diameter_mm: Positive
+    outer_diameter_mm: Diameter
     length_mm: Positive
     stator_inner_diameter_mm: Positive
     stator_outer_diameter_mm: Positive

@@ -4,18 +4,22 @@ import csv
 import io
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from pareto_monoped import __version__
+from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.cad.checks import Check
 from pareto_monoped.cad.drawing import is_flat
 from pareto_monoped.cad.product import Product, UniquePart, extent_mm
 from pareto_monoped.design import VARIABLES, Design
+from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.robot import Robot
 
+MADE_BY = f"pareto-monoped {__version__}"
 _BOM = ("part", "count", "material", "process", "mass_g", "total_g", "made_or_bought", "size_mm", "used_in", "note")
 
 _FILES = {
@@ -77,15 +81,15 @@ def design_record(
     robot: Robot,
     pose: Pose,
     jumps: Mapping[str, Mapping[str, Any]],
-    calibration: str,
+    calibration: Calibration,
     source: Mapping[str, Any] | None,
     formats: Sequence[str],
 ) -> dict[str, Any]:
     """Everything needed to build the export again, and what came out."""
     return {
-        "made_by": f"pareto-monoped {__version__}",
+        "made_by": MADE_BY,
         "motor": robot.hip.motor.name,
-        "calibration": calibration,
+        "calibration": calibration.label,
         "source": dict(source or {}),
         "searched": searched.as_dict(),
         "as_built": built.as_dict(),
@@ -109,7 +113,15 @@ def design_record(
             for name, actuator in (("hip", robot.hip), ("knee", robot.knee))
         },
         "formats": list(formats),
+        "motor_data": contents(robot.hip.motor),
+        "calibration_data": contents(calibration),
     }
+
+
+def contents(record: Motor | Calibration) -> dict[str, Any]:
+    """Every value of a record as JSON has it, so that it can be read back."""
+    plain_values: dict[str, Any] = json.loads(json.dumps(asdict(record)))
+    return plain_values
 
 
 def checks_record(checks: Sequence[Check]) -> str:
@@ -156,7 +168,8 @@ def readme(record: Mapping[str, Any], product: Product, checks: Sequence[Check],
         lines += [f"| `{path}` | {purpose} |" for path, purpose in _FILES[name]]
     lines += [
         "| `bom.csv` | parts list: count, material, process, mass, size |",
-        "| `design.json` | the design, to build this folder again |",
+        "| `design.json` | the design with its motor and jump model, to make this folder again: "
+        "`pareto-monoped export --record design.json -o DIR` |",
         "| `checks.json` | what was checked, in full |",
         "",
         "Part frames have z along the joint axis; the assembly has x forward, y left, z up and its origin on the hip "

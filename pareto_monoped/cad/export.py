@@ -117,7 +117,7 @@ def export_design(
         robot=robot,
         pose=pose,
         jumps=jumps,
-        calibration=calibration.label,
+        calibration=calibration,
         source=source,
         formats=wanted,
     )

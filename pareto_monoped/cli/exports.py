@@ -2,6 +2,7 @@
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,9 @@ from pareto_monoped.cli.fronts import required, selector_options
 from pareto_monoped.design import NAMES, PAPER_CASES, Design
 
 if TYPE_CHECKING:
+    from pareto_monoped.actuator.motors import Motor
     from pareto_monoped.cad.batch import Job
+    from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.pareto.pick import Selector
 
 
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 @selector_options
 @click.option("-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder to make.")
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, without DB.")
+@click.option(
+    "--record", type=click.Path(path_type=Path), metavar="FILE", help="The design.json of an export: make it again."
+)
 @click.option("--front", "whole_front", is_flag=True, help="Every design on the front, each in DIR/trial_N.")
 @click.option("--every", type=click.IntRange(min=1), default=1, metavar="N", help="With --front: each N-th of them.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [all cores]")
@@ -32,6 +38,7 @@ def export(
     selector: "Selector | None",
     output: Path,
     case: str | None,
+    record: Path | None,
     whole_front: bool,
     every: int,
     workers: int | None,
@@ -43,18 +50,40 @@ def export(
     """Write CAD, drawings, models, pictures and parts list of a design.
 
     The design is built with lengths of whole 0.1 mm and its gearboxes' real ratios, simulated again and checked;
-    nothing is written if a check fails.
+    nothing is written if a check fails. An export's design.json holds its motor and jump model too, so that --record
+    needs neither the study nor its files.
     """
+    if record is not None:
+        if db is not None or selector is not None or case is not None or whole_front:
+            raise click.UsageError("--record takes no DB, no selector, no --case and no --front; drop one of them")
+        if hip_deg is not None or knee_deg is not None:
+            raise click.UsageError("--record takes no --hip-deg and no --knee-deg, it holds the pose; drop them")
+        from pareto_monoped.cad.batch import recorded
+
+        _one(
+            recorded(
+                record,
+                folder=output,
+                formats=_names(formats),
+                force=force,
+                note=lambda text: click.echo(text, err=True),
+            )
+        )
+        return
     if whole_front and (selector is not None or case is not None):
         raise click.UsageError("--front takes no selector and no --case; drop one of them")
     if case is not None:
         if db is not None or selector is not None:
             raise click.UsageError(f"--case {case} takes no DB and no selector; drop one of them")
-        job = _job(PAPER_CASES[case].design, "VT8020", "reference", output, formats, force, {"case": case})
-        _one(job, hip_deg, knee_deg)
+        from pareto_monoped.actuator.motors import load_motor
+        from pareto_monoped.jump.calibration import load_calibration
+
+        motor, calibration = load_motor("VT8020"), load_calibration("reference")
+        job = _job(PAPER_CASES[case].design, motor, calibration, output, formats, force, {"case": case})
+        _one(_posed(job, hip_deg, knee_deg))
         return
     if db is None:
-        raise click.UsageError("no DB given; give the study's database, or --case")
+        raise click.UsageError("no DB given; give the study's database, or --case, or --record")
     from pareto_monoped.pareto.pick import pick
     from pareto_monoped.study.reader import read_study
 
@@ -66,11 +95,12 @@ def export(
         picked = pick(rows, wanted)
         click.echo(picked.why, err=True)
         rows = rows[rows["trial"] == picked.trial]
+    motor, calibration = _contents(data.meta["contents"], db)
     jobs = [
         _job(
             Design.from_array([row[name] for name in NAMES]),
-            data.study.motor,
-            data.study.calibration,
+            motor,
+            calibration,
             output / f"trial_{int(row['trial'])}" if whole_front else output,
             formats,
             force,
@@ -81,13 +111,42 @@ def export(
     if whole_front:
         _many(jobs, workers or os.cpu_count() or 1)
     else:
-        _one(jobs[0], hip_deg, knee_deg)
+        _one(_posed(jobs[0], hip_deg, knee_deg))
+
+
+def _names(formats: str | None) -> list[str] | None:
+    return None if formats is None else [name.strip() for name in formats.split(",")]
+
+
+def _contents(contents: dict[str, Any], db: Path) -> "tuple[Motor, Calibration]":
+    """Motor and calibration as a study stored them: their files may be gone or changed."""
+    from pareto_monoped.actuator.motors import Motor
+    from pareto_monoped.errors import DatabaseError
+    from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.records import checked
+
+    source = f"study database {str(db)!r}"
+    motor, calibration = (
+        values if isinstance(values := contents.get(key), dict) else {} for key in ("motor", "calibration")
+    )
+    return (
+        checked(Motor, motor, source=source, error=DatabaseError),
+        checked(Calibration, calibration, source=source, error=DatabaseError),
+    )
+
+
+def _posed(job: "Job", hip_deg: float | None, knee_deg: float | None) -> "Job":
+    return replace(
+        job,
+        hip_rad=None if hip_deg is None else math.radians(hip_deg),
+        knee_rad=None if knee_deg is None else math.radians(knee_deg),
+    )
 
 
 def _job(
     design: Design,
-    motor: str,
-    calibration: str,
+    motor: "Motor",
+    calibration: "Calibration",
     folder: Path,
     formats: str | None,
     force: bool,
@@ -101,21 +160,16 @@ def _job(
         motor=motor,
         calibration=calibration,
         folder=folder,
-        formats=chosen_formats(None if formats is None else [name.strip() for name in formats.split(",")]),
+        formats=chosen_formats(_names(formats)),
         force=force,
         source=source,
     )
 
 
-def _one(job: "Job", hip_deg: float | None, knee_deg: float | None) -> None:
+def _one(job: "Job") -> None:
     from pareto_monoped.cad.batch import run
 
-    record = run(
-        job,
-        progress=lambda step: click.echo(f"{step} ...", err=True),
-        hip_rad=None if hip_deg is None else math.radians(hip_deg),
-        knee_rad=None if knee_deg is None else math.radians(knee_deg),
-    )
+    record = run(job, progress=lambda step: click.echo(f"{step} ...", err=True))
     click.echo(f"wrote {job.folder} ({len(record['files'])} files)", err=True)
     for name in ("searched", "as_built"):
         jump = record["jumps"][name]

@@ -81,6 +81,7 @@ BAD = {
     "unknown field": (KV, KV + "\nkv = 3", ("unknown key 'kv'",)),
     "no TOML": (KV, KV + " x", ("not valid TOML",)),
     "negative mass": ("{ mass_kg = 0.5", "{ mass_kg = -0.5", ("framed.mass_kg", "-0.5", "greater than 0")),
+    "huge diameter": ("= 90.0, length", "= 900.0, length", ("framed.outer_diameter_mm", "900.0", "less than or equal")),
     "zero diameter": ("= 90.0, length", "= 0.0, length", ("framed.outer_diameter_mm", "0.0", "greater than 0")),
     "stator larger than motor": (
         "stator_outer_diameter_mm = 80.0",

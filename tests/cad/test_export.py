@@ -5,7 +5,6 @@ import json
 
 import pytest
 
-from pareto_monoped.actuator import search
 from pareto_monoped.cad import batch, export
 from pareto_monoped.cad.checks import Check
 from pareto_monoped.cad.export import as_built, export_design
@@ -109,17 +108,16 @@ def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
         export._require_fit(robot, dataclasses.replace(leg, chain_breaking_n=1000.0))
 
 
-def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, tmp_path):
+def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):
     job = batch.Job(
         design=DESIGN,
-        motor="VT8020",
-        calibration="reference",
+        motor=actuator_map.motor,
+        calibration=calibration,
         folder=tmp_path / "trial_1",
         formats=(),
         source={"trial": 1},
     )
     assert not batch.is_made(job)
-    assert search.map_for(job.motor) is actuator_map
     batch.run(job)
     assert batch.is_made(job)
     assert batch.run_all([job], workers=2) == 0
