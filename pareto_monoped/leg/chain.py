@@ -38,7 +38,8 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Both pieces of the chain and the turnbuckles.
 
     They are drawn and weighed with the turnbuckles in the middle of the strands and of their travel, so that mass is a
-    smooth function of length; whole links lie within half a pitch of that, 0.7 g of each piece.
+    smooth function of length; with whole links a turnbuckle stands up to 6 mm beside the middle, is set up to half a
+    pitch shorter or longer, and both pieces together weigh up to 1.5 g (05B-1) more or less.
 
     Args:
         length_mm: between the axes, float or shape (n,).

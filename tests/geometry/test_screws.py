@@ -1,0 +1,85 @@
+"""Screws: catalogue lengths, masses against tables, and prisms that stand where they are asked to."""
+
+import numpy as np
+import pytest
+
+from pareto_monoped.geometry.parts import Material
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M5, M25, screw_for, screw_length_mm, screw_part
+
+STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
+
+
+def made(screw=M3, **changes):
+    asked = {"head": "cap", "seat_mm": 0.0, "grip_mm": 2.0, "room_mm": 4.5, "direction": 1.0, "material": STEEL}
+    return screw_part("a_screw", screw, **(asked | changes))
+
+
+@pytest.mark.parametrize(
+    ("grip", "room", "length"), [(2.0, 4.5, 6.0), (2.0, 4.0, 6.0), (2.0, 3.9, 5.0), (11.5, 4.5, 16.0), (6.0, 4.5, 10.0)]
+)
+def test_length_is_the_longest_of_the_catalogue_with_room_for_its_thread(grip, room, length):
+    assert screw_length_mm(grip, room) == length
+    assert screw_length_mm(np.array([grip, 3.0]), np.array([room, 3.0])).tolist() == [length, 6.0]
+
+
+def test_lengths_are_those_of_iso_4762():
+    assert {5, 6, 8, 10, 12, 16, 20, 25, 30} <= set(LENGTHS_MM)
+    assert not {7, 14, 18, 22} & set(LENGTHS_MM)
+
+
+@pytest.mark.parametrize(
+    ("screw", "length", "head", "socket", "pitch_diameter"),
+    # ISO 4762: head dk x k, hexagon socket s x t; ISO 724: pitch diameter of the thread.
+    [
+        (M3, 10.0, (5.5, 3.0), (2.5, 1.3), 2.675),
+        (M4, 16.0, (7.0, 4.0), (3.0, 2.0), 3.545),
+        (M5, 12.0, (8.5, 5.0), (4.0, 2.5), 4.480),
+    ],
+)
+def test_cap_screws_weigh_what_the_standard_s_dimensions_give(screw, length, head, socket, pitch_diameter):
+    """Drawn without the socket, with a plain shank in the grip and the core in the thread: a little heavier."""
+    part = made(screw, grip_mm=length - 4.0, room_mm=4.0)
+    volume = np.pi / 4.0 * (head[0] ** 2 * head[1] + pitch_diameter**2 * length)
+    volume -= np.sqrt(3.0) / 2.0 * socket[0] ** 2 * socket[1]
+    assert 1.0 <= part.mass_kg() / (volume * 7850e-9) < 1.15
+
+
+def test_heads_and_shanks_stand_on_their_seats():
+    for direction in (1.0, -1.0):
+        head, shank, thread = made(direction=direction, seat_mm=7.0).prisms
+        ends = sorted([(p.z0_mm, p.z1_mm) for p in (head, shank, thread)], reverse=direction < 0.0)
+        assert ends[0] == tuple(sorted((7.0 - 3.0 * direction, 7.0)))
+        assert ends[1] == tuple(sorted((7.0, 7.0 + 2.0 * direction)))
+        assert ends[2] == tuple(sorted((7.0 + 2.0 * direction, 7.0 + 6.0 * direction)))
+        assert (head.outline.radius_mm, shank.outline.radius_mm, thread.outline.radius_mm) == (2.75, 1.5, 1.25)
+
+
+def test_countersunk_screws_are_flush_and_say_so():
+    part = made(head="countersunk", seat_mm=3.0)
+    assert len(part.prisms) == 2
+    assert min(p.z0_mm for p in part.prisms) == 3.0
+    assert part.countersunk_mm == (3.0,)
+    assert made().countersunk_mm == ()
+
+
+def test_notes_name_size_standard_and_grade():
+    assert made(note="into x").note == "M3 x 6 cap screw (ISO 4762) 8.8, into x"
+    assert made(head="countersunk").note == "M3 x 6 countersunk (ISO 14581) 8.8"
+    assert made(head="countersunk", room_mm=6.0, grade="10.9").note == "M3 x 8 countersunk (ISO 10642) 10.9"
+    assert made(head="hexagon").note == "M3 x 6 hexagon screw (ISO 4017) 8.8"
+
+
+def test_a_hexagon_weighs_like_its_disc():
+    disc = made(head="hexagon").prisms[0]
+    flats = 5.5
+    assert np.pi * disc.outline.radius_mm**2 == pytest.approx(np.sqrt(3.0) / 2.0 * flats**2)
+    assert disc.z1_mm - disc.z0_mm == 2.0
+
+
+def test_an_odd_size_is_no_smaller_than_the_standard_s_proportions():
+    for screw in (M25, M3, M4, M5):
+        assert screw_for(2.0 * screw.shank, screw.core) == screw
+    odd = screw_for(4.5, 1.9)
+    assert odd.core == 1.9
+    assert odd.hole > odd.shank
+    assert M4.head < odd.head < M5.head
