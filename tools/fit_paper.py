@@ -1,6 +1,6 @@
 """Fit the calibration ``paper`` to Table I and write its file.
 
-Four numbers are fitted; all else in the calibration is data, or the paper's own words. The error is taken on medians
+Three numbers are fitted; all else in the calibration is data, or the paper's own words. The error is taken on medians
 over perturbations of 1e-6, since single jumps of the literal model are decided by rounding.
 
     python tools/fit_paper.py [--evaluations N] [--write]
@@ -28,10 +28,9 @@ Floats = NDArray[np.float64]
 
 FITTED: dict[str, tuple[float, float, int]] = {
     # key in the TOML file: lower bound, upper bound, digits kept
-    "damping_n_m_s_per_rad": (0.0, 5.0, 3),
-    "time_constant_s": (0.004, 0.06, 4),
+    "motor_damping_n_m_s_per_rad": (0.0, 0.14, 5),
+    "time_constant_s": (0.004, 0.06, 5),
     "foot_mass_kg": (0.02, 0.6, 3),
-    "link_mass_scale": (0.5, 1.2, 3),
 }
 PUBLISHED: Floats = np.array([[case.height_m, case.energy_j] for case in PAPER_CASES.values()])
 FIT_PERTURBATIONS = 15
@@ -58,10 +57,10 @@ def errors(spreads: tuple[Spread, ...]) -> Floats:
 
 
 def objective(start: Calibration) -> Callable[[Floats], float]:
-    """The worst of the eight errors, with a fifth of the mean so that the others matter too.
+    """The worst of the eight errors, with a fifth of the mean so that the others matter too, and the share of no-jumps.
 
     It is taken over links a little lighter and heavier, too: the literal model has islands a gram wide where a foot
-    that chatters never leaves the floor, and a fit must not sit beside one.
+    that chatters never leaves the floor, and a fit must not sit on one or beside one.
     """
     actuators = map_for("VT8020")
 
@@ -72,7 +71,8 @@ def objective(start: Calibration) -> Callable[[Floats], float]:
             mass = replace(calibration.mass, link_mass_scale=scale * calibration.mass.link_mass_scale)
             spreads = paper_spreads(actuators, replace(calibration, mass=mass), perturbations=FIT_PERTURBATIONS, seed=1)
             off = np.abs(errors(spreads))
-            found.append(float(off.max() + 0.2 * off.mean()))
+            lost = 1.0 - min(spread.jumped_share for spread in spreads)
+            found.append(float(off.max() + 0.2 * off.mean() + lost))
         return max(found)
 
     return value
@@ -84,8 +84,8 @@ def fit(start: Calibration, evaluations: int) -> Floats:
     now = np.array([_current(start, key) for key in FITTED])
     strategy = cma.CMAEvolutionStrategy(
         (np.clip(now, lower, upper) - lower) / (upper - lower),
-        0.1,
-        {"bounds": [0.0, 1.0], "maxfevals": evaluations, "seed": 1, "verbose": -9, "popsize": 10},
+        0.02,
+        {"bounds": [0.0, 1.0], "maxfevals": evaluations, "seed": 1, "verbose": -9, "popsize": 12},
     )
     value = objective(start)
     while not strategy.stop():
@@ -133,7 +133,11 @@ def show(calibration: Calibration) -> None:
             f"| {s.energy_p05_j:.2f} to {s.energy_p95_j:.2f} |"
         )
     saved = 1.0 - spreads[-1].energy_j / spreads[0].energy_j
-    print(f"largest error {np.abs(errors(spreads)).max():.1%}; case C takes {saved:.1%} less energy than nominal")
+    jumped = min(spread.jumped_share for spread in spreads)
+    print(
+        f"largest error {np.abs(errors(spreads)).max():.1%}; case C takes {saved:.1%} less energy than nominal; "
+        f"{jumped:.0%} of the copies jump"
+    )
 
 
 def main() -> None:

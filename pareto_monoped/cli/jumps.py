@@ -168,4 +168,8 @@ def table1(as_json: bool) -> None:
             f"{spread.energy_j:.2f} ({spread.energy_p05_j:.2f} to {spread.energy_p95_j:.2f})",
             f"{row.reference.height_m:.3f}\n{row.reference.energy_j:.2f}",
         )
-    Console(width=80, highlight=False).print(table)
+    console = Console(width=80, highlight=False)
+    console.print(table)
+    for row in rows:
+        if row.paper.jumped_share < 1.0:
+            console.print(f"{row.case}: {row.paper.jumped_share:.0%} of its perturbed copies jump under `paper`")

@@ -1,0 +1,56 @@
+"""The script that fits the literal model: no more than four numbers, and these are the ones marked in the file."""
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pareto_monoped.jump.calibration import load_calibration
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = ROOT / "pareto_monoped" / "data" / "calibrations" / "paper.toml"
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("fit_paper", ROOT / "tools" / "fit_paper.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    yield module
+    sys.modules.pop("fit_paper", None)
+
+
+def test_at_most_four_numbers_are_fitted_and_the_file_marks_them(script):
+    marked = re.findall(r"(?m)^(\w+) = [^#\n]*# fitted", SHIPPED.read_text(encoding="utf-8"))
+    assert sorted(marked) == sorted(script.FITTED)
+    assert len(marked) <= 4
+
+
+def test_the_rest_is_not_touched(script):
+    """New numbers change the fitted entries of the record and of the file, and nothing else."""
+    start = load_calibration("paper")
+    numbers = np.array([0.0123456789, 0.0312345678, 0.2543219876])
+    changed = script.with_numbers(start, numbers)
+    assert [script._current(changed, key) for key in script.FITTED] == [0.01235, 0.03123, 0.254]
+    assert script.with_numbers(changed, np.array([script._current(start, key) for key in script.FITTED])) == start
+
+
+def test_written_numbers_are_read_back(script, tmp_path):
+    path = tmp_path / "paper.toml"
+    path.write_text(SHIPPED.read_text(encoding="utf-8"), encoding="utf-8")
+    changed = script.with_numbers(load_calibration("paper"), np.array([0.05, 0.03, 0.25]))
+    script.write(changed, path)
+    assert load_calibration(str(path)) == changed
+    before, after = (text.splitlines() for text in (SHIPPED.read_text("utf-8"), path.read_text("utf-8")))
+    assert sum(a != b for a, b in zip(before, after, strict=True)) == len(script.FITTED)
+
+
+def test_an_island_beside_the_fit_counts(script):
+    """The objective bears links a percent lighter and heavier: it is the worst of them."""
+    assert min(script.LINK_SCALES) < 1.0 < max(script.LINK_SCALES)
+    start = load_calibration("paper")
+    numbers = np.array([script._current(start, key) for key in script.FITTED])
+    assert script.objective(start)(numbers) < 0.12
