@@ -10,6 +10,7 @@ from pareto_monoped.geometry.parts import Material, Part, Prism
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 
+GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm; hardened steel, wire-cut"
 M3_THREAD_MM = M3.core
 """Radius of a tapping hole for M3 (2.5 mm)."""
 M3_CLEARANCE_MM = M3.hole
@@ -43,6 +44,13 @@ def steel(data: PartData) -> Material:
 def gear_steel(data: PartData) -> Material:
     """For sun, planets and ring."""
     return Material(name="gear steel", density_kg_per_m3=data.gears.density_kg_per_m3, colour=(0.55, 0.55, 0.57))
+
+
+def told(text: str, *numbers: Numbers) -> str:
+    """A note with numbers filled in; empty for arrays of actuators, whose notes nobody reads."""
+    if any(np.ndim(number) for number in numbers):
+        return ""
+    return text.format(*(f"{float(number):g}" for number in numbers))
 
 
 def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
@@ -100,7 +108,9 @@ def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str,
         process="bought",
         group=group,
         catalogue_mass_kg=bearing.mass_kg,
-        note=note,
+        note=told(
+            "{} x {} x {} mm (ISO 15), " + note, bearing.inner_diameter_mm, bearing.outer_diameter_mm, bearing.width_mm
+        ),
         joined=joined,
     )
 
@@ -147,7 +157,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=planet_prisms(at, settings),
             process="machined",
             group="planet",
-            note=f"hardened and wire-cut; backlash {data.gears.backlash_mm} mm",
+            note=told(GEAR_NOTE, gears.planet_teeth, gears.module_mm, data.gears.backlash_mm),
             joined="pressed onto planet_bush",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -200,7 +210,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
             process="machined",
             group="housing",
-            note="wire-cut",
+            note=told(GEAR_NOTE, gears.ring_teeth, gears.module_mm, data.gears.backlash_mm),
             joined="bonded into ring_housing",
         ),
     )
@@ -235,7 +245,19 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
     )
     return (
-        Part(name="carrier", material=material, prisms=body, process="machined", group="output"),
+        Part(
+            name="carrier",
+            material=material,
+            prisms=body,
+            process="machined",
+            group="output",
+            note=told(
+                "EN AW-7075; seats {} h6 for the main bearing, {} J7 for the end bearing; bores {} H7 for the pins",
+                2.0 * at.r_bore,
+                2.0 * seat,
+                carrier.pin_diameter_mm,
+            ),
+        ),
         Part(
             name="secondary_carrier",
             material=material,
@@ -245,7 +267,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group="output",
-            note="countersink the screws' holes at the back",
+            note=told("EN AW-7075; bores {} H7 for the pins; countersink the back", carrier.pin_diameter_mm),
         ),
         Part(
             name="retaining_ring",
@@ -253,8 +275,8 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, r_groove),
             process="bought",
             group="output",
-            note="as DIN 471, in the carrier's groove in front of the main bearing",
+            note=told("DIN 471 for {} mm, in the carrier's groove before the main bearing", 2.0 * at.r_bore),
         ),
-        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, "output", "thin-section ball bearing"),
-        bought_bearing("end_bearing", at.end_bearing, 0.0, "output", "619/6: carries the sun's end in the carrier"),
+        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, "output", "thin-section"),
+        bought_bearing("end_bearing", at.end_bearing, 0.0, "output", "carries the sun's end in the carrier"),
     )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.actuator.common import (
+    GEAR_NOTE,
     M3_CLEARANCE_MM,
     M3_THREAD_MM,
     MOTOR_ROTOR,
@@ -16,6 +17,7 @@ from pareto_monoped.actuator.common import (
     slab,
     spigot,
     steel,
+    told,
     tube,
     vents,
 )
@@ -107,6 +109,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
             group="rotor",
+            note=told(GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm),
             joined="pressed onto sun_shaft",
         ),
         Part(
@@ -143,7 +146,9 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
-            note="carries main bearing and ring",
+            note=told(
+                "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring", 2.0 * at.r_seat, 2.0 * at.r_ring
+            ),
         ),
         Part(
             name="bore_retaining_ring",
@@ -151,7 +156,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
             process="bought",
             group="housing",
-            note="as DIN 472, in the ring housing's groove behind the main bearing",
+            note=told("DIN 472 for {} mm, in the ring housing's groove behind the main bearing", 2.0 * at.r_seat),
         ),
         Part(
             name="casing",
@@ -164,6 +169,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
+            note="EN AW-6082; bore and faces in one clamping",
         ),
         Part(
             name="backplate",
@@ -174,6 +180,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
+            note="EN AW-6082; step to fit the casing",
         ),
         screw_part(
             "casing_screw",

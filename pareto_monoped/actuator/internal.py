@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.actuator.common import (
+    GEAR_NOTE,
     M3_CLEARANCE_MM,
     M3_THREAD_MM,
     MOTOR_ROTOR,
@@ -16,6 +17,7 @@ from pareto_monoped.actuator.common import (
     slab,
     spigot,
     steel,
+    told,
     tube,
     vents,
 )
@@ -111,7 +113,9 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="rotor",
-            note="one piece with its shaft",
+            note=told(
+                "one piece with its shaft; " + GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm
+            ),
             joined="pressed into coupling",
         ),
         Part(
@@ -137,6 +141,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
+            note="EN AW-6082; bore and faces in one clamping",
         ),
         Part(
             name="ring_housing",
@@ -156,7 +161,12 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
-            note="carries main bearing, ring and stator",
+            note=told(
+                "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring, {} for the stator",
+                2.0 * at.r_seat,
+                2.0 * at.r_ring,
+                2.0 * at.r_stator_in,
+            ),
         ),
         Part(
             name="backplate",
@@ -169,6 +179,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             ),
             process="machined",
             group="housing",
+            note=told("EN AW-6082; seat {} J7 for the rear bearing, step to fit the casing", 2.0 * rear_seat),
         ),
         screw_part(
             "ring_housing_screw",
@@ -217,7 +228,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             at.rear_bearing,
             z_seat,
             "housing",
-            "6800: carries the rotor",
+            "carries the rotor",
             joined="pressed into backplate",
         ),
         Part(

@@ -3,6 +3,7 @@
 import json
 import math
 import multiprocessing
+import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
@@ -140,7 +141,9 @@ def is_made(job: Job) -> bool:
 
 
 def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = lambda _: None) -> int:
-    """Export designs in parallel; the first failure stops the rest and is raised.
+    """Export designs in parallel; the first failure stops the rest and is raised, as does an interrupt.
+
+    Exports in progress are finished then, so that every folder is whole; the same call goes on with the rest.
 
     Args:
         jobs: what to export; what is made already is left alone.
@@ -153,9 +156,15 @@ def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = 
     todo = [job for job in jobs if not is_made(job)]
     if not todo:
         return 0
-    # Fresh processes: the CAD kernel's and the simulator's threads do not survive a fork.
+    # Fresh processes: the CAD kernel's and the simulator's threads do not survive a fork. Ctrl-C reaches them too; they
+    # leave it to this process and finish the folders that they are at.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max_workers=min(workers, len(todo)), mp_context=context) as pool:
+    with ProcessPoolExecutor(
+        max_workers=min(workers, len(todo)),
+        mp_context=context,
+        initializer=signal.signal,
+        initargs=(signal.SIGINT, signal.SIG_IGN),
+    ) as pool:
         running: dict[Future[dict[str, Any]], Job] = {pool.submit(run, job): job for job in todo}
         try:
             while running:

@@ -192,6 +192,10 @@ def _many(jobs: "list[Job]", workers: int) -> None:
             bar.advance(task)
             bar.console.print(f"wrote {job.folder}")
 
-        made = run_all(jobs, workers=workers, done=done)
+        try:
+            made = run_all(jobs, workers=workers, done=done)
+        except KeyboardInterrupt:
+            bar.console.print("interrupted; the same command goes on from here")
+            raise
         bar.update(task, completed=len(jobs))
     click.echo(f"{made} made, {len(jobs) - made} there already")

@@ -17,8 +17,8 @@ HEXAGON_HEIGHT_MM = {3.0: 2.0, 4.0: 2.8, 5.0: 3.5}
 HEXAGON_FLATS_MM = {3.0: 5.5, 4.0: 7.0, 5.0: 8.0}
 """Width across flats (ISO 4017), by thread."""
 _STANDARDS = {"cap": "cap screw (ISO 4762)", "hexagon": "hexagon screw (ISO 4017)"}
-_FROM_8_MM = "countersunk (ISO 10642)"
-_SHORTER = "countersunk (ISO 14581)"  # ISO 10642 begins at 8 mm
+_COMMON = "countersunk (ISO 10642)"
+_SMALL = "countersunk (ISO 14581)"  # ISO 10642 begins at M3 and 8 mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +136,7 @@ def screw_part(
         drawn = (cylinder(float(radius), seat_mm - direction * HEXAGON_HEIGHT_MM[size], seat_mm), *drawn)
     # In a population the lengths differ, and nobody reads the note.
     long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
-    standard = _STANDARDS.get(head) or (_FROM_8_MM if np.min(length) >= 8.0 else _SHORTER)
+    standard = _STANDARDS.get(head) or (_COMMON if np.min(length) >= 8.0 and size >= 3.0 else _SMALL)
     part = Part(
         name=name,
         material=material,

@@ -73,7 +73,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
                 ),
             ),
             places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -face)),
-            note="3 mm sheet EN AW-6082 T6",
+            note="3 mm sheet EN AW-6082 T6; countersink the bolt holes outside",
         ),
         Part(
             name="shank_core",
@@ -202,7 +202,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             material=STEEL,
             process="machined",
             prisms=sprocket_prisms(d),
-            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); the same part as drive_sprocket, countersunk",
+            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
         ),
         screw_part(
             "knee_sprocket_screw",

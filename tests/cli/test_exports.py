@@ -1,6 +1,12 @@
 """The export command: what it refuses, and one small export."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -49,3 +55,46 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
         "thigh_plate_outer.dxf",
     ]
     assert all(check["passed"] for check in json.loads((folder / "checks.json").read_text()))
+
+
+@pytest.mark.long
+def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
+    """Ctrl-C reaches the whole group of processes, as from a terminal; folders are whole or not there."""
+    words = [sys.executable, "-m", "pareto_monoped"]
+    study = Path(__file__).parent.parent.parent / "studies" / "quick.toml"
+    db, folder = tmp_path / "quick.db", tmp_path / "front"
+    subprocess.run([*words, "run", study, "--db", db, "--evaluations", "80"], check=True, capture_output=True)
+    rows = subprocess.run([*words, "front", db], check=True, capture_output=True, text=True).stdout.splitlines()[1:]
+    every = max(1, len(rows) // 3)
+    export = [
+        *words,
+        "export",
+        db,
+        "--front",
+        "--every",
+        str(every),
+        "--workers",
+        "2",
+        "--formats",
+        "dxf",
+        "-o",
+        folder,
+    ]
+    with subprocess.Popen(export, stderr=subprocess.PIPE, text=True, start_new_session=True) as running:
+        while not any(folder.glob("trial_*/design.json")):
+            assert running.poll() is None
+            time.sleep(0.1)
+        os.killpg(running.pid, signal.SIGINT)
+        told = running.communicate(timeout=120)[1]
+    assert running.returncode == 130
+    assert "Traceback" not in told
+    assert "the same command goes on from here" in told
+    made = sorted(folder.iterdir())
+    assert all((path / "design.json").is_file() for path in made)
+    expected = -(-len(rows) // every)
+    assert 1 <= len(made) < expected
+    before = {path.name: (path / "design.json").stat().st_mtime_ns for path in made}
+    again = subprocess.run(export, check=True, capture_output=True, text=True)
+    assert again.stdout == f"{expected - len(made)} made, {len(made)} there already\n"
+    assert len(list(folder.iterdir())) == expected
+    assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
