@@ -58,6 +58,7 @@ class Joints:
 
     Attributes:
         damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint.
+        motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft, felt by its joint times the ratio squared.
         hip_stop, knee_stop: end stops; None: the joint turns freely.
     """
 
@@ -65,6 +66,7 @@ class Joints:
 
     damping_n_m_s_per_rad: NotNegative
     friction_n_m: NotNegative
+    motor_damping_n_m_s_per_rad: NotNegative = 0.0
     hip_stop: EndStop | None = None
     knee_stop: EndStop | None = None
 

@@ -58,6 +58,7 @@ def template_mjcf(calibration: Calibration, user_data: int) -> str:
         "site_pos": np.array([[0.0, 0.0, -0.4]]),
         "geom_size": np.array([[0.0, 0.0, 1.0], [0.03, 0.0, 0.0]]),
         "dof_armature": np.ones(4),
+        "dof_damping": np.ones(4),
         "actuator_ctrlrange": np.array([[-1.0, 1.0], [-1.0, 1.0]]),
     }
     start = start_qpos(calibration, np.zeros(1), np.ones(1))[0]
@@ -79,6 +80,9 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
     foot[:, 0, 2] = -robots.shank_length_m
     armature = np.zeros((n, 4 if slides else 3))
     armature[:, -2:] = robots.armature_kg_m2
+    joints = calibration.joints
+    damping = np.zeros_like(armature)
+    damping[:, -2:] = joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
     limit = calibration.drive.peak_torque_scale * robots.peak_torque_n_m
     return {
         "body_mass": mass,
@@ -91,6 +95,7 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
             [np.tile([0.0, 0.0, 1.0], (n, 1)), robots.foot_radius_m[:, None] * [1.0, 0.0, 0.0]], axis=1
         ),
         "dof_armature": armature,
+        "dof_damping": damping,
         "actuator_ctrlrange": np.stack([-limit, limit], axis=-1),
     }
 
@@ -151,7 +156,7 @@ def _document(
                 f' limited="true" range="{_n(stop.lower_rad, stop.upper_rad)}" solreflimit="{_n(*solref)}"'
                 f' solimplimit="{_n(*solimp)}"'
             )
-        armature, damping = fields["dof_armature"][-2 + k], joints.damping_n_m_s_per_rad
+        armature, damping = fields["dof_armature"][-2 + k], fields["dof_damping"][-2 + k]
         return (
             f'<joint name="{name}" type="hinge" axis="0 1 0" armature="{_n(armature)}" damping="{_n(damping)}"'
             f"{friction_loss}{limit}/>"

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -114,3 +116,16 @@ def test_end_stops_push_like_the_documented_bumper(designs, joint):
     torque = (data.efc_aref / data.efc_R)[kind]
     expected = stop.stiffness_n_m_per_rad * stop.width_rad + stop.damping_n_m_s_per_rad * 2.0
     assert torque == pytest.approx([expected])
+
+
+def test_a_joint_feels_its_motors_damping_times_the_ratio_squared(designs):
+    """The power b w^2 lost at the motor's shaft, w = g times the joint's speed; the slides have no friction."""
+    start = load_calibration("paper")
+    calibration = replace(
+        start, joints=replace(start.joints, damping_n_m_s_per_rad=0.3, motor_damping_n_m_s_per_rad=0.05)
+    )
+    robots = plausible_robots(designs)
+    hip, knee = robots.ratio[0]
+    assert hip != knee
+    damping = _compiled(designs, calibration).dof_damping.reshape(3, -1)[:, 0]
+    np.testing.assert_allclose(damping, [0.0, 0.3 + 0.05 * hip**2, 0.3 + 0.05 * knee**2], rtol=1e-12)
