@@ -1,11 +1,17 @@
 """Robots over the whole design space pass every check: both families, all published gear sets, all link lengths."""
 
+import csv
+from itertools import pairwise
+
+import mujoco
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.cad.checks import run_checks
+from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.robot import build_robot, robot_arrays
@@ -34,6 +40,29 @@ def test_a_design_passes_every_check(actuator_map, numbers):
 
 # Both families, where a motor has both.
 _MOTORS = {"U12": (8.0, 4.5), "U8": (5.0, 6.8), "U10": (8.0, 4.5), "MN8014": (8.0, 4.5), "MAD_M6C12": (6.0, 5.0)}
+
+
+@pytest.mark.parametrize(
+    "motor", [name if name == "MAD_M6C12" else pytest.param(name, marks=pytest.mark.long) for name in motor_names()]
+)
+def test_a_robot_of_any_motor_is_exported(motor, calibration, tmp_path):
+    """Its actuators fit one leg, its files load, its parts list adds up to its mass."""
+    knee_ratio, hip_ratio = _MOTORS.get(motor, (7.9, 4.0))
+    design = PAPER_CASES["C"].design.replace({"knee_ratio": knee_ratio, "hip_ratio": hip_ratio})
+    formats = ("dxf", "mjcf", "urdf")
+    summary = export_design(design, map_for(motor), calibration, tmp_path / "robot", formats=formats)
+    assert all(check.passed for check in summary.checks)
+    assert summary.record["jumps"]["as_built"]["status"] == "ok"
+    for name in ("monoped.xml", "monoped.urdf"):
+        mujoco.MjModel.from_xml_path(str(tmp_path / "robot" / "model" / name))
+    with (tmp_path / "robot" / "bom.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert sum(float(row["total_g"]) for row in rows) == pytest.approx(1e3 * summary.record["mass_kg"], abs=0.5)
+    assert {row["made_or_bought"] for row in rows} == {"made", "bought"}
+    assert all("links of" in row["note"] for row in rows if row["part"].startswith("chain_"))
+    for path in (tmp_path / "robot" / "laser").iterdir():
+        codes = [line.strip() for line in path.read_text().split("ENTITIES")[1].splitlines()]
+        assert len({following for code, following in pairwise(codes) if code == "8"}) == 1
 
 
 @pytest.mark.parametrize(
