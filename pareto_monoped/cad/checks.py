@@ -4,13 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.BRepGProp import BRepGProp
-from OCP.GProp import GProp_GProps
 
 from pareto_monoped.cad.assembly import Instance
+from pareto_monoped.cad.kernel import SolidFacts
 from pareto_monoped.cad.overlaps import Overlap, in_gear_cycle, in_pose, in_working_range
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.retention import FASTENER, PLAY_MM, loose_parts
@@ -47,10 +44,11 @@ def run_checks(product: Product, arrays: RobotArrays) -> tuple[Check, ...]:
         product: solids, meshes, instances.
         arrays: the same robot as the simulation carries it, one row, masses from the parts.
     """
-    solids = [_solid_properties(kind) for kind in product.unique]
+    # First what is done here: meanwhile the kernel builds the solids.
     pose, pairs = in_pose(product)
     gears, steps = in_gear_cycle(product)
     moving, clearance = in_working_range(product)
+    solids = solid_properties(product)
     return (
         _valid(product),
         _watertight(product),
@@ -67,8 +65,8 @@ def run_checks(product: Product, arrays: RobotArrays) -> tuple[Check, ...]:
 def _valid(product: Product) -> Check:
     bad = [
         f"{kind.name}: its solid is not valid"
-        for kind in product.unique
-        if not BRepCheck_Analyzer(kind.solid.wrapped, True, True).IsValid()
+        for kind, solid in zip(product.unique, product.solids.result(), strict=True)
+        if not solid.valid
     ]
     return Check(
         name="solids are valid", looked_at=f"{len(product.unique)} parts", worst=f"{len(bad)} bad", failures=tuple(bad)
@@ -78,8 +76,7 @@ def _valid(product: Product) -> Check:
 def _watertight(product: Product) -> Check:
     failures, worst = [], 0.0
     for kind in product.unique:
-        mesh = trimesh.Trimesh(kind.mesh.points_mm, kind.mesh.triangles, process=False)
-        if not (mesh.is_watertight and mesh.is_winding_consistent):
+        if not kind.mesh.is_closed:
             failures.append(f"{kind.name}: its mesh is not closed")
         share = abs(kind.mesh.volume_mm3 / float(kind.part.volume_mm3()) - 1.0)
         worst = max(worst, share)
@@ -95,12 +92,12 @@ def _watertight(product: Product) -> Check:
 
 def _part_masses(product: Product, solids: list[MassProperties]) -> Check:
     failures, worst = [], 0.0
-    for kind, solid in zip(product.unique, solids, strict=True):
+    for kind, solid, facts in zip(product.unique, solids, product.solids.result(), strict=True):
         cad, record = float(solid.mass_kg), float(kind.part.unit_mass_kg())
         share = abs(cad / record - 1.0)
         if kind.part.catalogue_mass_kg is not None:
             # A bought part weighs what its catalogue says; its envelope must still be the record's.
-            share = max(share, abs(float(kind.solid.volume) / float(kind.part.volume_mm3()) - 1.0))
+            share = max(share, abs(facts.volume_mm3 / float(kind.part.volume_mm3()) - 1.0))
         worst = max(worst, share)
         if share > PART_MASS_SHARE:
             failures.append(f"{kind.name}: CAD {cad:.5f} kg, record {record:.5f} kg, {share:.2%} off")
@@ -145,17 +142,12 @@ def body_properties(product: Product, solids: list[MassProperties], body: str) -
 
 def solid_properties(product: Product) -> list[MassProperties]:
     """Mass properties of every unique part's solid in its own frame, with catalogue masses where there are."""
-    return [_solid_properties(kind) for kind in product.unique]
+    return [_solid_properties(kind, facts) for kind, facts in zip(product.unique, product.solids.result(), strict=True)]
 
 
-def _solid_properties(kind: UniquePart) -> MassProperties:
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(kind.solid.wrapped, properties)
-    volume, centre = properties.Mass(), properties.CentreOfMass()
-    com = np.array([centre.X(), centre.Y(), centre.Z()])
-    matrix = properties.MatrixOfInertia()
-    about_com = np.array([[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)])
-    central = 0.5 * np.trace(about_com) * np.eye(3) - about_com
+def _solid_properties(kind: UniquePart, facts: SolidFacts) -> MassProperties:
+    volume, com = facts.volume_mm3, facts.centre_mm
+    central = 0.5 * np.trace(facts.inertia_mm5) * np.eye(3) - facts.inertia_mm5
     density = kind.part.material.density_kg_per_m3 * 1e-9
     if kind.part.catalogue_mass_kg is not None:
         density = float(kind.part.catalogue_mass_kg) / volume

@@ -4,12 +4,11 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import unit_frame
-from pareto_monoped.cad.meshes import Mesh, mesh_from, mesh_of, placed
+from pareto_monoped.cad.meshes import Mesh, joined, mesh_of, placed
 from pareto_monoped.cad.product import Product
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
@@ -57,22 +56,19 @@ def is_hidden(part: Part) -> bool:
 
 def visuals(product: Product) -> tuple[Visual, ...]:
     """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
-    shown: dict[tuple[str, str], list[m3.Manifold]] = {}
+    shown: dict[tuple[str, str], list[tuple[Mesh, Floats]]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
-    coarse: dict[int, m3.Manifold] = {}
     for instance, kind in product.placed():
         if is_hidden(instance.part) or instance.part.name.endswith("_screw"):
             continue
-        if id(kind) not in coarse:
-            coarse[id(kind)] = mesh_of(kind.part, VISUAL_TOLERANCE_MM).body
         key = (instance.body, kind.part.material.name.replace(" ", "_"))
-        shown.setdefault(key, []).append(placed(coarse[id(kind)], instance.in_body))
+        shown.setdefault(key, []).append((mesh_of(kind.part, VISUAL_TOLERANCE_MM), instance.in_body))
         colours.setdefault(key, kind.part.material.colour)
     return tuple(
         Visual(
             name=f"{body}_{material}",
             body=body,
-            mesh=mesh_from(m3.Manifold.compose(members)),
+            mesh=joined(members),
             colour=colours[body, material],
         )
         for (body, material), members in shown.items()

@@ -1,4 +1,4 @@
-"""Pictures without a display: triangles -> pixels with a depth buffer in NumPy, and a PNG writer.
+"""Pictures without a display: shaded triangles, and a PNG writer.
 
 Parallel projection, light from the viewer's shoulder, dark lines where parts or their depth change. Needs no
 graphics library display.
@@ -19,6 +19,7 @@ _LIGHTS = (((-0.35, 0.55, 0.75), 0.75), ((0.7, 0.1, 0.4), 0.25))  # directions i
 _AMBIENT = 0.28
 _LINE = np.array([0.10, 0.11, 0.13])
 _PAPER = np.array([1.0, 1.0, 1.0])
+_LINE_DEPTH_MM = 1.5  # a line is drawn where the depth jumps by more, beyond a slope
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,12 +47,13 @@ class View:
         return np.stack([right, np.cross(back, right), back])
 
 
-def draw(
-    bodies: Sequence[Body], view: View, *, width: int, height: int, margin: float = 0.04, oversampling: int = 2
-) -> NDArray[np.uint8]:
+def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin: float = 0.04) -> NDArray[np.uint8]:
     """A picture of all bodies, scaled to fill it, shape (height, width, 3)."""
+    from pareto_monoped.cad import raster
+
     axes = view.axes()
-    w, h = width * oversampling, height * oversampling
+    # Two by two pixels are drawn for each of the picture, which smooths it.
+    w, h = 2 * width, 2 * height
     points = [body.points_mm @ axes.T for body in bodies]
     low = np.min([p[:, :2].min(axis=0) for p in points], axis=0)
     high = np.max([p[:, :2].max(axis=0) for p in points], axis=0)
@@ -72,13 +74,13 @@ def draw(
     pixels[..., 0] = 0.5 * w + (triangles[..., 0] - middle[0]) * scale
     pixels[..., 1] = 0.5 * h - (triangles[..., 1] - middle[1]) * scale
     pixels[..., 2] = triangles[..., 2]
-    winner, depth = _nearest(pixels, w, h)
-    colours = np.concatenate([np.concatenate(shade), _PAPER[None]])
-    image = colours[winner]
-    owners = np.concatenate([np.concatenate(owner), [-1]])[winner]
-    image[_lines(owners, depth, scale)] = _LINE
-    small = image.reshape(height, oversampling, width, oversampling, 3).mean(axis=(1, 3))
-    return np.asarray(np.clip(small * 255.0 + 0.5, 0, 255), dtype=np.uint8)
+    count = len(triangles)
+    winner, depth = np.full((h, w), count, dtype=np.int32), np.full((h, w), -np.inf)
+    raster.nearest(pixels, winner, depth)
+    owners = np.concatenate([*owner, [-1]]).astype(np.int32)
+    colours = np.concatenate([*shade, _PAPER[None]])
+    image = raster.composed(winner, depth, owners, colours, _LINE, _LINE_DEPTH_MM + 6.0 / scale)
+    return np.asarray(np.clip(image * 255.0 + 0.5, 0, 255), dtype=np.uint8)
 
 
 def png(image: NDArray[np.uint8]) -> bytes:
@@ -107,90 +109,3 @@ def _lit(normal: Floats) -> Floats:
         unit = np.asarray(direction) / np.linalg.norm(direction)
         light += strength * np.clip(normal @ unit, 0.0, None)
     return np.minimum(light, 1.15)
-
-
-def _nearest(triangles: Floats, width: int, height: int) -> tuple[NDArray[np.int64], Floats]:
-    """Which triangle is nearest at each pixel (the last index plus one where none is), and how near.
-
-    Every triangle becomes rows of pixels between its edges, every row its pixels: no more are looked at than covered.
-    """
-    count = len(triangles)
-    winner = np.full(height * width, count, dtype=np.int64)
-    nearest = np.full(height * width, -np.inf)
-    # In portions, so that memory stays bounded.
-    area = np.abs(_doubled_area(triangles))
-    portion = np.cumsum(area + 8.0) // 8.0e6
-    for which in np.unique(portion):
-        chosen = np.flatnonzero(portion == which)
-        pixel, depth, index = _covered(triangles[chosen], width, height)
-        # The last of equal pixels wins when assigned, so sort by depth.
-        order = np.argsort(depth, kind="stable")
-        pixel, depth, index = pixel[order], depth[order], index[order]
-        local = np.full(height * width, -1, dtype=np.int64)
-        local[pixel] = np.arange(len(pixel))
-        seen = np.flatnonzero(local >= 0)
-        best = local[seen]
-        nearer = depth[best] > nearest[seen]
-        winner[seen[nearer]] = chosen[index[best[nearer]]]
-        nearest[seen[nearer]] = depth[best[nearer]]
-    return winner.reshape(height, width), nearest.reshape(height, width)
-
-
-def _doubled_area(t: Floats) -> Floats:
-    a, b, c = t[:, 0], t[:, 1], t[:, 2]
-    return (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-
-
-def _covered(t: Floats, width: int, height: int) -> tuple[NDArray[np.int64], Floats, NDArray[np.int64]]:
-    """Every pixel whose centre a triangle covers: the pixel's number, its depth, the triangle's index."""
-    y = t[..., 1]
-    first = np.clip(np.ceil(y.min(axis=1) - 0.5), 0, height).astype(np.int64)
-    last = np.clip(np.ceil(y.max(axis=1) - 0.5), 0, height).astype(np.int64)
-    rows = last - first
-    index = np.repeat(np.arange(len(t)), rows)
-    row = first[index] + _counting(rows)
-    middle = row + 0.5
-    left, right = np.full(len(row), np.inf), np.full(len(row), -np.inf)
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        a, b = t[index, i], t[index, j]
-        rise = b[:, 1] - a[:, 1]
-        crosses = (np.minimum(a[:, 1], b[:, 1]) <= middle) & (middle <= np.maximum(a[:, 1], b[:, 1])) & (rise != 0.0)
-        x = a[:, 0] + (middle - a[:, 1]) / np.where(rise == 0.0, 1.0, rise) * (b[:, 0] - a[:, 0])
-        left = np.where(crosses, np.minimum(left, x), left)
-        right = np.where(crosses, np.maximum(right, x), right)
-    left, right = np.nan_to_num(left, posinf=width), np.nan_to_num(right, neginf=-1.0)
-    start = np.clip(np.ceil(left - 0.5), 0, width).astype(np.int64)
-    stop = np.clip(np.ceil(right - 0.5), 0, width).astype(np.int64)
-    columns = np.maximum(stop - start, 0)
-    span = np.repeat(np.arange(len(row)), columns)
-    column = start[span] + _counting(columns)
-    triangle, pixel_row = index[span], row[span]
-    # Depth is linear over a triangle.
-    area = _doubled_area(t)
-    area = np.where(area == 0.0, 1.0, area)
-    a, b, c = t[:, 0], t[:, 1], t[:, 2]
-    slope_x = ((b[:, 2] - a[:, 2]) * (c[:, 1] - a[:, 1]) - (c[:, 2] - a[:, 2]) * (b[:, 1] - a[:, 1])) / area
-    slope_y = ((c[:, 2] - a[:, 2]) * (b[:, 0] - a[:, 0]) - (b[:, 2] - a[:, 2]) * (c[:, 0] - a[:, 0])) / area
-    at = a[triangle]
-    depth = at[:, 2] + slope_x[triangle] * (column + 0.5 - at[:, 0]) + slope_y[triangle] * (pixel_row + 0.5 - at[:, 1])
-    return pixel_row * width + column, depth, triangle
-
-
-def _counting(lengths: NDArray[np.int64]) -> NDArray[np.int64]:
-    """0, 1, ... up to each length, one after the other."""
-    ends = np.cumsum(lengths)
-    return np.arange(int(ends[-1]) if len(ends) else 0) - np.repeat(ends - lengths, lengths)
-
-
-def _lines(owner: NDArray[np.int64], depth: Floats, scale: float) -> NDArray[np.bool_]:
-    """Pixels at which another body begins or the depth jumps by more than 1.5 mm beyond a slope."""
-    line = np.zeros(owner.shape, dtype=bool)
-    finite = np.where(np.isfinite(depth), depth, -1e6)
-    for axis in (0, 1):
-        here, there = (slice(None, -1), slice(1, None))
-        one = (here, slice(None)) if axis == 0 else (slice(None), here)
-        two = (there, slice(None)) if axis == 0 else (slice(None), there)
-        step = np.abs(finite[one] - finite[two])
-        edge = (owner[one] != owner[two]) | (step > 1.5 + 6.0 / scale)
-        line[one] |= edge
-    return line

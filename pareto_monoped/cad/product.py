@@ -1,6 +1,7 @@
-"""A robot as a product: its unique parts with solids and meshes, and all placed instances."""
+"""A robot as a product: its unique parts with meshes and facts of their solids, and all placed instances."""
 
 from collections.abc import Iterator
+from concurrent.futures import Future
 from dataclasses import dataclass
 
 import manifold3d as m3
@@ -8,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Pose, instances
+from pareto_monoped.cad.kernel import Leaf, SolidFacts, Tree, solid_facts
 from pareto_monoped.cad.meshes import Mesh, mesh_of, placed
-from pareto_monoped.cad.solids import Solid, solid_of
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.robot import Robot
 
@@ -21,7 +22,6 @@ class UniquePart:
     Attributes:
         name: unique in the product and safe as a file name.
         part: the record.
-        solid: B-rep in the part's own frame, millimetres.
         mesh: triangles in the part's own frame, millimetres.
         count: how often the robot has it.
         units: the units that have it.
@@ -29,7 +29,6 @@ class UniquePart:
 
     name: str
     part: Part
-    solid: Solid
     mesh: Mesh
     count: int
     units: tuple[str, ...]
@@ -44,6 +43,7 @@ class Product:
         unique: every kind of part, in the order of the assembly.
         instances: every part in its place.
         kinds: for each instance the index of its kind in ``unique``.
+        solids: what the kernel finds about the solid of each kind, once it has built them.
     """
 
     robot: Robot
@@ -51,6 +51,7 @@ class Product:
     unique: tuple[UniquePart, ...]
     instances: tuple[Instance, ...]
     kinds: tuple[int, ...]
+    solids: Future[list[SolidFacts]]
 
     def placed(self) -> Iterator[tuple[Instance, UniquePart]]:
         """Every instance with its kind."""
@@ -69,6 +70,8 @@ def build_product(robot: Robot, pose: Pose) -> Product:
     order: dict[int, list[Instance]] = {}
     for instance in found:
         order.setdefault(id(instance.part), []).append(instance)
+    # The kernel builds its solids while the meshes are made here.
+    solids = solid_facts([members[0].part for members in order.values()])
     unique = []
     for members in order.values():
         part = members[0].part
@@ -77,7 +80,6 @@ def build_product(robot: Robot, pose: Pose) -> Product:
             UniquePart(
                 name=part_file_name(units, part.name),
                 part=part,
-                solid=solid_of(part),
                 mesh=mesh_of(part),
                 count=len(members),
                 units=units,
@@ -90,6 +92,19 @@ def build_product(robot: Robot, pose: Pose) -> Product:
         unique=tuple(unique),
         instances=found,
         kinds=tuple(index[id(instance.part)] for instance in found),
+        solids=solids,
+    )
+
+
+def step_tree(product: Product, name: str) -> Tree:
+    """What the kernel writes a product's STEP files from."""
+    units: dict[str, list[Leaf]] = {unit.name: [] for unit in product.robot.units}
+    for instance, kind in product.placed():
+        units[instance.unit].append(Leaf(kind=kind.name, matrix=instance.world))
+    return Tree(
+        name=name,
+        kinds={kind.name: kind.part for kind in product.unique},
+        units={unit: tuple(leaves) for unit, leaves in units.items()},
     )
 
 

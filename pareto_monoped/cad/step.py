@@ -22,12 +22,12 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from OCP.XSControl import XSControl_WorkSession
 
-from pareto_monoped.cad.product import Product
-from pareto_monoped.cad.solids import Solid
+from pareto_monoped.cad.kernel import Tree
 
 Colour = tuple[float, float, float]
 
@@ -58,8 +58,8 @@ class _Document:
         self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
         self.shapes.SetAutoNaming_s(False)
 
-    def part(self, solid: Solid, name: str) -> TDF_Label:
-        label = self.shapes.AddShape(solid.wrapped, False)
+    def part(self, solid: TopoDS_Shape, name: str) -> TDF_Label:
+        label = self.shapes.AddShape(solid, False)
         TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
         return label
 
@@ -95,27 +95,23 @@ class _Document:
         return _coloured(_renumbered(stream.getvalue()), colours)
 
 
-def part_step(solid: Solid, name: str, colour: Colour) -> bytes:
+def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
     """One part, in millimetres."""
     document = _Document()
     document.part(solid, name)
     return document.text(name, {name: colour})
 
 
-def assembly_step(product: Product, name: str) -> bytes:
+def assembly_step(tree: Tree, solids: Mapping[str, TopoDS_Shape]) -> bytes:
     """The assembly as a tree, the robot, its units, their parts; every kind of part is written once."""
     document = _Document()
-    labels = [document.part(kind.solid, kind.name) for kind in product.unique]
+    labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []
-    for unit in product.robot.units:
-        members = [
-            (product.unique[kind].name, labels[kind], instance.world)
-            for instance, kind in zip(product.instances, product.kinds, strict=True)
-            if instance.unit == unit.name
-        ]
-        units.append((unit.name, document.assembly(unit.name, members), np.eye(4)))
-    document.assembly(name, units)
-    return document.text(name, {kind.name: kind.part.material.colour for kind in product.unique})
+    for unit, leaves in tree.units.items():
+        members = [(leaf.kind, labels[leaf.kind], leaf.matrix) for leaf in leaves]
+        units.append((unit, document.assembly(unit, members), np.eye(4)))
+    document.assembly(tree.name, units)
+    return document.text(tree.name, {name: part.material.colour for name, part in tree.kinds.items()})
 
 
 def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:

@@ -8,6 +8,7 @@ import pytest
 from pareto_monoped.cad import batch, export
 from pareto_monoped.cad.checks import Check
 from pareto_monoped.cad.export import as_built, export_design
+from pareto_monoped.cad.folder import safe
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
 from pareto_monoped.robot import build_robot, leg_dimensions
@@ -94,7 +95,7 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
     with pytest.raises(DesignError):
         export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot")
     with pytest.raises(OutputError, match=r"part name '\.\./x'"):
-        export._safe("../x")
+        safe("../x")
 
 
 def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
