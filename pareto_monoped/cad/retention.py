@@ -33,7 +33,7 @@ FASTENER = re.compile(r"(screw|bolt)(_near|_far)?$")
 _GROUND = "base_rod"  # the test stand's carriage clamps to the rods
 _AXES = ("x", "y", "z")  # of the assembly with both joints at zero; y is the joints' axis
 _CONTACT_MM2 = 0.25  # a square of 0.5 mm: less is no stop but the facets of a round fit
-_TOLERANCE_MM = 0.01
+_TOLERANCE_MM = 0.02
 _TOUCH_MM = 1e-6
 _ALONG_MM = 0.3  # least common height of two parts that stop each other across the axis
 _SKIN_MM = 0.05  # a thread's core lies this close to its hole
@@ -67,8 +67,9 @@ class _Slab:
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     """Every instance that can move, and how many were looked at."""
     placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.0))
-    runs_into = _contacts(placed)
-    tied = _threads(placed) | _joints(placed, runs_into)
+    slabs = _slabs(placed)
+    runs_into = _contacts(placed, slabs)
+    tied = _threads(placed, slabs) | _joints(placed, runs_into)
     ground = np.array([instance.part.name == _GROUND for instance in placed])
     free: list[list[str]] = [[] for _ in placed]
     # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
@@ -101,9 +102,8 @@ def _reaches(edges: Bools, ground: Bools) -> Bools:
         held = more
 
 
-def _contacts(placed: Sequence[Instance]) -> dict[tuple[str, str], Bools]:
+def _contacts(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> dict[tuple[str, str], Bools]:
     """For each direction a matrix, true at (i, j) where instance i, moved that way, runs into instance j."""
-    slabs = _slabs(placed)
     owner = np.array([slab.owner for slab in slabs])
     low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
     bounds = np.array([slab.section.bounds() for slab in slabs])
@@ -114,34 +114,40 @@ def _contacts(placed: Sequence[Instance]) -> dict[tuple[str, str], Bools]:
         # What i runs into going one way runs into i going the other.
         found[axis, "+"][i, j] = found[axis, "-"][j, i] = True
 
+    shared: dict[tuple[int, int], float] = {}
+
+    def common_mm2(a: int, b: int) -> float:
+        pair = (min(a, b), max(a, b))
+        if pair not in shared:
+            shared[pair] = (slabs[a].section ^ slabs[b].section).area()
+        return shared[pair]
+
     def meeting(shift: NDArray[np.float64]) -> Bools:
         mine = bounds + np.tile(shift, 2)
         return np.all((mine[:, None, :2] < bounds[None, :, 2:]) & (mine[:, None, 2:] > bounds[None, :, :2]), axis=2)
 
     gap = low[None] - high[:, None]
     before = others & (gap > -_TOUCH_MM) & (gap < PLAY_MM) & meeting(np.zeros(2))
-    for a, b in np.argwhere(before):
+    for a, b in np.argwhere(before).tolist():
         i, j = int(owner[a]), int(owner[b])
-        if not found["y", "+"][i, j] and (slabs[a].section ^ slabs[b].section).area() > _CONTACT_MM2:
+        if not found["y", "+"][i, j] and common_mm2(a, b) > _CONTACT_MM2:
             add("y", i, j)
     beside = others & (np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]) > _ALONG_MM)
     for axis, direction in (("x", (1.0, 0.0)), ("z", (0.0, 1.0))):
         shift = PLAY_MM * np.array(direction)
-        for a, b in np.argwhere(beside & meeting(shift)):
+        for a, b in np.argwhere(beside & meeting(shift)).tolist():
             i, j = int(owner[a]), int(owner[b])
             if found[axis, "+"][i, j]:
                 continue
-            one, other = slabs[a].section, slabs[b].section
-            cut = (one.translate((float(shift[0]), float(shift[1]))) ^ other).area()
-            if cut > _CONTACT_MM2 and cut - (one ^ other).area() > _CONTACT_MM2:
+            cut = (slabs[a].section.translate((float(shift[0]), float(shift[1]))) ^ slabs[b].section).area()
+            if cut > _CONTACT_MM2 and cut - common_mm2(a, b) > _CONTACT_MM2:
                 add(axis, i, j)
     return found
 
 
-def _threads(placed: Sequence[Instance]) -> Bools:
+def _threads(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> Bools:
     """True at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
-    slabs = _slabs(placed)
     low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
     bounds = np.array([slab.section.bounds() for slab in slabs])
     for a, screw in enumerate(slabs):
@@ -153,7 +159,7 @@ def _threads(placed: Sequence[Instance]) -> Bools:
         common = np.minimum(high, screw.high) - np.maximum(low, screw.low)
         around = np.all((bounds[:, :2] < bounds[a, :2]) & (bounds[:, 2:] > bounds[a, 2:]), axis=1)
         depth: dict[int, float] = {}
-        for b in np.flatnonzero(around & (common > _TOUCH_MM)):
+        for b in np.flatnonzero(around & (common > _TOUCH_MM)).tolist():
             if (skin ^ slabs[b].section).area() > 0.9 * skin.area():
                 depth[slabs[b].owner] = depth.get(slabs[b].owner, 0.0) + float(common[b])
         for j, deep in depth.items():
