@@ -24,6 +24,8 @@ def test_paper_is_literal():
     assert paper.gate.rule == "contact"
     assert paper.simulation.timestep_s == 0.002
     assert not paper.drive.voltage_limit
+    assert paper.controller.gravity_feed_forward == 1.0
+    assert paper.mass.link_mass_scale == 1.0
 
 
 def test_ideal_is_reference_without_losses():
