@@ -1,10 +1,7 @@
 """STL, 3MF and GLB from the meshes."""
 
 import io
-import json
-import struct
 import zipfile
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +9,6 @@ from pareto_monoped.cad.meshes import Mesh
 from pareto_monoped.cad.product import Product
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # the zip format's first date: a real one would make each export differ
-_VERTICES, _TRIANGLES, _FLOAT, _UNSIGNED = 34962, 34963, 5126, 5125  # glTF's numbers for targets and types
 _CONTENT_TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
     '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
@@ -65,73 +61,28 @@ def threemf(mesh: Mesh, name: str) -> bytes:
 
 def glb(product: Product) -> bytes:
     """The assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored once."""
+    import trimesh  # here, because it takes longer to import than all other files to write
+
+    scene = trimesh.Scene(base_frame="world")
     metres = np.diag([1e-3, 1e-3, 1e-3, 1.0])
     upright = np.array([[0.0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])  # x forward, y left, z up to that
-    materials = list(dict.fromkeys(kind.part.material for kind in product.unique))
-    data = bytearray()
-    views: list[dict[str, int]] = []
-    accessors: list[dict[str, Any]] = []
     for kind in product.unique:
-        points, corners = kind.mesh.points_mm.astype("<f4"), kind.mesh.triangles.astype("<u4")
-        for content, target in ((points, _VERTICES), (corners, _TRIANGLES)):
-            views.append({"buffer": 0, "byteOffset": len(data), "byteLength": content.nbytes, "target": target})
-            data += content.tobytes()
-        view = len(views) - 2
-        extent = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
-        accessors += [
-            {"bufferView": view, "componentType": _FLOAT, "count": len(points), "type": "VEC3", **extent},
-            {"bufferView": view + 1, "componentType": _UNSIGNED, "count": corners.size, "type": "SCALAR"},
-        ]
-    nodes = [
-        {
-            "name": instance.name,
-            "mesh": kind,
-            "matrix": (upright @ metres @ instance.world).T.ravel().tolist(),  # by columns
-        }
-        for instance, kind in zip(product.instances, product.kinds, strict=True)
-    ]
-    document = {
-        "asset": {"version": "2.0", "generator": "pareto-monoped"},
-        "scene": 0,
-        "scenes": [{"nodes": list(range(len(nodes)))}],
-        "nodes": nodes,
-        "meshes": [
-            {
-                "name": kind.name,
-                "primitives": [
-                    {
-                        "attributes": {"POSITION": 2 * k},
-                        "indices": 2 * k + 1,
-                        "material": materials.index(kind.part.material),
-                    }
-                ],
-            }
-            for k, kind in enumerate(product.unique)
-        ],
-        "materials": [
-            {
-                "name": material.name,
-                "pbrMetallicRoughness": {
-                    "baseColorFactor": [*material.colour, 1.0],
-                    "metallicFactor": 0.2,
-                    "roughnessFactor": 0.6,
-                },
-            }
-            for material in materials
-        ],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data)}],
-    }
-    text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    length = 12 + 8 + len(text) + 8 + len(data)
-    return b"".join(
-        (
-            struct.pack("<4sII", b"glTF", 2, length),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(data), b"BIN\0"),
-            data,
+        mesh = trimesh.Trimesh(kind.mesh.points_mm.astype(np.float32), kind.mesh.triangles, process=False)
+        material = trimesh.visual.material.PBRMaterial(
+            name=kind.part.material.name,
+            baseColorFactor=[*(round(255 * c) for c in kind.part.material.colour), 255],
+            metallicFactor=0.2,
+            roughnessFactor=0.6,
         )
-    )
+        mesh.visual = trimesh.visual.TextureVisuals(material=material)
+        scene.geometry[kind.name] = mesh
+    for instance, kind in product.placed():
+        scene.graph.update(
+            frame_from="world",
+            frame_to=instance.name,
+            matrix=upright @ metres @ instance.world,
+            geometry=kind.name,
+        )
+    data = scene.export(file_type="glb")
+    assert isinstance(data, bytes)
+    return data
