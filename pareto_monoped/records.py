@@ -72,4 +72,6 @@ def _line(kind: type, problem: ValidationError) -> str:
     message = first["msg"].removeprefix("Value error, ")
     if not key:
         return message
+    if first["type"] == "value_error":  # one of our own, which has value and cure
+        return f"{key}: {message}"
     return f"{key} = {first['input']!r}: {message[0].lower()}{message[1:]}; correct it"

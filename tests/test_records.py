@@ -24,6 +24,23 @@ class Thing:
     name: str = "thing"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    inner_mm: float
+    outer_mm: float
+
+    def __post_init__(self):
+        if self.inner_mm >= self.outer_mm:
+            raise ValueError(
+                f"inner_mm = {self.inner_mm}: must be less than outer_mm = {self.outer_mm}; correct one of them"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pair:
+    ring: Ring
+
+
 def test_values_become_a_record():
     thing = checked(Thing, {"mass_kg": 1, "shell": {"outer_diameter_mm": 2}}, source="file")
     assert thing == Thing(mass_kg=1.0, shell=Shell(outer_diameter_mm=2.0))
@@ -70,3 +87,10 @@ def test_unreadable_toml_is_one_line(tmp_path):
         read_toml(path, what="motor file")
     with pytest.raises(InputError, match="cannot be read"):
         read_toml(tmp_path, what="motor file")
+
+
+def test_a_complaint_of_a_records_own_ends_with_one_cure():
+    """It once ended with `correct one of them; correct it`."""
+    with pytest.raises(InputError) as caught:
+        checked(Pair, {"ring": {"inner_mm": 5.0, "outer_mm": 5.0}}, source="file")
+    assert str(caught.value) == "file: ring: inner_mm = 5.0: must be less than outer_mm = 5.0; correct one of them"
