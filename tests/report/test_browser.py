@@ -330,3 +330,21 @@ def test_twenty_thousand_trials_stay_small_and_quick(data, extras, folder, open_
     )
     assert took < 100.0
     tab.quiet(file)
+
+
+def test_no_dominated_point_lies_under_a_mark_and_takes_its_clicks(tab):
+    """Plotly gives a click to the smaller of two points: a diamond once could not be chosen."""
+    nearest = tab.page.evaluate(
+        """() => {
+            const gd = document.getElementById("front-chart"), { xaxis, yaxis } = gd._fullLayout;
+            const places = (name) => gd.data.filter((t) => t.name === name)
+                .flatMap((t) => t.x.map((x, i) => [xaxis.d2p(x), yaxis.d2p(t.y[i])]));
+            const cloud = places("dominated"), marks = [...places("front"), ...places("simulated")];
+            const away = ([x, y], [u, v]) => Math.hypot(x - u, y - v);
+            const nearest = (p) => Math.min(...marks.map((m) => away(p, m)));
+            return [cloud.length, marks.length, Math.min(...cloud.map(nearest))];
+        }"""
+    )
+    assert nearest[0] > 20
+    assert nearest[1] > 4
+    assert nearest[2] > 2.5

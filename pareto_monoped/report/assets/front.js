@@ -33,6 +33,16 @@ function viewRange() {
   return full ? { x: full.xaxis.range, y: full.yaxis.range } : home;
 }
 
+// What is drawn over the cloud, with how many cells it reaches to each side of its own.
+function marks() {
+  return [...state.visible].flatMap((study) => {
+    const { cases, front, trials: { columns: { energy_j: e, height_m: h } } } = page.studies[study];
+    const designs = show.front ? front.map((row) => ({ x: e[row], y: h[row], cells: 1 })) : [];
+    const paper = show.simulated ? cases.map((made) => ({ x: made.energy_j, y: made.height_m, cells: 2 })) : [];
+    return [...designs, ...paper];
+  });
+}
+
 // One row for each small cell of the view, so that as many are drawn as can be told apart.
 function thinned(study, letter, skip) {
   const { state: letters, columns: { energy_j: e, height_m: h } } = page.studies[study].trials;
@@ -40,6 +50,12 @@ function thinned(study, letter, skip) {
   const columns = Math.max(Math.floor((gd.clientWidth - 72) / CELL_PX), 50);
   const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
   const seen = new Set();
+  const cellAt = (u, v) => Math.floor(u * columns) * rows + Math.floor(v * rows);
+  // Under a mark nothing is drawn: a small point there would take the mark's clicks.
+  for (const mark of marks()) {
+    const u = (mark.x - x[0]) / (x[1] - x[0]), v = (mark.y - y[0]) / (y[1] - y[0]);
+    for (let i = -mark.cells; i <= mark.cells; i += 1) for (let j = -mark.cells; j <= mark.cells; j += 1) seen.add(cellAt(u + i / columns, v + j / rows));
+  }
   const kept = [];
   let within = 0;
   for (let row = 0; row < letters.length; row += 1) {
@@ -47,7 +63,7 @@ function thinned(study, letter, skip) {
     const u = (e[row] - x[0]) / (x[1] - x[0]), v = (h[row] - y[0]) / (y[1] - y[0]);
     if (u < 0 || u > 1 || v < 0 || v > 1) continue;
     within += 1;
-    const cell = Math.floor(u * columns) * rows + Math.floor(v * rows);
+    const cell = cellAt(u, v);
     if (seen.has(cell)) continue;
     seen.add(cell);
     kept.push(row);
