@@ -3,29 +3,16 @@
 Importing this module imports numba, so it is imported where a picture is drawn.
 """
 
-from collections.abc import Callable
-from typing import TypeVar, cast
-
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.jump.compiled import compiled
+
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int32]
-Function = TypeVar("Function", bound=Callable[..., object])
 
 
-def _compiled(function: Function) -> Function:
-    """Compile for the processor's own code; kept on disk where there is a place to write to."""
-    options = {"nogil": True, "error_model": "numpy"}
-    try:
-        compiled = numba.njit(cache=True, **options)(function)
-    except RuntimeError:  # numba has no folder that it may write its cache to
-        compiled = numba.njit(**options)(function)
-    return cast(Function, compiled)
-
-
-@_compiled
+@compiled
 def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
     """Which triangle is nearest at each pixel, and how near; of equally near ones the first.
 
@@ -63,7 +50,7 @@ def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
                     winner[row, column] = index
 
 
-@_compiled
+@compiled
 def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, line: Floats, jump: float) -> Floats:
     """Colours from 0 to 1 of a picture of half the width and height, with lines where another body or depth begins.
 

@@ -8,6 +8,7 @@ needs no memory of its own and works on any thread. It reads and writes the stat
 
 import ctypes
 import threading
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
@@ -16,11 +17,12 @@ from typing import Any
 
 import llvmlite.binding
 import mujoco
-import numba
 import numpy as np
 from numba import types
 
 from pareto_monoped.errors import SimulationError
+from pareto_monoped.jump import kernel
+from pareto_monoped.jump.compiled import c_function
 from pareto_monoped.jump.kernel import N_ROW, control
 
 _POSITION = types.CPointer(types.float64)
@@ -72,12 +74,12 @@ def _compiled() -> Any:
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
-    signature = types.void(types.voidptr, types.voidptr)
-    try:
-        compiled = numba.cfunc(signature, cache=True, error_model="numpy")(_control)
-    except RuntimeError:  # numba has no folder that it may write its cache to
-        compiled = numba.cfunc(signature, error_model="numpy")(_control)
-    return compiled.ctypes
+    return c_function(types.void(types.voidptr, types.voidptr), _controller(_origin(Path(kernel.__file__))))
+
+
+def _origin(source: Path) -> int:
+    """What the callback is made from besides this file: the kernel's source, and the MuJoCo whose numbers it has."""
+    return zlib.crc32(source.read_bytes() + mujoco.__version__.encode())
 
 
 def _library() -> Path:
@@ -89,12 +91,21 @@ def _library() -> Path:
     raise SimulationError(f"mujoco {mujoco.__version__}: has no libmujoco beside its package; install mujoco from PyPI")
 
 
-def _control(model: Any, data: Any) -> None:
-    """``mjcb_control``: compiled, called in every step of every simulation of the process."""
-    if _state_size(model, _USER) != N_ROW:
-        return
-    nv = _state_size(model, _POSITIONS)
-    state = np.empty(2 * nv + _JOINTS + N_ROW)
-    _get_state(model, data, state.ctypes, _READ)
-    control(state[:nv], state[nv : 2 * nv], state[2 * nv : 2 * nv + _JOINTS], state[2 * nv + _JOINTS :])
-    _set_state(model, data, state[2 * nv :].ctypes, _WRITTEN)
+def _controller(origin: int) -> Callable[[Any, Any], None]:
+    """``mjcb_control``, to be compiled: called in every step of every simulation of the process.
+
+    Args:
+        origin: closed over, so that a callback on disk that was made with another kernel is not taken for this one.
+    """
+
+    def act(model: Any, data: Any) -> None:
+        _ = origin
+        if _state_size(model, _USER) != N_ROW:
+            return
+        nv = _state_size(model, _POSITIONS)
+        state = np.empty(2 * nv + _JOINTS + N_ROW)
+        _get_state(model, data, state.ctypes, _READ)
+        control(state[:nv], state[nv : 2 * nv], state[2 * nv : 2 * nv + _JOINTS], state[2 * nv + _JOINTS :])
+        _set_state(model, data, state[2 * nv :].ctypes, _WRITTEN)
+
+    return act

@@ -7,15 +7,13 @@ own user data.
 """
 
 import math
-from collections.abc import Callable
-from typing import TypeVar, cast
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.jump.compiled import compiled
+
 Floats = NDArray[np.float64]
-Function = TypeVar("Function", bound=Callable[..., object])
 
 # Columns of a jump's row. What follows ``_HIP`` is the knee's.
 _COLUMNS = iter(range(1000))
@@ -52,17 +50,7 @@ SPEED_LIMIT = 1e4
 """A joint or slide faster than this (m/s, rad/s) is a failed simulation."""
 
 
-def _compiled(function: Function) -> Function:
-    """Compile for the processor's own code; kept on disk where there is a place to write to."""
-    options = {"nogil": True, "error_model": "numpy"}
-    try:
-        compiled = numba.njit(cache=True, **options)(function)
-    except RuntimeError:  # numba has no folder that it may write its cache to
-        compiled = numba.njit(**options)(function)
-    return cast(Function, compiled)
-
-
-@_compiled
+@compiled
 def control(q: Floats, v: Floats, ctrl: Floats, m: Floats) -> None:
     """Book the last step of a jump, end it if it is over, set the torques of its next step.
 
@@ -86,7 +74,7 @@ def control(q: Floats, v: Floats, ctrl: Floats, m: Floats) -> None:
         ctrl[0] = ctrl[1] = 0.0
 
 
-@_compiled
+@compiled
 def _fine(q: Floats, v: Floats) -> bool:
     """Whether a state is finite and not absurdly fast."""
     fine = True
@@ -95,7 +83,7 @@ def _fine(q: Floats, v: Floats) -> bool:
     return fine
 
 
-@_compiled
+@compiled
 def _end(q: Floats, v: Floats, m: Floats) -> None:
     """End a jump at the apex (the foot has stood and is off the ground, the base no longer rises), or in failure."""
     nv = v.shape[0]
@@ -107,7 +95,7 @@ def _end(q: Floats, v: Floats, m: Floats) -> None:
         m[STATUS] = TIMEOUT if m[OFF] > 0.0 else NO_LIFT_OFF
 
 
-@_compiled
+@compiled
 def _fly(q: Floats, v: Floats, m: Floats) -> None:
     """A step after the torque has been switched off for good."""
     if not _fine(q, v):
@@ -124,7 +112,7 @@ def _fly(q: Floats, v: Floats, m: Floats) -> None:
         m[CLEARANCE] = q[nv - 3] + rz - m[FOOT_RADIUS]
 
 
-@_compiled
+@compiled
 def _run(q: Floats, v: Floats, ctrl: Floats, m: Floats) -> None:
     """A step under the controller."""
     if not _fine(q, v):
@@ -197,7 +185,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, m: Floats) -> None:
     ctrl[0], ctrl[1] = m[JOINT_TORQUE_HIP], m[JOINT_TORQUE_KNEE]
 
 
-@_compiled
+@compiled
 def _limited(torque: float, speed: float, m: Floats, joint: int) -> float:
     """``torque`` within the motor's peak and, where it drives, within its voltage-speed line."""
     peak = m[PEAK_HIP + joint]
@@ -215,7 +203,7 @@ def _limited(torque: float, speed: float, m: Floats, joint: int) -> float:
     return torque
 
 
-@_compiled
+@compiled
 def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed: float) -> float:
     """What reaches the joint: load-dependent friction of gears and chain opposes the motion."""
     if loss == 0.0 or torque == 0.0:
@@ -224,7 +212,7 @@ def _delivered(torque: float, speed: float, loss: float, peak: float, loss_speed
     return min(max(after, -peak), peak)
 
 
-@_compiled
+@compiled
 def _book(m: Floats, speed: tuple[float, float]) -> None:
     """Add the step just made: torque times the speed at its start, or times the mean of the speeds at its ends."""
     timestep = m[TIMESTEP]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.pose import StartPose
@@ -36,21 +37,31 @@ class Population:
     errors: dict[int, str] = field(default_factory=dict)
 
     def run(self) -> None:
-        """All jumps to their end; one in which MuJoCo raises an error ends as diverged."""
-        from mujoco.batch import SimulationError
+        """All jumps to their end; one in which MuJoCo raises an error ends as diverged.
+
+        Raises:
+            SimulationError: MuJoCo did not call the controller; without it no jump would ever end.
+        """
+        from mujoco import batch
 
         from pareto_monoped.jump import kernel as k
         from pareto_monoped.jump.callback import controlled
 
-        status = self.rows[:, k.STATUS]
+        status, steps = self.rows[:, k.STATUS], self.rows[:, k.STEPS]
         with controlled():
             while len(ids := np.flatnonzero(status <= k.FLYING)):
+                first = ids[0]
+                before = steps[first]
                 try:
                     self.batch.step(ids if len(ids) < len(status) else None, _STEPS_A_CALL)
-                except SimulationError as problem:
+                except batch.SimulationError as problem:
                     for i in problem.ids:
                         self.errors[int(i)] = self.batch.error(int(i))
                     status[problem.ids] = k.DIVERGED
+                if steps[first] == before and status[first] <= k.FLYING:
+                    raise SimulationError(
+                        "mjcb_control: was replaced while jumps ran; let no other thread set callbacks meanwhile"
+                    )
 
     def complaints(self) -> list[str]:
         """What MuJoCo raised or warned of in each jump; empty where nothing."""

@@ -2,6 +2,8 @@
 
 import ctypes
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -65,19 +67,45 @@ def test_nothing_stays_installed():
     assert mujoco.get_mjcb_control() is None
 
 
-def test_two_calibrations_on_two_threads_do_not_meet():
+def test_calibrations_on_several_threads_do_not_meet():
     designs = random_designs(30, seed=4)
     robots = plausible_robots(designs)
 
-    def jump(name):
-        return evaluate_robots(robots, designs[:, 4:], load_calibration(name)).as_columns()
+    reference, paper = load_calibration(), load_calibration("paper")
+    calibrations = {
+        "reference": reference,
+        "paper": paper,
+        "by Runge-Kutta": replace(reference, simulation=replace(reference.simulation, integrator="RK4")),
+        "literal gate": replace(reference, gate=paper.gate),
+    }
 
-    names = ["reference", "ideal"] * 3
+    def jump(name):
+        return evaluate_robots(robots, designs[:, 4:], calibrations[name]).as_columns()
+
+    names = list(calibrations) * 2
     alone = {name: jump(name) for name in set(names)}
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(3) as pool:
         for name, columns in zip(names, pool.map(jump, names), strict=True):
             for column, values in columns.items():
                 np.testing.assert_array_equal(values, alone[name][column], err_msg=f"{name} {column}")
+
+
+def test_a_callback_on_disk_is_told_from_one_of_another_kernel(tmp_path):
+    """The cache on disk sees this file and what the callback closes over, not the kernel that it calls."""
+    origins = []
+    for text in ("axial = 1.0", "axial = 2.0", "axial = 2.0"):
+        path = tmp_path / "kernel.py"
+        path.write_text(text)
+        origins.append(callback._origin(path))
+    assert origins[0] != origins[1] == origins[2]
+    assert [cell.cell_contents for cell in callback._controller(origins[0]).__closure__] == [origins[0]]
+
+
+def test_jumps_that_the_controller_is_kept_from_end_in_an_error_and_not_never(monkeypatch):
+    designs = random_designs(3, seed=2)
+    monkeypatch.setattr(callback, "controlled", nullcontext)
+    with pytest.raises(SimulationError, match="mjcb_control"):
+        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration())
 
 
 def test_a_mujoco_without_its_library_is_said(monkeypatch, tmp_path):

@@ -1,0 +1,31 @@
+"""What is kept on disk of compiled functions, and what it depends on."""
+
+import ctypes
+import importlib.util
+
+from numba import types
+
+from pareto_monoped.jump.compiled import c_function
+
+MODULE = """
+from numba import carray
+
+def made(number):
+    def act(address):
+        carray(address, (1,))[0] = number
+    return act
+"""
+
+
+def test_what_a_c_function_closes_over_tells_it_from_the_one_on_disk(tmp_path):
+    path = tmp_path / "callbacks.py"
+    path.write_text(MODULE)
+    spec = importlib.util.spec_from_file_location("callbacks", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    signature = types.void(types.CPointer(types.int64))
+    for number in (1, 2, 1):
+        found = ctypes.c_int64()
+        c_function(signature, module.made(number))(ctypes.byref(found))
+        assert found.value == number
+    assert len(list(tmp_path.rglob("*.nbc"))) == 2
