@@ -22,6 +22,8 @@ Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
 _STRICT = ConfigDict(extra="forbid")
 
 DEFAULT = "reference"
+# Hundreds of times the shipped ones'; it only keeps nonsense from running for days.
+_MOST_STEPS = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -251,4 +253,12 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
             "correct the name"
         )
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
-    return checked(Calibration, values, source=f"calibration file {path.name}", error=CalibrationError)
+    source = f"calibration file {path.name}"
+    calibration = checked(Calibration, values, source=source, error=CalibrationError)
+    step, least = calibration.simulation.timestep_s, calibration.simulation.time_limit_s / _MOST_STEPS
+    if step < least:
+        raise CalibrationError(
+            f"{source}: simulation.timestep_s = {step:g}: must be at least {least:g}, a millionth of time_limit_s; "
+            "lengthen the step"
+        )
+    return calibration

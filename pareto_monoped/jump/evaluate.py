@@ -20,6 +20,8 @@ STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "tim
 # A length below this has no room for the actuators' output couplings; it only keeps nonsense from the part models.
 _SHORTEST_LINK_M = 0.05
 _LEAST = np.array([_SHORTEST_LINK_M if name.endswith("length_m") else 0.0 for name in NAMES])
+# Of any variable; beyond, numbers overflow.
+_MOST = 1e9
 # Jumps that are stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
@@ -137,14 +139,16 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
 def _nonsense(values: Floats) -> dict[int, str]:
     """Which rows are no design, and why; the paper's bounds do not matter. ``values`` has shape (n, 7)."""
     with np.errstate(invalid="ignore"):
-        wrong = ~(np.isfinite(values) & (values >= _LEAST))
+        wrong = ~((values >= _LEAST) & (values <= _MOST))
     reasons: dict[int, str] = {}
     for i, column in np.argwhere(wrong):
         name, value, least = NAMES[column], float(values[i, column]), _LEAST[column]
-        if np.isfinite(value):
+        if not np.isfinite(value):
+            reason = f"{name} = {value}: must be a finite number; give a number"
+        elif value < least:
             reason = f"{name} = {value:g}: must be at least {least:g}; give a larger value"
         else:
-            reason = f"{name} = {value}: must be a finite number; give a number"
+            reason = f"{name} = {value:g}: must be at most {_MOST:g}; give a smaller value"
         reasons.setdefault(int(i), reason)
     return reasons
 
@@ -190,6 +194,7 @@ def _collect(population: Population, calibration: Calibration, table: _Table, ro
 
     memory, step = population.rows, calibration.simulation.timestep_s
     complaints = population.complaints()
+    energy = memory[:, k.ENERGY_HIP] + memory[:, k.ENERGY_KNEE]
     for i, row in enumerate(rows):
         status = memory[i, k.STATUS]
         time = (memory[i, k.STEPS] - 1) * step
@@ -201,8 +206,9 @@ def _collect(population: Population, calibration: Calibration, table: _Table, ro
             table.fail(row, "no_lift_off", f"the foot had not left the floor after {time:.3f} s")
         elif status == k.TIMEOUT:
             table.fail(row, "timeout", f"the base had not come to its apex after {time:.3f} s")
+        elif energy[i] == 0.0:
+            table.fail(row, "no_lift_off", f"the foot left the floor after {time:.3f} s without work of the motors")
     ok = table.status[rows] == "ok"
-    energy = memory[:, k.ENERGY_HIP] + memory[:, k.ENERGY_KNEE]
     mass = table.columns["mass_kg"][rows]
     rise = memory[:, k.HEIGHT] - BASE_START_HEIGHT_M
     active = np.maximum(memory[:, k.ACTIVE_STEPS], 1.0)
@@ -225,7 +231,7 @@ def _collect(population: Population, calibration: Calibration, table: _Table, ro
         "peak_power_knee_w": memory[:, k.PEAK_POWER_KNEE],
         "saturation_hip": memory[:, k.SATURATED_HIP] / active,
         "saturation_knee": memory[:, k.SATURATED_KNEE] / active,
-        "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(energy > 0.0, energy, np.nan),
+        "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(ok, energy, np.nan),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]

@@ -67,6 +67,7 @@ def test_a_users_file_is_read_by_its_path(tmp_path):
     [
         ("timestep_s = 0.001", "timestep_s = -0.001", "simulation.timestep_s = -0.001"),
         ("timestep_s = 0.001", "timestep_s = nan", "simulation.timestep_s = nan"),
+        ("timestep_s = 0.001", "timestep_s = 1e-320", "must be at least 3e-06, a millionth of time_limit_s"),
         ("[controller]", "[controller]\nrest_lenght_m = 9.0", "rest_lenght_m"),
         ('integrator = "Euler"', 'integrator = "Leapfrog"', "simulation.integrator = 'Leapfrog'"),
         ("friction = 1.0\n", "", "friction is missing"),

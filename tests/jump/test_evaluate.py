@@ -6,7 +6,8 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.evaluate import MEASURES, STATUSES, Evaluator
+from pareto_monoped.jump.evaluate import MEASURES, STATUSES, Evaluator, evaluate_robots
+from pareto_monoped.robot import robot_arrays
 from tests.jump.robots import random_designs
 
 GOOD = PAPER_CASES["C"].design.as_array()
@@ -30,6 +31,8 @@ BAD = {
     "negative length": (changed(shank_length_m=-0.4), "bad_input", "shank_length_m"),
     "no length": (changed(shank_length_m=0.0), "bad_input", "shank_length_m"),
     "negative damping": (changed(damping_n_s_per_m=-1.0), "bad_input", "damping_n_s_per_m"),
+    "beyond all lengths": (changed(thigh_length_m=1e300), "bad_input", "at most 1e+09"),
+    "beyond all ratios": (changed(knee_ratio=1e100), "bad_input", "at most 1e+09"),
     "no such gearbox": (changed(knee_ratio=40.0), "no_gearbox", "knee_ratio"),
     "too short": (changed(thigh_length_m=0.2, shank_length_m=0.2), "cannot_stand", "shorter than"),
     "too long": (changed(thigh_length_m=1.5), "cannot_stand", "cannot fold"),
@@ -45,6 +48,16 @@ def test_every_failure_has_a_name_and_a_reason(evaluator, name):
     assert status in STATUSES
     assert any(word in result.reason[0] for word in said.split("|"))
     assert np.isnan(result.height_m[0])
+    assert np.isnan(result.energy_j[0])
+
+
+def test_a_hop_without_work_is_no_jump():
+    """A damper beyond all numbers lets the literal model's foot chatter off the floor for nothing."""
+    calibration = load_calibration("paper")
+    robots = robot_arrays(GOOD, map_for("VT8020"), calibration.mass)
+    result = evaluate_robots(robots, np.array([[GOOD[4], 1e160, GOOD[6]]]), calibration)
+    assert result.status[0] == "no_lift_off"
+    assert "without work" in result.reason[0]
     assert np.isnan(result.energy_j[0])
 
 
