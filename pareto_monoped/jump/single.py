@@ -117,10 +117,14 @@ def result_of(
 
 @dataclass(slots=True, kw_only=True)
 class _Moment:
-    """One state of the loop, with MuJoCo's derived quantities of that state and the torques held from there on."""
+    """One state of the loop, with MuJoCo's derived quantities of that state and the torques held from there on.
+
+    ``after`` holds the state after the step.
+    """
 
     model: Any
     data: Any
+    after: Any
     qpos: Floats
     qvel: Floats
     memory: Floats
@@ -130,8 +134,9 @@ class _Moment:
 def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[_Moment]:
     """Step the first robot to the end of its jump.
 
-    At each moment ``data`` holds the derived quantities of the state ``qpos, qvel`` (MuJoCo computes them at the start
-    of a step), and the state after the step; the last moment has no step.
+    At each moment ``data`` holds the derived quantities of the state ``qpos, qvel``: MuJoCo computes them at the start
+    of a step, but a Runge-Kutta step leaves those of its last stage, so that they are made apart. The last moment has
+    no step.
     """
     import mujoco
 
@@ -142,17 +147,20 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     row = first_rows(robots, control, calibration)[0]
+    derived = data if row[k.STAGES] == 1.0 else mujoco.MjData(model)
     # This loop asks once a step, whatever the integrator.
     row[k.STAGES] = 1.0
     while True:
         qpos, qvel = data.qpos.copy(), data.qvel.copy()
         k.control(qpos, qvel, data.ctrl, row)
         running = row[k.STATUS] <= k.FLYING
+        if derived is not data:
+            derived.qpos[:], derived.qvel[:], derived.ctrl[:] = qpos, qvel, data.ctrl
+        if not running or derived is not data:
+            mujoco.mj_forward(model, derived)
         if running:
             mujoco.mj_step(model, data)
-        else:
-            mujoco.mj_forward(model, data)
-        yield _Moment(model=model, data=data, qpos=qpos, qvel=qvel, memory=row, last=not running)
+        yield _Moment(model=model, data=derived, after=data, qpos=qpos, qvel=qvel, memory=row, last=not running)
         if not running:
             return
 
@@ -202,13 +210,15 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
     """Where the work of the first robot's jump went.
 
     A force's work in a step is force times the mean of the speeds before and after it, which for a constant inertia
-    is exactly the change of kinetic energy that it causes in MuJoCo's semi-implicit step.
+    is exactly the change of kinetic energy that it causes in MuJoCo's semi-implicit step. In a Runge-Kutta step only
+    the actuators' force is constant; the others count with the mean of their values at its two ends.
     """
     import mujoco
 
     step = calibration.simulation.timestep_s
     work = dict.fromkeys(("actuator", "damping", "friction", "stops", "contact"), 0.0)
     energies: list[Floats] = []
+    by_stages, moved = calibration.simulation.integrator == "RK4", 0.0
     for moment in _moments(robots, control, calibration):
         model, data = moment.model, moment.data
         if moment.last or not energies:
@@ -220,10 +230,14 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
             energies.append(ends.energy.copy())
         if moment.last:
             break
-        mean = 0.5 * (moment.qvel + data.qvel) * step
+        before, after = moved, moment.after.qvel
+        moved = moment.after.qpos - moment.qpos if by_stages else 0.5 * (moment.qvel + after) * step
+        work["actuator"] += float(data.qfrc_actuator @ moved)
+        mean = 0.5 * (before + moved) if by_stages else moved
         # MuJoCo's Euler step takes joint damping at the speed after the step.
-        damped = data.qvel if calibration.simulation.integrator == "Euler" else 0.5 * (moment.qvel + data.qvel)
-        work["actuator"] += float(data.qfrc_actuator @ mean)
+        damped = {"Euler": after, "RK4": moment.qvel}.get(
+            calibration.simulation.integrator, 0.5 * (moment.qvel + after)
+        )
         work["damping"] += float((model.dof_damping * damped) @ mean)
         work["friction"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF,)) @ mean)
         work["stops"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT,)) @ mean)

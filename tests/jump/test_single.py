@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,19 @@ def test_energy_balance_closes_within_one_percent(case):
     assert balance.error < 0.01
     for part in ("damping_j", "friction_j", "stops_j", "contact_j", "kinetic_j", "potential_j"):
         assert getattr(balance, part) > 0.0
+
+
+def test_a_calibration_by_runge_kutta_has_a_true_trace_and_balance():
+    """MuJoCo leaves the last stage's forces and positions behind such a step, not those of its start."""
+    calibration, design = load_calibration(), PAPER_CASES["C"].design
+    calibration = replace(calibration, simulation=replace(calibration.simulation, integrator="RK4"))
+    trace = simulate(design, map_for("VT8020"), calibration, trace=True).trace
+    shank = trace["hip_rad"] + trace["knee_rad"]
+    below = design.thigh_length_m * np.cos(trace["hip_rad"]) + design.shank_length_m * np.cos(shank)
+    np.testing.assert_allclose(trace["foot_z_m"], trace["base_z_m"] - below, atol=1e-12)
+    assert np.all(trace["contact_z_n"][trace["foot_clearance_m"] > 1e-9] == 0.0)
+    robots = robot_arrays(design.as_array(), map_for("VT8020"), calibration.mass)
+    assert energy_balance(robots, design.as_array()[None, 4:7], calibration).error < 0.01
 
 
 def test_without_losses_the_joints_lose_nothing():
