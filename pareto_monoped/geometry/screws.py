@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 
+from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import Material, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Numbers
 
@@ -83,8 +84,17 @@ def screw_for(diameter_mm: float, core_mm: float) -> Screw:
 
 
 def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
-    """The longest catalogue length whose thread has room behind the grip; from seat or flush face to the end."""
-    row = np.searchsorted(LENGTHS_MM, np.asarray(grip_mm + room_mm) + 1e-9, side="right") - 1
+    """The longest catalogue length whose thread has room behind the grip; from seat or flush face to the end.
+
+    Raises:
+        DesignError: the catalogue has none so short.
+    """
+    room = np.asarray(grip_mm + room_mm)
+    row = np.searchsorted(LENGTHS_MM, room + 1e-9, side="right") - 1
+    if np.any(row < 0):
+        raise DesignError(
+            f"screw with room for {np.min(room):g} mm: must have room for {LENGTHS_MM[0]:g} mm; make a plate thicker"
+        )
     return LENGTHS_MM[row][()]
 
 
@@ -124,8 +134,15 @@ def screw_part(
         group: what it moves with.
         grade: property class (ISO 898-1).
         note: what else the maker should know.
+
+    Raises:
+        DesignError: no screw of the catalogue has the grip and a thread.
     """
     length = screw_length_mm(grip_mm, room_mm)
+    if np.any(length <= grip_mm):
+        raise DesignError(
+            f"{name}: grip of {np.max(grip_mm):g} mm leaves no thread of a catalogue length; make the plates thinner"
+        )
     drawn = screw.flush(seat_mm=seat_mm, grip_mm=grip_mm, thread_mm=length - grip_mm, direction=direction)
     size = 2.0 * screw.shank
     if head == "cap":

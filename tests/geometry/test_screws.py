@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import Material
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M5, M25, screw_for, screw_length_mm, screw_part
 
@@ -20,6 +21,14 @@ def made(screw=M3, **changes):
 def test_length_is_the_longest_of_the_catalogue_with_room_for_its_thread(grip, room, length):
     assert screw_length_mm(grip, room) == length
     assert screw_length_mm(np.array([grip, 3.0]), np.array([room, 3.0])).tolist() == [length, 6.0]
+
+
+def test_what_the_catalogue_does_not_have_is_refused():
+    with pytest.raises(DesignError, match=r"room for 2\.9 mm"):
+        screw_length_mm(np.array([2.0, 2.0]), np.array([4.0, 0.9]))
+    for grip, room in ((62.0, 5.0), (6.0, 0.5)):
+        with pytest.raises(DesignError, match="a_screw: grip of 6"):
+            made(grip_mm=grip, room_mm=room)
 
 
 def test_lengths_are_those_of_iso_4762():
