@@ -120,7 +120,7 @@ def _choices(reference: Calibration) -> Iterator[tuple[str, Calibration]]:
     )
     yield "no voltage limit", replace(reference, drive=replace(drive, voltage_limit=False))
     yield "peak torque + 5 %", replace(reference, drive=replace(drive, peak_torque_scale=1.05))
-    yield "half the base structure's mass", replace(reference, mass=replace(reference.mass, base_structure_mass_kg=0.2))
+    yield "base structure of 0.2 kg", replace(reference, mass=replace(reference.mass, base_structure_mass_kg=0.2))
     yield "links 10 % lighter", replace(reference, mass=replace(reference.mass, link_mass_scale=0.9))
     for scale in (0.5, 2.0):
         stiffness, damping = contact.stiffness_n_per_m * scale, contact.damping_n_s_per_m * scale

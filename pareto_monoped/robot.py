@@ -210,7 +210,7 @@ class RobotArrays:
 def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOptions = PARTS_ONLY) -> RobotArrays:
     """Weigh many robots at once, by the same part functions as ``build_robot``.
 
-    Links between 0.25 and 0.55 m come from tables of these functions, equal to 13 digits and many times as fast.
+    Links between 0.25 and 0.55 m come from tables of these functions, equal to 12 digits and many times as fast.
 
     Args:
         designs: shape (n, 7), in the order of ``design.NAMES``; finite, with links longer than zero.
