@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -165,14 +166,15 @@ def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = 
         initializer=signal.signal,
         initargs=(signal.SIGINT, signal.SIG_IGN),
     ) as pool:
-        running: dict[Future[dict[str, Any]], Job] = {pool.submit(run, job): job for job in todo}
-        try:
-            while running:
-                finished, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    future.result()
-                    done(running.pop(future))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        # No more are handed over than are worked on: an executor finishes what it has, come what may.
+        waiting = iter(todo)
+        running: dict[Future[dict[str, Any]], Job] = {}
+        while True:
+            for job in islice(waiting, workers - len(running)):
+                running[pool.submit(run, job)] = job
+            if not running:
+                break
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                future.result()
+                done(running.pop(future))
     return len(todo)

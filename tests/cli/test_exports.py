@@ -69,7 +69,7 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     db, folder = tmp_path / "quick.db", tmp_path / "front"
     subprocess.run([*words, "run", study, "--db", db, "--evaluations", "80"], check=True, capture_output=True)
     rows = subprocess.run([*words, "front", db], check=True, capture_output=True, text=True).stdout.splitlines()[1:]
-    every = max(1, len(rows) // 3)
+    every = max(1, len(rows) // 8)
     export = [
         *words,
         "export",
