@@ -1,7 +1,9 @@
 """What is kept on disk of compiled functions, and what it depends on."""
 
 import ctypes
+import gc
 import importlib.util
+import sys
 
 from numba import types
 
@@ -17,15 +19,18 @@ def made(number):
 """
 
 
-def test_what_a_c_function_closes_over_tells_it_from_the_one_on_disk(tmp_path):
+def test_what_a_c_function_closes_over_tells_it_from_the_one_on_disk(tmp_path, monkeypatch):
     path = tmp_path / "callbacks.py"
     path.write_text(MODULE)
     spec = importlib.util.spec_from_file_location("callbacks", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    # numba finds what it kept of a module by the module's name.
+    monkeypatch.setitem(sys.modules, "callbacks", module)
     signature = types.void(types.CPointer(types.int64))
     for number in (1, 2, 1):
         found = ctypes.c_int64()
         c_function(signature, module.made(number))(ctypes.byref(found))
+        gc.collect()
         assert found.value == number
     assert len(list(tmp_path.rglob("*.nbc"))) == 2
