@@ -27,7 +27,7 @@ from pareto_monoped.design import LOWER, UPPER
 from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
 from pareto_monoped.jump.model import mjcf
-from pareto_monoped.robot import RobotArrays, robot_arrays
+from pareto_monoped.robot.population import RobotArrays, robot_arrays
 from tests.jump.oracle import Jump, jump, motors_of
 
 Floats = NDArray[np.float64]

@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
-from pareto_monoped.robot import robot_arrays
+from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.definition import Bounds, Study, study_from_dict
 from pareto_monoped.study.physics import Physics, load_physics
 from pareto_monoped.study.reader import read_study

@@ -19,12 +19,12 @@ LEVELS = [
     {"robot"},
     {"actuator", "leg"},
     {"geometry"},
-    {"design", "records"},
+    {"design", "config"},
     {"files"},
     {"errors", "__init__"},
 ]
 # Rooms of one level that may know each other all the same: the report and the CAD read what a study stored.
-BESIDE = {("report", "study"), ("cad", "study"), ("report", "cad"), ("design", "records")}
+BESIDE = {("report", "study"), ("cad", "study"), ("report", "cad"), ("design", "config")}
 HEAVY = {"mujoco": "jump", "OCP": "cad", "optuna": "study", "pymoo": "study", "cma": "study", "plotly": "report"}
 
 

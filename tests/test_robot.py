@@ -6,7 +6,9 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER, Design
 from pareto_monoped.errors import DesignError
-from pareto_monoped.robot import BODIES, JOINTS, PARTS_ONLY, MassOptions, build_robot, robot_arrays
+from pareto_monoped.robot.build import build_robot
+from pareto_monoped.robot.frames import BODIES, JOINTS
+from pareto_monoped.robot.population import PARTS_ONLY, MassOptions, robot_arrays
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import MotorError
-from pareto_monoped.records import checked, read_toml
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 # The search tries all tooth numbers that fit; beyond this size it takes many seconds, and no leg is built for it.

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import InputError
-from pareto_monoped.records import checked, read_toml
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")

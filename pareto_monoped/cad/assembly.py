@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.robot import PART_TO_BODY, Robot, Unit
+from pareto_monoped.robot.build import Robot, Unit
+from pareto_monoped.robot.frames import PART_TO_BODY
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator

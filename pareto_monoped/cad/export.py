@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.actuator.search import ActuatorMap
-from pareto_monoped.cad import documents, drawing, kernel, models, scenes, trianglefiles
 from pareto_monoped.cad.assembly import Pose
-from pareto_monoped.cad.checks import Check, run_checks
-from pareto_monoped.cad.documents import FORMATS
-from pareto_monoped.cad.folder import RECORD, beside, files_in, move_in, require_free, safe, write
-from pareto_monoped.cad.picture import png
+from pareto_monoped.cad.check.checks import Check, run_checks
+from pareto_monoped.cad.kernel import client as kernel
+from pareto_monoped.cad.picture import scenes
+from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product, build_product, step_tree
+from pareto_monoped.cad.write import documents, dxf, models, triangles
+from pareto_monoped.cad.write.documents import FORMATS
+from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, require_free, safe, write
 from pareto_monoped.design import Design
 from pareto_monoped.errors import CheckError, DesignError, InputError
 from pareto_monoped.jump.calibration import Calibration
@@ -24,7 +26,8 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot import Robot, RobotArrays, build_robot, leg_dimensions, robot_arrays
+from pareto_monoped.robot.build import Robot, build_robot, leg_dimensions
+from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 LENGTH_STEP_M = 1e-4
 """Link lengths are made to 0.1 mm."""
@@ -223,13 +226,13 @@ def _write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> N
     for kind in product.unique:
         name = safe(kind.name)
         if "stl" in formats:
-            write(folder, f"parts/stl/{name}.stl", trianglefiles.stl(kind.mesh))
+            write(folder, f"parts/stl/{name}.stl", triangles.stl(kind.mesh))
         if "3mf" in formats and kind.part.process == "3D printed":
-            write(folder, f"print/{name}.3mf", trianglefiles.threemf(kind.mesh, kind.name))
-        if "dxf" in formats and drawing.is_flat(kind.part):
-            write(folder, f"laser/{name}.dxf", drawing.dxf(kind.part))
+            write(folder, f"print/{name}.3mf", triangles.threemf(kind.mesh, kind.name))
+        if "dxf" in formats and dxf.is_flat(kind.part):
+            write(folder, f"laser/{name}.dxf", dxf.dxf(kind.part))
     if "glb" in formats:
-        write(folder, "assembly.glb", trianglefiles.glb(product))
+        write(folder, "assembly.glb", triangles.glb(product))
 
 
 def _write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> None:
@@ -245,7 +248,7 @@ def _write_models(
         return
     shown, solid = models.visuals(product), models.colliders(product)
     for visual in shown:
-        write(folder, f"model/meshes/{safe(visual.name)}.stl", trianglefiles.stl(visual.mesh, scale=1e-3))
+        write(folder, f"model/meshes/{safe(visual.name)}.stl", triangles.stl(visual.mesh, scale=1e-3))
     # A robot that cannot stand has no start pose and so no jump model.
     if "mjcf" in formats and np.isfinite(start_pose(arrays, calibration).hip_rad[0]):
         document = models.mjcf_with_meshes(mjcf(arrays, calibration), shown, solid)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Pose, instances
-from pareto_monoped.cad.kernel import Leaf, SolidFacts, Tree, solid_facts
-from pareto_monoped.cad.meshes import Mesh, mesh_of, placed
+from pareto_monoped.cad.kernel.client import Leaf, SolidFacts, Tree, solid_facts
+from pareto_monoped.cad.shape.meshes import Mesh, mesh_of, placed
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.robot import Robot
+from pareto_monoped.robot.build import Robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ from pareto_monoped.design import NAMES, PAPER_CASES, Design
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.motors import Motor
-    from pareto_monoped.cad.batch import Job
+    from pareto_monoped.cad.jobs import Job
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.pareto.pick import Selector
 
@@ -58,7 +58,7 @@ def export(
             raise click.UsageError("--record takes no DB, no selector, no --case and no --front; drop one of them")
         if hip_deg is not None or knee_deg is not None:
             raise click.UsageError("--record takes no --hip-deg and no --knee-deg, it holds the pose; drop them")
-        from pareto_monoped.cad.batch import recorded
+        from pareto_monoped.cad.jobs import recorded
 
         _one(
             recorded(
@@ -121,9 +121,9 @@ def _names(formats: str | None) -> list[str] | None:
 def _contents(contents: dict[str, Any], db: Path) -> "tuple[Motor, Calibration]":
     """Motor and calibration as a study stored them: their files may be gone or changed."""
     from pareto_monoped.actuator.motors import Motor
+    from pareto_monoped.config import checked
     from pareto_monoped.errors import DatabaseError
     from pareto_monoped.jump.calibration import Calibration
-    from pareto_monoped.records import checked
 
     source = f"study database {str(db)!r}"
     motor, calibration = (
@@ -152,8 +152,8 @@ def _job(
     force: bool,
     source: dict[str, Any],
 ) -> "Job":
-    from pareto_monoped.cad.batch import Job
     from pareto_monoped.cad.export import chosen_formats
+    from pareto_monoped.cad.jobs import Job
 
     return Job(
         design=design,
@@ -167,7 +167,7 @@ def _job(
 
 
 def _one(job: "Job") -> None:
-    from pareto_monoped.cad.batch import run
+    from pareto_monoped.cad.jobs import run
 
     record = run(job, progress=lambda step: click.echo(f"{step} ...", err=True))
     click.echo(f"wrote {job.folder} ({len(record['files'])} files)", err=True)
@@ -182,7 +182,7 @@ def _many(jobs: "list[Job]", workers: int) -> None:
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from pareto_monoped.cad.batch import run_all
+    from pareto_monoped.cad.jobs import run_all
 
     columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True)) as bar:

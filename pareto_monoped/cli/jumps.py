@@ -45,7 +45,7 @@ def simulate(
     from pareto_monoped.jump.model import mjcf
     from pareto_monoped.jump.single import energy_balance
     from pareto_monoped.jump.single import simulate as jump
-    from pareto_monoped.robot import robot_arrays
+    from pareto_monoped.robot.population import robot_arrays
 
     calibration = load_calibration(calibration_name)
     actuator_map = map_for(motor)

@@ -14,7 +14,7 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.single import energy_balance
-from pareto_monoped.robot import robot_arrays
+from pareto_monoped.robot.population import robot_arrays
 
 Floats = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import CalibrationError
-from pareto_monoped.records import checked, read_toml
-from pareto_monoped.robot import MassOptions
+from pareto_monoped.robot.population import MassOptions
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]

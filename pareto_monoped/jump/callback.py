@@ -21,9 +21,9 @@ import numpy as np
 from numba import types
 
 from pareto_monoped.errors import SimulationError
-from pareto_monoped.jump import kernel
+from pareto_monoped.jump import controller
 from pareto_monoped.jump.compiled import c_function
-from pareto_monoped.jump.kernel import N_ROW, control
+from pareto_monoped.jump.controller import N_ROW, control
 
 _POSITION = types.CPointer(types.float64)
 _STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
@@ -74,7 +74,7 @@ def _compiled() -> Any:
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
-    return c_function(types.void(types.voidptr, types.voidptr), _controller(_origin(Path(kernel.__file__))))
+    return c_function(types.void(types.voidptr, types.voidptr), _controller(_origin(Path(controller.__file__))))
 
 
 def _origin(source: Path) -> int:

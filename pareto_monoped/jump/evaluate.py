@@ -11,7 +11,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
-from pareto_monoped.robot import RobotArrays, robot_arrays
+from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 Floats = NDArray[np.float64]
 
@@ -190,7 +190,7 @@ def _jump(
 
 
 def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:
-    from pareto_monoped.jump import kernel as k
+    from pareto_monoped.jump import controller as k
 
     memory, step = population.rows, calibration.simulation.timestep_s
     complaints = population.complaints()

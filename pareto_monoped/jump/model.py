@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, EndStop, SpringContact
 from pareto_monoped.jump.pose import LEAST_IMPEDANCE, start_pose
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot.population import RobotArrays
 
 Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.pose import StartPose
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot.population import RobotArrays
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Population:
         """
         from mujoco import batch
 
-        from pareto_monoped.jump import kernel as k
+        from pareto_monoped.jump import controller as k
         from pareto_monoped.jump.callback import controlled
 
         status, steps = self.rows[:, k.STATUS], self.rows[:, k.STEPS]
@@ -122,7 +122,7 @@ def _template(calibration: Calibration) -> Any:
     """A model of no robot in particular: all that differs between robots is written over."""
     import mujoco
 
-    from pareto_monoped.jump.kernel import N_ROW
+    from pareto_monoped.jump.controller import N_ROW
 
     return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, N_ROW))
 
@@ -135,7 +135,7 @@ def first_rows(robots: RobotArrays, control: Floats, calibration: Calibration) -
         control: K, C and T of each, shape (n, 3).
         calibration: the model.
     """
-    from pareto_monoped.jump import kernel as k
+    from pareto_monoped.jump import controller as k
 
     drive, gate, simulation = calibration.drive, calibration.gate, calibration.simulation
     rows = np.zeros((len(robots), k.N_ROW))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, SpringContact
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot.population import RobotArrays
 
 LEAST_IMPEDANCE = 0.0001
 """MuJoCo's smallest impedance (mjMINIMP): a spring that hardens has this one at first touch."""

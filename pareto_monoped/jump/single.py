@@ -16,7 +16,7 @@ from pareto_monoped.design import GRAVITY_M_PER_S2, Design
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.model import mjcf
-from pareto_monoped.robot import RobotArrays, robot_arrays
+from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 Floats = NDArray[np.float64]
 
@@ -140,7 +140,7 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     """
     import mujoco
 
-    from pareto_monoped.jump import kernel as k
+    from pareto_monoped.jump import controller as k
     from pareto_monoped.jump.population import first_rows
 
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
@@ -169,7 +169,7 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     """``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
     import mujoco
 
-    from pareto_monoped.jump import kernel as k
+    from pareto_monoped.jump import controller as k
 
     rows = []
     weight_n = float(robots.body_mass_kg[0].sum()) * GRAVITY_M_PER_S2

@@ -102,7 +102,7 @@ class Extras:
 
     def body_masses_kg(self, designs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Masses of base, thigh and shank of designs, shape (n, 7) -> (n, 3)."""
-        from pareto_monoped.robot import robot_arrays
+        from pareto_monoped.robot.population import robot_arrays
 
         if len(designs) == 0:
             return np.zeros((0, 3))
@@ -147,7 +147,7 @@ def jumps_of(designs: NDArray[np.float64], actuator_map: "ActuatorMap", calibrat
     """The jumps of designs that can stand, shape (n, 7), in few frames each."""
     from pareto_monoped.jump.rows import take
     from pareto_monoped.jump.single import trace_of
-    from pareto_monoped.robot import robot_arrays
+    from pareto_monoped.robot.population import robot_arrays
 
     if len(designs) == 0:
         return []

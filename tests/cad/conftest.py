@@ -6,7 +6,7 @@ from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.robot import build_robot
+from pareto_monoped.robot.build import build_robot
 
 
 @pytest.fixture(scope="session")

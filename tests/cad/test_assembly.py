@@ -6,7 +6,7 @@ import pytest
 
 from pareto_monoped.cad.assembly import Pose, body_frames, foot_centre_mm, instances, turn_y
 from pareto_monoped.jump.model import mjcf
-from pareto_monoped.robot import robot_arrays
+from pareto_monoped.robot.population import robot_arrays
 
 
 @pytest.mark.parametrize(("hip_rad", "knee_rad"), [(0.0, 0.0), (-0.7, 1.5), (0.9, 2.2), (-1.5, 0.3)])

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cad.kernel_process import step_files
+from pareto_monoped.cad.kernel.process import step_files
+from pareto_monoped.cad.kernel.solids import solid_from
 from pareto_monoped.cad.product import build_product, step_tree
-from pareto_monoped.cad.solids import solid_from
 
 _EXPORTS = """
 import sys

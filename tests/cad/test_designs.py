@@ -10,11 +10,12 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.assembly import Pose
-from pareto_monoped.cad.checks import run_checks
+from pareto_monoped.cad.check.checks import run_checks
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.robot import build_robot, robot_arrays
+from pareto_monoped.robot.build import build_robot
+from pareto_monoped.robot.population import robot_arrays
 
 # Lengths at and between their bounds; the published ratios 4.0, 6.0, 7.9, the ends of both families, and others.
 _RATIOS = (4.0, 6.0, 7.9, 8.6, 4.55, 5.25, 5.95, 6.45, 7.05, 8.25)

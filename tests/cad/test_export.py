@@ -5,13 +5,13 @@ import json
 
 import pytest
 
-from pareto_monoped.cad import batch, export
-from pareto_monoped.cad.checks import Check
+from pareto_monoped.cad import export, jobs
+from pareto_monoped.cad.check.checks import Check
 from pareto_monoped.cad.export import as_built, export_design
-from pareto_monoped.cad.folder import safe
+from pareto_monoped.cad.write.folder import safe
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
-from pareto_monoped.robot import build_robot, leg_dimensions
+from pareto_monoped.robot.build import build_robot, leg_dimensions
 
 DESIGN = PAPER_CASES["nominal"].design
 LIGHT = ("dxf", "3mf")
@@ -110,7 +110,7 @@ def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
 
 
 def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):
-    job = batch.Job(
+    job = jobs.Job(
         design=DESIGN,
         motor=actuator_map.motor,
         calibration=calibration,
@@ -118,10 +118,10 @@ def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp
         formats=(),
         source={"trial": 1},
     )
-    assert not batch.is_made(job)
-    batch.run(job)
-    assert batch.is_made(job)
-    assert batch.run_all([job], workers=2) == 0
-    assert not batch.is_made(dataclasses.replace(job, design=DESIGN.replace({"shank_length_m": 0.35})))
+    assert not jobs.is_made(job)
+    jobs.run(job)
+    assert jobs.is_made(job)
+    assert jobs.run_all([job], workers=2) == 0
+    assert not jobs.is_made(dataclasses.replace(job, design=DESIGN.replace({"shank_length_m": 0.35})))
     (tmp_path / "trial_1" / "bom.csv").unlink()
-    assert not batch.is_made(job)
+    assert not jobs.is_made(job)

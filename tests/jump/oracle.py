@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot.population import RobotArrays
 
 REST_LENGTH = 10.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pareto_monoped.design import LOWER, UPPER
-from pareto_monoped.robot import RobotArrays
+from pareto_monoped.robot.population import RobotArrays
 
 
 def random_designs(n, seed=0):

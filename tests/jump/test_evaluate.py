@@ -7,7 +7,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import MEASURES, STATUSES, Evaluator, evaluate_robots
-from pareto_monoped.robot import robot_arrays
+from pareto_monoped.robot.population import robot_arrays
 from tests.jump.robots import random_designs
 
 GOOD = PAPER_CASES["C"].design.as_array()

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.kernel import N_ROW
+from pareto_monoped.jump.controller import N_ROW
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.population import prepare
 from pareto_monoped.jump.pose import start_pose

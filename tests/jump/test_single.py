@@ -7,7 +7,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.single import TRACE_COLUMNS, energy_balance, simulate
-from pareto_monoped.robot import robot_arrays
+from pareto_monoped.robot.population import robot_arrays
 
 MAP = map_for("VT8020")
 

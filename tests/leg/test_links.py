@@ -10,7 +10,7 @@ from pareto_monoped.geometry.parts import total
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg import links
 from pareto_monoped.leg.dimensions import DEFAULT
-from pareto_monoped.robot import build_robot, leg_dimensions
+from pareto_monoped.robot.build import build_robot, leg_dimensions
 
 LENGTHS = np.linspace(0.3, 0.5, 9)
 

@@ -9,7 +9,7 @@ from pareto_monoped.pareto.pick import Knee, pick
 from pareto_monoped.report import payload as payload_module
 from pareto_monoped.report.page import embedded
 from pareto_monoped.report.payload import Source, build, column
-from pareto_monoped.robot import build_robot
+from pareto_monoped.robot.build import build_robot
 from tests.report.conftest import cut, grown
 
 

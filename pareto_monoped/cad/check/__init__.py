@@ -1,0 +1,1 @@
+"""What must hold for every export: one module per check, each with its limit."""

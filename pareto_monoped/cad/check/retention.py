@@ -1,0 +1,235 @@
+"""Is every part held: pushed along or across its axis, it must push on the rods by which the base is carried.
+
+Moved by a little play, a part runs into its neighbours, these into theirs, and so on; it is held if that ends at the
+base, in each of six directions. All parts are stacks of flat shapes across the joints' axes, so that this is a question
+of shapes in a plane: along the axis a part runs into what lies before its faces, across it into what its shifted
+cross-section cuts. Teeth count by their root circles, since a mesh turns and holds nothing.
+
+Some joints have no shape of their own. A screw's thread is found where its core fills a hole; a countersunk head, drawn
+as a plain shank, counts as a thin disc on its seat. What is pressed, bonded or threaded by other means says so in its
+record (``Part.joined``), which is believed only if the part that it names stands in its way on two opposite sides.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import manifold3d as m3
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.assembly import Instance, Pose, instances
+from pareto_monoped.cad.shape.outlines import all_polygons
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Circle, Shape
+from pareto_monoped.robot.build import Robot
+
+PLAY_MM = 0.8
+"""How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm."""
+THREAD_SHARE = 0.6
+"""Least depth of thread over the screw's diameter."""
+FASTENER = re.compile(r"(screw|bolt)(_near|_far)?$")
+_GROUND = "base_rod"  # the test stand's carriage clamps to the rods
+_AXES = ("x", "y", "z")  # of the assembly with both joints at zero; y is the joints' axis
+_CONTACT_MM2 = 0.25  # a square of 0.5 mm: less is no stop but the facets of a round fit
+_TOLERANCE_MM = 0.02
+_TOUCH_MM = 1e-6
+_ALONG_MM = 0.3  # least common height of two parts that stop each other across the axis
+_SKIN_MM = 0.05  # a thread's core lies this close to its hole
+_HEAD = 1.8  # radius of a countersunk head over its shank's
+_HEAD_MM = 0.1
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loose:
+    """An instance that can move: its name, and in which directions of the assembly with both joints at zero."""
+
+    name: str
+    directions: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.name} is not held along {', '.join(self.directions)}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Slab:
+    """A prism of an instance in the assembly: its cross-section seen along y, from one height to another."""
+
+    owner: int
+    section: m3.CrossSection
+    low: float
+    high: float
+
+
+def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
+    """Every instance that can move, and how many were looked at."""
+    placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    slabs = _slabs(placed)
+    runs_into = _contacts(placed, slabs)
+    tied = _threads(placed, slabs) | _joints(placed, runs_into)
+    ground = np.array([instance.part.name == _GROUND for instance in placed])
+    free: list[list[str]] = [[] for _ in placed]
+    # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
+    weak = np.array([_weak(instance.part) for instance in placed])
+    for (axis, sign), blocked in runs_into.items():
+        edges = blocked | tied
+        if axis == "y":
+            edges &= ~(weak[None] & ~weak[:, None])
+        held = _reaches(edges, ground)
+        for k in np.flatnonzero(~held):
+            free[k].append(f"{sign}{axis}")
+    return [
+        Loose(name=instance.name, directions=tuple(directions))
+        for instance, directions in zip(placed, free, strict=True)
+        if directions
+    ], len(placed)
+
+
+def _weak(part: Part) -> bool:
+    return part.group == "rotor" or part.name.startswith(("chain_", "turnbuckle_"))
+
+
+def _reaches(edges: Bools, ground: Bools) -> Bools:
+    """From which nodes the ground can be reached along edges, shape (n,)."""
+    held = ground
+    while True:
+        more = held | edges[:, held].any(axis=1)
+        if (more == held).all():
+            return held
+        held = more
+
+
+def _contacts(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> dict[tuple[str, str], Bools]:
+    """For each direction a matrix, true at (i, j) where instance i, moved that way, runs into instance j."""
+    owner = np.array([slab.owner for slab in slabs])
+    low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
+    bounds = np.array([slab.section.bounds() for slab in slabs])
+    others = owner[:, None] != owner[None]
+    found = {(axis, sign): np.zeros((len(placed), len(placed)), dtype=bool) for axis in _AXES for sign in "+-"}
+
+    def add(axis: str, i: int, j: int) -> None:
+        # What i runs into going one way runs into i going the other.
+        found[axis, "+"][i, j] = found[axis, "-"][j, i] = True
+
+    shared: dict[tuple[int, int], float] = {}
+
+    def common_mm2(a: int, b: int) -> float:
+        pair = (min(a, b), max(a, b))
+        if pair not in shared:
+            shared[pair] = (slabs[a].section ^ slabs[b].section).area()
+        return shared[pair]
+
+    def meeting(shift: NDArray[np.float64]) -> Bools:
+        mine = bounds + np.tile(shift, 2)
+        return np.all((mine[:, None, :2] < bounds[None, :, 2:]) & (mine[:, None, 2:] > bounds[None, :, :2]), axis=2)
+
+    gap = low[None] - high[:, None]
+    before = others & (gap > -_TOUCH_MM) & (gap < PLAY_MM) & meeting(np.zeros(2))
+    for a, b in np.argwhere(before).tolist():
+        i, j = int(owner[a]), int(owner[b])
+        if not found["y", "+"][i, j] and common_mm2(a, b) > _CONTACT_MM2:
+            add("y", i, j)
+    beside = others & (np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]) > _ALONG_MM)
+    for axis, direction in (("x", (1.0, 0.0)), ("z", (0.0, 1.0))):
+        shift = PLAY_MM * np.array(direction)
+        for a, b in np.argwhere(beside & meeting(shift)).tolist():
+            i, j = int(owner[a]), int(owner[b])
+            if found[axis, "+"][i, j]:
+                continue
+            cut = (slabs[a].section.translate((float(shift[0]), float(shift[1]))) ^ slabs[b].section).area()
+            if cut > _CONTACT_MM2 and cut - common_mm2(a, b) > _CONTACT_MM2:
+                add(axis, i, j)
+    return found
+
+
+def _threads(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> Bools:
+    """True at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
+    tied = np.zeros((len(placed), len(placed)), dtype=bool)
+    low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
+    bounds = np.array([slab.section.bounds() for slab in slabs])
+    for a, screw in enumerate(slabs):
+        part = placed[screw.owner].part
+        if not FASTENER.search(part.name):
+            continue
+        core = screw.section
+        skin = core.offset(2.0 * _SKIN_MM, m3.JoinType.Round) - core.offset(_SKIN_MM, m3.JoinType.Round)
+        common = np.minimum(high, screw.high) - np.maximum(low, screw.low)
+        around = np.all((bounds[:, :2] < bounds[a, :2]) & (bounds[:, 2:] > bounds[a, 2:]), axis=1)
+        depth: dict[int, float] = {}
+        for b in np.flatnonzero(around & (common > _TOUCH_MM)).tolist():
+            if (skin ^ slabs[b].section).area() > 0.9 * skin.area():
+                depth[slabs[b].owner] = depth.get(slabs[b].owner, 0.0) + float(common[b])
+        for j, deep in depth.items():
+            if deep >= THREAD_SHARE * _diameter_mm(part) - _TOUCH_MM:
+                tied[screw.owner, j] = tied[j, screw.owner] = True
+    return tied
+
+
+def _joints(placed: Sequence[Instance], runs_into: dict[tuple[str, str], Bools]) -> Bools:
+    """True at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
+    tied = np.zeros((len(placed), len(placed)), dtype=bool)
+    for i, instance in enumerate(placed):
+        if not instance.part.joined:
+            continue
+        partner = instance.part.joined.split()[-1]
+        for j, other in enumerate(placed):
+            if other.part.name == partner and any(
+                runs_into[axis, "+"][i, j] and runs_into[axis, "-"][i, j] for axis in _AXES
+            ):
+                tied[i, j] = tied[j, i] = True
+    return tied
+
+
+def _diameter_mm(part: Part) -> float:
+    """Of a screw: of its widest cylinder below the head."""
+    radii = sorted({float(p.outline.radius_mm) for p in part.prisms if isinstance(p.outline, Circle)})
+    return 2.0 * radii[min(1, len(radii) - 1)]
+
+
+def _slabs(placed: Iterable[Instance]) -> list[_Slab]:
+    local: dict[int, list[tuple[m3.CrossSection, float, float]]] = {}
+    found = []
+    for k, instance in enumerate(placed):
+        key = id(instance.part)
+        if key not in local:
+            local[key] = list(_sections(instance.part))
+        world = instance.world
+        flat = np.hstack([world[[0, 2]][:, :2], world[[0, 2]][:, 3:]])
+        for section, z0, z1 in local[key]:
+            low, high = sorted(float(world[1, 2] * z + world[1, 3]) for z in (z0, z1))
+            found.append(_Slab(owner=k, section=section.transform(flat), low=low, high=high))
+    return found
+
+
+def _sections(part: Part) -> Iterator[tuple[m3.CrossSection, float, float]]:
+    """The prisms of a part, a slice of its balls, and discs for its countersunk heads."""
+    for prism in part.prisms:
+        section = _section([_blunt(prism.outline)])
+        if prism.holes:
+            section -= _section([_blunt(hole) for hole in prism.holes])
+        yield section, float(prism.z0_mm), float(prism.z1_mm)
+    for ball in part.balls:
+        if ball.pocket is not None:
+            disc = _section([Circle(radius_mm=ball.radius_mm, y_mm=ball.y_mm)])
+            yield disc - _section([ball.pocket.outline]), float(ball.pocket.z0_mm), float(ball.pocket.z1_mm)
+    heights = [float(z) for p in part.prisms for z in (p.z0_mm, p.z1_mm)]
+    for z in part.countersunk_mm:
+        seat = float(z)
+        shank = next(p for p in part.prisms if min(abs(float(p.z0_mm) - seat), abs(float(p.z1_mm) - seat)) < _TOUCH_MM)
+        assert isinstance(shank.outline, Circle)
+        out = seat + (_HEAD_MM if seat > 0.5 * (min(heights) + max(heights)) else -_HEAD_MM)
+        yield _section([Circle(radius_mm=_HEAD * float(shank.outline.radius_mm))]), min(seat, out), max(seat, out)
+
+
+def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
+    return m3.CrossSection(all_polygons(shapes, _TOLERANCE_MM), m3.FillRule.NonZero)
+
+
+def _blunt(shape: Shape) -> Shape:
+    """A gear without its teeth: what is surely material, or surely not."""
+    if isinstance(shape, ExternalGear | InternalGear):
+        return Circle(radius_mm=float(shape.root_radius_mm))
+    return shape

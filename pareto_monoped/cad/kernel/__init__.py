@@ -1,0 +1,1 @@
+"""The CAD kernel (Open CASCADE) in a process of its own: solids, their properties, STEP files."""

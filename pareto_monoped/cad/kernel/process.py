@@ -1,0 +1,88 @@
+"""The process that holds the CAD kernel: answers the questions of ``kernel`` until its input ends."""
+
+import os
+import pickle
+import signal
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, BinaryIO
+
+import numpy as np
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+
+from pareto_monoped.cad.kernel import step
+from pareto_monoped.cad.kernel.client import SolidFacts, Tree
+from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
+from pareto_monoped.geometry.parts import Ball, Part, Prism
+
+
+def solid_facts(parts: list[Part]) -> list[SolidFacts]:
+    """What the solids of some parts are like."""
+    return [_facts(part.prisms, part.balls) for part in parts]
+
+
+def step_files(tree: Tree) -> tuple[bytes, dict[str, bytes]]:
+    """The STEP file of the assembly, and those of its kinds of parts by name."""
+    # Kinds of one geometry, such as both sprockets, share a solid that is kept; a document takes it for one part.
+    solids = {name: BRepBuilderAPI_Copy(solid_of(part)).Shape() for name, part in tree.kinds.items()}
+    colours = {name: part.material.colour for name, part in tree.kinds.items()}
+    return (
+        step.assembly_step(tree, solids),
+        {name: step.part_step(solid, name, colours[name]) for name, solid in solids.items()},
+    )
+
+
+# As many as there are solids kept.
+@lru_cache(maxsize=256)
+def _facts(prisms: tuple[Prism, ...], balls: tuple[Ball, ...]) -> SolidFacts:
+    solid = solid_from(prisms, balls)
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(solid, properties)
+    centre, matrix = properties.CentreOfMass(), properties.MatrixOfInertia()
+    return SolidFacts(
+        valid=bool(BRepCheck_Analyzer(solid, True).IsValid()),
+        bodies=len(solids_in(solid)),
+        volume_mm3=properties.Mass(),
+        centre_mm=np.array([centre.X(), centre.Y(), centre.Z()]),
+        inertia_mm5=np.array([[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)]),
+    )
+
+
+_ANSWERS: dict[str, Callable[[Any], Any]] = {"solid_facts": solid_facts, "step_files": step_files}
+
+
+def serve(questions: BinaryIO, answers: BinaryIO) -> None:
+    """Answer until the questions end; what goes wrong is an answer too."""
+    while True:
+        try:
+            question, argument = pickle.load(questions)  # noqa: S301 - from the process that started this one
+        except EOFError:
+            return
+        try:
+            answer = _ANSWERS[question](argument)
+        except Exception as problem:
+            answer = problem
+        pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)
+        answers.flush()
+
+
+def main() -> None:
+    """Serve the process that started this one."""
+    # An interrupt is that one's to handle; it then closes our input.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The kernel may print: not between the answers.
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    try:
+        serve(sys.stdin.buffer, answers)
+    except BrokenPipeError:
+        # Nobody listens any more.
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

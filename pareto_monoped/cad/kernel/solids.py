@@ -1,0 +1,132 @@
+"""Part -> solid: a face with holes and one extrusion for every prism, then one fusion of what touches. Millimetres.
+
+The kernel (Open CASCADE) is called without a layer above it: it takes a fifth of the time to import.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from OCP.BOPAlgo import BOPAlgo_GlueShift
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakePrism, BRepPrimAPI_MakeSphere
+from OCP.collections import HArray1_gp_Pnt, List_TopoDS_Shape
+from OCP.GC import GC_MakeArcOfCircle
+from OCP.Geom import Geom_BSplineCurve
+from OCP.GeomAPI import GeomAPI_Interpolate
+from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt, gp_Vec
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
+
+from pareto_monoped.cad.shape.curves import Loop, Points, Spline, ends, on_arc
+from pareto_monoped.cad.shape.outlines import loops
+from pareto_monoped.cad.shape.stacks import regrouped
+from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Line
+
+_UP = gp_Dir(0.0, 0.0, 1.0)
+_FIT_MM = 1e-6  # how exactly splines go through their points
+
+
+def solid_of(part: Part) -> TopoDS_Shape:
+    """One instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
+
+    The part's numbers must be floats, not arrays.
+    """
+    return solid_from(part.prisms, part.balls)
+
+
+@lru_cache(maxsize=256)
+def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...]) -> TopoDS_Shape:
+    """The same from the part's geometry; kept, as designs of one study share most of their 70 kinds of parts."""
+    pieces = [piece for prism in regrouped(prisms) for piece in _extruded(prism)]
+    pieces += [_ball(ball) for ball in balls]
+    return pieces[0] if len(pieces) == 1 else _fused(pieces)
+
+
+def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
+    """The solids that a shape is made of, itself if it is one."""
+    explorer, found = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID), []
+    while explorer.More():
+        found.append(explorer.Current())
+        explorer.Next()
+    return found
+
+
+def wire_of(loop: Loop, z_mm: float = 0.0) -> TopoDS_Wire:
+    """A closed curve as a wire in a plane across the z axis, anticlockwise."""
+    wire = BRepBuilderAPI_MakeWire()
+    for edge in _circle(loop.circle, z_mm) if loop.circle is not None else _edges(loop, z_mm):
+        wire.Add(edge)
+    return wire.Wire()
+
+
+def _circle(circle: Circle, z_mm: float) -> Iterator[TopoDS_Edge]:
+    axes = gp_Ax2(gp_Pnt(float(circle.x_mm), float(circle.y_mm), z_mm), _UP)
+    yield BRepBuilderAPI_MakeEdge(gp_Circ(axes, float(circle.radius_mm))).Edge()
+
+
+def _edges(loop: Loop, z_mm: float) -> Iterator[TopoDS_Edge]:
+    for piece in loop.pieces:
+        if isinstance(piece, Spline):
+            yield BRepBuilderAPI_MakeEdge(_spline(piece, z_mm)).Edge()
+            continue
+        first, last = (_point(end, z_mm) for end in ends(piece))
+        if isinstance(piece, Line):
+            yield BRepBuilderAPI_MakeEdge(first, last).Edge()
+        else:
+            middle = on_arc(piece, 0.5 * (float(piece.start_rad) + float(piece.end_rad)))
+            yield BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(first, _point(middle, z_mm), last).Value()).Edge()
+
+
+def _point(xy: Points, z_mm: float) -> gp_Pnt:
+    return gp_Pnt(float(xy[0]), float(xy[1]), z_mm)
+
+
+def _spline(piece: Spline, z_mm: float) -> Geom_BSplineCurve:
+    points = HArray1_gp_Pnt(1, len(piece.points_mm))
+    for k, point in enumerate(piece.points_mm, 1):
+        points.SetValue(k, _point(point, z_mm))
+    through = GeomAPI_Interpolate(points, False, _FIT_MM)
+    through.Perform()
+    return through.Curve()
+
+
+def _extruded(prism: Prism) -> Iterator[TopoDS_Shape]:
+    z0, z1 = float(prism.z0_mm), float(prism.z1_mm)
+    outlines = loops(prism.outline)
+    # Holes belong to the one region; a pattern of discs has none.
+    holes = [wire_of(loop, z0) for hole in prism.holes for loop in loops(hole)] if len(outlines) == 1 else []
+    for outline in outlines:
+        face = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, z0), _UP), wire_of(outline, z0), True)
+        for hole in holes:
+            face.Add(TopoDS.Wire(hole.Reversed()))
+        yield BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, z1 - z0)).Shape()
+
+
+def _ball(ball: Ball) -> TopoDS_Shape:
+    radius, top, y = float(ball.radius_mm), float(ball.top_mm), float(ball.y_mm)
+    sphere = BRepPrimAPI_MakeSphere(gp_Ax2(gp_Pnt(0.0, y, 0.0), _UP), radius).Shape()
+    above = BRepPrimAPI_MakeBox(gp_Pnt(-radius, y + top, -radius), 2.0 * radius, radius, 2.0 * radius).Shape()
+    shape = BRepAlgoAPI_Cut(sphere, above).Shape()
+    if ball.pocket is not None:
+        for pocket in _extruded(ball.pocket):
+            shape = BRepAlgoAPI_Cut(shape, pocket).Shape()
+    return solids_in(shape)[0]
+
+
+def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
+    """Everything that touches as one solid; the pieces share faces but no volume, so that glueing is enough."""
+    arguments, tools = List_TopoDS_Shape(), List_TopoDS_Shape()
+    arguments.Append(pieces[0])
+    for piece in pieces[1:]:
+        tools.Append(piece)
+    fuse = BRepAlgoAPI_Fuse()
+    fuse.SetArguments(arguments)
+    fuse.SetTools(tools)
+    fuse.SetGlue(BOPAlgo_GlueShift)
+    fuse.Build()
+    result = fuse.Shape()
+    solids = solids_in(result)
+    return solids[0] if len(solids) == 1 else result

@@ -1,0 +1,1 @@
+"""Pictures without a display: shaded views, sections and their legends."""

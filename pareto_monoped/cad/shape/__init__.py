@@ -1,0 +1,1 @@
+"""Part -> flat curves, gear teeth, triangle meshes."""

@@ -1,0 +1,1 @@
+"""One module per file format, and the folder that they are written to."""

@@ -1,0 +1,146 @@
+"""Many robots at once: what the simulation needs of a population of designs, as arrays."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.design import NAMES
+from pareto_monoped.robot.build import leg_dimensions
+from pareto_monoped.robot.frames import JOINTS, Floats
+from pareto_monoped.robot.tables import actuator_table, weighed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MassOptions:
+    """What a calibration may set in place of the part-by-part masses; None keeps the parts.
+
+    Attributes:
+        base_structure_mass_kg: mass of the base frame, without the hip actuator.
+        foot_mass_kg, foot_radius_m: of the foot.
+        link_mass_scale: factor on mass and inertia of both links, without the foot.
+        rotor_inertia_kg_m2: of one motor about its axis, with all that turns at its speed.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    base_structure_mass_kg: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+    foot_mass_kg: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+    foot_radius_m: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+    link_mass_scale: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 1.0
+    rotor_inertia_kg_m2: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+
+
+PARTS_ONLY = MassOptions()
+"""Every mass from the parts: what is exported to CAD."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotArrays:
+    """What the simulation needs of n robots; the last axes are in the order of ``BODIES`` and ``JOINTS``.
+
+    Body frames: ``base`` at the hip axis, ``thigh`` at the hip axis, ``shank`` at the knee axis; x forward, y to the
+    left (the joint axes), z up; at zero joint angles both links hang straight down along -z.
+
+    Attributes:
+        thigh_length_m, shank_length_m: hip axis to knee axis, knee axis to foot centre, shape (n,).
+        body_mass_kg: shape (n, 3).
+        body_com_m: centres of mass in the body frames, shape (n, 3, 3).
+        body_inertia_kg_m2: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3).
+        foot_radius_m: shape (n,).
+        ratio: real ratios of the gearboxes (not the searched ones), shape (n, 2).
+        armature_kg_m2: reflected inertia of all that turns with the motor, at the joint, shape (n, 2).
+        peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2).
+        no_load_speed_rad_per_s: at the joint, shape (n, 2).
+        efficiency: of the gear mesh, shape (n, 2).
+        torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, shape (n, 2).
+        reason: why the robot cannot be built, empty if it can, n strings.
+    """
+
+    thigh_length_m: NDArray[np.float64]
+    shank_length_m: NDArray[np.float64]
+    body_mass_kg: NDArray[np.float64]
+    body_com_m: NDArray[np.float64]
+    body_inertia_kg_m2: NDArray[np.float64]
+    foot_radius_m: NDArray[np.float64]
+    ratio: NDArray[np.float64]
+    armature_kg_m2: NDArray[np.float64]
+    peak_torque_n_m: NDArray[np.float64]
+    continuous_torque_n_m: NDArray[np.float64]
+    no_load_speed_rad_per_s: NDArray[np.float64]
+    efficiency: NDArray[np.float64]
+    torque_constant_n_m_per_a: NDArray[np.float64]
+    winding_resistance_ohm: NDArray[np.float64]
+    reason: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.thigh_length_m)
+
+
+def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOptions = PARTS_ONLY) -> RobotArrays:
+    """Weigh many robots at once, by the same part functions as ``build_robot``.
+
+    Links between 0.25 and 0.55 m come from tables of these functions, equal to 12 digits and many times as fast.
+
+    Args:
+        designs: shape (n, 7), in the order of ``design.NAMES``; finite, with links longer than zero.
+        actuator_map: the gearboxes.
+        options: what stands in for part-by-part masses.
+
+    Returns:
+        A row a design. Rows with a ``reason`` (no gearbox of that ratio) hold the numbers of some other gearbox.
+    """
+    values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+    thigh_m, shank_m = values[:, 0], values[:, 1]
+    table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
+    intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
+    reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
+    hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
+
+    frame = table.frame.rows(knee)
+    if options.base_structure_mass_kg is not None:
+        frame = frame.scaled(options.base_structure_mass_kg / frame.mass_kg)
+    (thigh,), (shank, foot) = weighed("thigh", leg, thigh_m), weighed("shank", leg, shank_m)
+    if options.foot_mass_kg is not None:
+        foot = foot.scaled(options.foot_mass_kg / foot.mass_kg)
+    bodies = (
+        frame + table.at_hip.rows(hip),
+        thigh.scaled(options.link_mass_scale) + table.journal.rows(knee) + table.at_knee.rows(knee),
+        shank.scaled(options.link_mass_scale) + foot,
+    )
+    rows = np.stack([hip, knee], axis=1)
+    armature = table.armature_kg_m2[rows]
+    if options.rotor_inertia_kg_m2 is not None:
+        armature = options.rotor_inertia_kg_m2 * np.square(table.ratio[rows])
+    foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
+    motor = actuator_map.motor
+    return RobotArrays(
+        thigh_length_m=thigh_m.copy(),
+        shank_length_m=shank_m.copy(),
+        body_mass_kg=np.stack([body.mass_kg for body in bodies], axis=1),
+        body_com_m=np.stack([body.com_m for body in bodies], axis=1),
+        body_inertia_kg_m2=np.stack([body.inertia_kg_m2 for body in bodies], axis=1),
+        foot_radius_m=np.full(len(values), foot_radius_m),
+        ratio=table.ratio[rows],
+        armature_kg_m2=armature,
+        peak_torque_n_m=table.peak_torque_n_m[rows],
+        continuous_torque_n_m=table.continuous_torque_n_m[rows],
+        no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
+        efficiency=table.efficiency[rows],
+        torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
+        winding_resistance_ohm=np.full(rows.shape, motor.winding_resistance_ohm),
+        reason=reason,
+    )
+
+
+def _missing(actuator_map: ActuatorMap, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
+    """Why robot i has no gearbox, empty if it has both."""
+    for joint in JOINTS:
+        if intervals[joint][i] < 0:
+            ratio = float(values[i, NAMES.index(f"{joint}_ratio")])
+            return f"{joint}_ratio = {ratio:g}: {actuator_map.why_not(ratio)}"
+    return ""

@@ -1,0 +1,136 @@
+"""Every part of a robot is held; a missing ring, screw, shoulder or joint is found and the loose part named."""
+
+import dataclasses
+
+import pytest
+
+from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.check import checks
+from pareto_monoped.cad.check.retention import FASTENER, PLAY_MM, loose_parts
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.geometry.screws import LENGTHS_MM
+from pareto_monoped.robot.build import build_robot
+
+
+def loose(robot):
+    """Names of what is loose, numbers of instances cut off, with the directions."""
+    return {found.name.rstrip("_0123456789"): found.directions for found in loose_parts(robot)[0]}
+
+
+def with_parts(robot, change):
+    """The robot with other records."""
+    units = tuple(
+        dataclasses.replace(unit, parts=tuple(p for part in unit.parts for p in change(unit, part)))
+        for unit in robot.units
+    )
+    return dataclasses.replace(robot, units=units)
+
+
+def without(robot, name):
+    changed = with_parts(robot, lambda unit, part: () if f"{unit.name}/{part.name}" == name else (part,))
+    assert sum(len(unit.parts) for unit in changed.units) == sum(len(unit.parts) for unit in robot.units) - 1
+    return changed
+
+
+def replaced(robot, name, **fields):
+    def change(unit, part):
+        return (dataclasses.replace(part, **fields) if f"{unit.name}/{part.name}" == name else part,)
+
+    return with_parts(robot, change)
+
+
+@pytest.fixture(scope="module")
+def robot(actuator_map):
+    """Case A: the five-planet ISSPG at the hip, an ESSPG at the knee."""
+    return build_robot(PAPER_CASES["A"].design, actuator_map)
+
+
+@pytest.mark.parametrize("motor", motor_names())
+def test_every_part_is_held_on_either_family_of_any_motor(motor):
+    found = map_for(motor)
+    families = {}
+    for entry in found.entries:
+        if entry.actuator is not None:
+            families.setdefault(entry.actuator.family, entry.actuator.ratio)
+    ratios = list(families.values())
+    design = PAPER_CASES["A"].design.replace({"knee_ratio": ratios[-1], "hip_ratio": ratios[0]})
+    assert loose_parts(build_robot(design, found)) == ([], pytest.approx(200, abs=30))
+
+
+@pytest.mark.parametrize(
+    ("removed", "freed"),
+    [
+        # The ring holds the carrier in the main bearing, and with it the whole thigh against the base.
+        ("hip_actuator/retaining_ring", {"hip_actuator/carrier", "thigh/thigh_plate_inner", "foot/foot"}),
+        ("knee_actuator/retaining_ring", {"knee_actuator/carrier", "thigh/drive_sprocket"}),
+        ("knee_actuator/bore_retaining_ring", {"knee_actuator/main_bearing", "knee_actuator/carrier"}),
+        ("knee_actuator/planet_pin_screw", {"knee_actuator/secondary_carrier", "knee_actuator/planet"}),
+        ("hip_actuator/planet_bush", {"hip_actuator/planet"}),
+        ("hip_actuator/backplate_screw", {"hip_actuator/backplate", "hip_actuator/motor_rotor"}),
+        ("knee_actuator/coupling_screw", {"knee_actuator/coupling", "knee_actuator/sun"}),
+        ("base_frame/hip_mount_screw", {"hip_actuator/casing", "hip_actuator/motor_stator"}),
+        ("journal/journal_screw", {"knee_actuator/motor_stator", "knee_actuator/motor_rotor"}),
+        ("thigh/hip_coupling_screw", {"thigh/hip_coupling"}),
+        ("thigh/turnbuckle_end", {"thigh/turnbuckle_barrel"}),
+        ("thigh/drive_sprocket", {"thigh/drive_coupling"}),
+        ("thigh/knee_bearing", {"shank/knee_axle", "foot/foot"}),
+        ("shank/knee_bolt", {"shank/shank_plate", "foot/foot"}),
+        ("shank/foot_bolt", {"shank/foot_block", "foot/foot"}),
+    ],
+)
+def test_what_a_missing_part_held_is_named(robot, removed, freed):
+    assert freed <= set(loose(without(robot, removed)))
+
+
+def test_a_joint_without_a_shape_must_be_named_and_be_there(robot):
+    assert loose(replaced(robot, "hip_actuator/ring", joined="")) == {"hip_actuator/ring": ("+y",)}
+    assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joined="bonded into rear_bearing"))
+    assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joined="held by magic"))
+
+
+def test_words_alone_hold_nothing(robot):
+    moved = replaced(robot, "hip_actuator/rear_bearing", places_mm=((200.0, 0.0, 0.0),), joined="bonded into backplate")
+    assert loose(moved)["hip_actuator/rear_bearing"] == ("+x", "-x", "+y", "-y", "+z", "-z")
+
+
+def test_a_screw_too_short_for_its_thread_is_found(robot):
+    head, shank, thread = next(p for p in robot.hip.parts if p.name == "backplate_screw").prisms
+    short = (head, shank, dataclasses.replace(thread, z1_mm=thread.z0_mm + 1.0))
+    assert "hip_actuator/backplate_screw" in loose(replaced(robot, "hip_actuator/backplate_screw", prisms=short))
+
+
+def test_play_beyond_the_limit_is_found(robot):
+    """Bushes of the planets' own width would leave them 1.5 mm of play to either side."""
+    planet = next(p for p in robot.hip.parts if p.name == "planet")
+    bush = next(p for p in robot.hip.parts if p.name == "planet_bush")
+    low, high = min(p.z0_mm for p in planet.prisms), max(p.z1_mm for p in planet.prisms)
+    narrow = (dataclasses.replace(bush.prisms[0], z0_mm=low, z1_mm=high),)
+    assert PLAY_MM < 1.5
+    assert {"hip_actuator/planet_bush", "hip_actuator/planet"} <= set(
+        loose(replaced(robot, "hip_actuator/planet_bush", prisms=narrow))
+    )
+
+
+def test_the_check_names_what_is_loose(product):
+    faulty = dataclasses.replace(product, robot=without(product.robot, "hip_actuator/backplate_screw"))
+    check = checks._retention(faulty)
+    assert not check.passed
+    assert "hip_actuator/backplate is not held along +y" in check.failures
+    assert checks._retention(product).passed
+
+
+def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
+    """Length as bought: under the head, or over all where it is flush."""
+    seen = 0
+    for unit in robot.units:
+        for part in unit.parts:
+            if not FASTENER.search(part.name) or part.name.endswith("_bolt"):
+                continue
+            radii = sorted({float(p.outline.radius_mm) for p in part.prisms})
+            heads = [] if part.countersunk_mm else [p for p in part.prisms if p.outline.radius_mm == radii[-1]]
+            length = sum(float(p.z1_mm - p.z0_mm) for p in part.prisms if p not in heads)
+            assert length == pytest.approx(LENGTHS_MM[abs(LENGTHS_MM - length).argmin()]), part.name
+            assert part.note.startswith(f"M{2.0 * radii[1]:g} x {length:g} "), part.note
+            seen += 1
+    assert seen >= 17

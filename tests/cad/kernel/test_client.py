@@ -1,0 +1,55 @@
+"""The kernel's process answers, says what went wrong, and is replaced when it dies."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pareto_monoped.cad.kernel import client as kernel
+from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.shapes import Circle, rectangle
+
+STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
+PLATE = Part(
+    name="plate",
+    material=STEEL,
+    process="machined",
+    prisms=(
+        Prism(
+            outline=rectangle(width_mm=20.0, height_mm=10.0),
+            z0_mm=1.0,
+            z1_mm=4.0,
+            holes=(Circle(radius_mm=2.0, x_mm=5.0),),
+        ),
+    ),
+)
+
+
+def test_facts_of_a_plate_with_a_hole():
+    (facts,) = kernel.solid_facts([PLATE]).result()
+    volume = 20.0 * 10.0 * 3.0 - np.pi * 4.0 * 3.0
+    assert facts.valid
+    assert facts.bodies == 1
+    assert facts.volume_mm3 == pytest.approx(volume, rel=1e-9)
+    assert facts.centre_mm == pytest.approx([-np.pi * 4.0 * 3.0 * 5.0 / volume, 0.0, 2.5], abs=1e-9)
+    # About z: the plate's less the disc's, moved to the common centre.
+    disc = np.pi * 4.0 * 3.0
+    about_origin = 600.0 * (20.0**2 + 10.0**2) / 12.0 - disc * (2.0 + 25.0)
+    assert facts.inertia_mm5[2, 2] == pytest.approx(about_origin - volume * facts.centre_mm[0] ** 2, rel=1e-9)
+
+
+def test_what_goes_wrong_there_is_raised_here_and_the_next_question_is_answered():
+    bad = dataclasses.replace(PLATE, prisms=(dataclasses.replace(PLATE.prisms[0], outline="no shape"),))
+    with pytest.raises(TypeError, match="no outline for a shape of kind str"):
+        kernel.solid_facts([bad]).result()
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+
+
+def test_a_kernel_that_dies_is_replaced():
+    kernel.start()
+    first = kernel._process().process
+    first.kill()
+    with pytest.raises(RuntimeError, match=r"the CAD kernel's process ended \(exit code -9\)"):
+        kernel.solid_facts([PLATE]).result()
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+    assert kernel._process().process is not first

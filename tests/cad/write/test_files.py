@@ -1,0 +1,135 @@
+"""Files are read back by other programs' readers: build123d, ezdxf, trimesh, lib3mf, the XML and PNG standards."""
+
+import csv
+import io
+import json
+
+import build123d as bd
+import ezdxf
+import lib3mf
+import numpy as np
+import pytest
+import trimesh
+from ezdxf import edgeminer, edgesmith
+from ezdxf.path import make_path
+from PIL import Image
+
+from pareto_monoped.cad.shape.outlines import loops
+from pareto_monoped.cad.write.dxf import LAYER, dxf, is_flat
+from pareto_monoped.cad.write.triangles import glb, stl, threemf
+
+
+def test_assembly_step_gives_back_solids_names_colours_and_volumes(exported):
+    shape = bd.import_step(exported.folder / "assembly.step")
+    assert [unit.label for unit in shape.children] == [
+        "base_frame", "hip_actuator", "thigh", "knee_actuator", "journal", "shank", "foot",
+    ]  # fmt: skip
+    with (exported.folder / "bom.csv").open() as stream:
+        rows = {row["part"]: row for row in csv.DictReader(stream)}
+    leaves = [leaf for unit in shape.children for leaf in unit.children]
+    assert len(shape.solids()) == len(leaves) == sum(int(row["count"]) for row in rows.values())
+    names = [leaf.label for leaf in leaves]
+    assert {name: names.count(name) for name in rows} == {name: int(row["count"]) for name, row in rows.items()}
+    densities = {"aluminium": 2710.0, "printed plastic": 1430.0, "steel": 7850.0, "gear steel": 7850.0}
+    for leaf in leaves:
+        row = rows[leaf.label]
+        assert leaf.color is not None
+        if row["made_or_bought"] == "made" and row["material"] in densities:
+            mass_g = leaf.volume * 1e-6 * densities[row["material"]]
+            assert mass_g == pytest.approx(float(row["mass_g"]), rel=2e-3, abs=0.006), leaf.label
+
+
+def test_laser_drawings_hold_outline_and_holes_on_one_layer(product):
+    flat = [kind for kind in product.unique if is_flat(kind.part)]
+    assert {kind.name for kind in flat} == {"base_near_cheek", "thigh_plate_inner", "thigh_plate_outer", "shank_plate"}
+    for kind in flat:
+        document = ezdxf.read(io.StringIO(dxf(kind.part)))
+        assert document.audit().errors == []
+        entities = list(document.modelspace())
+        assert {entity.dxf.layer for entity in entities} == {LAYER}
+        circles = [entity for entity in entities if entity.dxftype() == "CIRCLE"]
+        holes = [loop for hole in kind.part.prisms[0].holes for loop in loops(hole)]
+        assert len(circles) == sum(loop.circle is not None for loop in holes)
+        # The area that the drawing encloses, by chaining its lines and arcs, is the plate's.
+        edges = list(edgesmith.edges_from_entities_2d(entity for entity in entities if entity.dxftype() != "CIRCLE"))
+        closed = edgeminer.find_all_simple_chains(edgeminer.Deposit(edges, gap_tol=1e-4))
+        areas = sorted((abs(_area(chain)) for chain in closed), reverse=True)
+        enclosed = areas[0] - sum(areas[1:]) - sum(np.pi * circle.dxf.radius**2 for circle in circles)
+        prism = kind.part.prisms[0]
+        assert enclosed == pytest.approx(float(kind.part.volume_mm3()) / (prism.z1_mm - prism.z0_mm), rel=2e-3)
+
+
+def _area(chain):
+    polyline = edgesmith.lwpolyline_from_chain(chain)
+    points = np.array([tuple(p)[:2] for p in make_path(polyline).flattening(0.01)])
+    x, y = points.T
+    return 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+
+
+def test_a_part_that_is_not_flat_has_no_drawing(product):
+    axle = next(kind.part for kind in product.unique if kind.name == "knee_axle")
+    with pytest.raises(ValueError, match="knee_axle: not a flat part"):
+        dxf(axle)
+
+
+def test_stl_in_millimetres_and_metres(product):
+    kind = next(kind for kind in product.unique if kind.name == "thigh_core")
+    for scale in (1.0, 1e-3):
+        mesh = trimesh.load(io.BytesIO(stl(kind.mesh, scale=scale)), file_type="stl")
+        assert mesh.is_watertight
+        assert mesh.volume == pytest.approx(float(kind.part.volume_mm3()) * scale**3, rel=1e-3)
+
+
+def test_3mf_is_read_by_its_consortium_s_library(product, tmp_path):
+    kind = next(kind for kind in product.unique if kind.name == "shank_core")
+    path = tmp_path / "core.3mf"
+    path.write_bytes(threemf(kind.mesh, kind.name))
+    model = lib3mf.Wrapper().CreateModel()
+    reader = model.QueryReader("3mf")
+    reader.SetStrictModeActive(True)
+    reader.ReadFromFile(str(path))
+    assert reader.GetWarningCount() == 0
+    found = model.GetMeshObjects()
+    assert found.MoveNext()
+    body = found.GetCurrentMeshObject()
+    assert body.GetName() == "shank_core"
+    assert body.IsManifoldAndOriented()
+    assert body.GetTriangleCount() == len(kind.mesh.triangles)
+    assert min(v.Coordinates[2] for v in body.GetVertices()) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_glb_shares_geometry_and_stands_upright_in_metres(product):
+    scene = trimesh.load_scene(io.BytesIO(glb(product)), file_type="glb")
+    assert len(scene.geometry) == len(product.unique)
+    assert len(scene.graph.nodes_geometry) == len(product.instances)
+    bodies = [body.bounding_box() for body in product.world_bodies()]
+    low, high = np.min([b[:3] for b in bodies], axis=0), np.max([b[3:] for b in bodies], axis=0)
+    # glTF: x to the left, y up, z to the front.
+    assert scene.bounds[0] == pytest.approx(1e-3 * low[[1, 2, 0]], abs=1e-5)
+    assert scene.bounds[1] == pytest.approx(1e-3 * high[[1, 2, 0]], abs=1e-5)
+
+
+def test_pictures_show_something_on_white(exported):
+    for name in ("assembly.png", "knee_actuator_section.png"):
+        with Image.open(exported.folder / name) as image:
+            image.load()
+            pixels = np.asarray(image)
+        assert image.mode == "RGB"
+        assert min(image.size) > 600
+        drawn = np.any(pixels < 250, axis=2)
+        assert 0.1 < drawn.mean() < 0.8
+        assert pixels[0, 0].tolist() == [255, 255, 255]
+
+
+def test_design_record_and_readme_tell_the_same(exported):
+    record = json.loads((exported.folder / "design.json").read_text())
+    text = (exported.folder / "README.md").read_text()
+    assert record["searched"]["thigh_length_m"] == 0.490037
+    assert record["as_built"]["thigh_length_m"] == 0.49
+    assert record["as_built"]["knee_ratio"] == 6.0
+    assert record["source"] == {"case": "C"}
+    for name in record["files"]:
+        assert (exported.folder / name).is_file()
+    for height in (record["jumps"][kind]["height_m"] for kind in ("searched", "as_built")):
+        assert f"{height:.4g}" in text
+    assert "teeth 18/36/90" in text

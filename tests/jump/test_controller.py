@@ -1,0 +1,137 @@
+"""The controller at single states, against the paper's equations worked out by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pareto_monoped.jump import controller as k
+
+THIGH, SHANK, RADIUS, WEIGHT = 0.4, 0.4, 0.03, 30.0
+STIFFNESS, DAMPING, TORSION = 20.0, 3.0, 15.0
+NO_LOAD, CORNER = 80.0, 60.0
+
+
+def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, memory=None, latch=True):
+    """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the memory after one call."""
+    if memory is None:
+        memory = np.zeros(k.N_ROW)
+    memory[[k.THIGH, k.SHANK, k.FOOT_RADIUS, k.STIFFNESS, k.DAMPING, k.TORSION, k.WEIGHT]] = (
+        THIGH, SHANK, RADIUS, STIFFNESS, DAMPING, TORSION, WEIGHT,
+    )  # fmt: skip
+    memory[k.PEAK_HIP : k.PEAK_KNEE + 1] = peak
+    memory[k.NO_LOAD_HIP : k.NO_LOAD_KNEE + 1] = NO_LOAD
+    memory[k.CORNER_HIP : k.CORNER_KNEE + 1] = CORNER
+    memory[k.LOSS_HIP : k.LOSS_KNEE + 1] = loss
+    memory[[k.REST_LENGTH, k.TIMESTEP, k.STEP_LIMIT, k.FADE_LENGTH]] = 10.0, 0.001, 3000, fade
+    memory[[k.STAGES, k.LATCH, k.LOSS_SPEED, k.VOLTAGE_LIMIT]] = 1.0, latch, 0.5, 1.0
+    foot = -THIGH * np.cos(hip) - SHANK * np.cos(hip + knee)
+    qpos, qvel = np.array([0.0, clearance + RADIUS - foot, hip, knee]), np.array([0.0, 0.1, *speeds])
+    ctrl = np.zeros(2)
+    k.control(qpos, qvel, ctrl, memory)
+    return np.array([memory[k.TORQUE_HIP], memory[k.TORQUE_KNEE], *ctrl]), memory[k.STATUS], memory
+
+
+def foot(hip, knee):
+    angle = hip + knee
+    return np.array([-THIGH * np.sin(hip) - SHANK * np.sin(angle), -THIGH * np.cos(hip) - SHANK * np.cos(angle)])
+
+
+def force_on_ground(hip, knee):
+    """(F_x, F_z) that the joint torques exert through the foot: tau = J^T F, J by finite differences."""
+    torque, _, _ = torques(hip, knee)
+    small = 1e-6
+    columns = [
+        (foot(hip + small, knee) - foot(hip - small, knee)) / (2 * small),
+        (foot(hip, knee + small) - foot(hip, knee - small)) / (2 * small),
+    ]
+    return np.linalg.solve(np.array(columns), torque[:2])
+
+
+@pytest.mark.parametrize(("hip", "side"), [(-0.4, "behind"), (-0.9, "in front")])
+def test_the_base_is_pushed_back_over_the_foot(hip, side):
+    knee = 1.3
+    x, z = foot(hip, knee)
+    assert (x < 0.0) == (side == "behind")
+    length, alpha = np.hypot(x, z), np.arctan2(-x, -z)
+    # Equations of section II-B, with F the force of the foot on the ground
+    axial, twist = STIFFNESS * (10.0 - length), -TORSION * alpha
+    fz = -axial * np.cos(alpha) + twist / length * np.sin(alpha) - WEIGHT
+    fx = -axial * np.sin(alpha) - twist / length * np.cos(alpha)
+    np.testing.assert_allclose(force_on_ground(hip, knee), [fx, fz], rtol=1e-6)
+    # The part of the torsional spring alone: the ground pushes the base towards the foot's side.
+    across = np.array([-np.cos(alpha), np.sin(alpha)]) * twist / length
+    assert np.sign(-across[0]) == np.sign(x)
+
+
+def test_symmetric_leg_needs_no_hip_torque_but_for_nothing():
+    # Foot straight below: alpha = 0, the force is vertical and passes through the hip.
+    knee = 1.2
+    torque, _, _ = torques(-knee / 2, knee)
+    length = 2 * THIGH * np.cos(knee / 2)
+    force = STIFFNESS * (10.0 - length) + WEIGHT
+    assert torque[0] == pytest.approx(0.0, abs=1e-12)
+    # Lever arm of the vertical force about the knee: thigh sin(hip angle); it straightens the leg (negative).
+    assert torque[1] == pytest.approx(-force * THIGH * np.sin(knee / 2))
+
+
+def test_damper_opposes_the_stretching_leg():
+    still, _, _ = torques(-0.6, 1.2)
+    stretching, _, _ = torques(-0.6, 1.2, speeds=(0.5, -1.0))
+    rate = 2 * THIGH * np.sin(0.6) * 0.5  # d(2 l cos(knee / 2)) / dt
+    assert stretching[1] - still[1] == pytest.approx(DAMPING * rate * THIGH * np.sin(0.6))
+
+
+@given(st.floats(-1.0, 0.0), st.floats(0.4, 2.0), st.floats(-90.0, 90.0), st.floats(-90.0, 90.0))
+def test_torque_stays_within_peak_and_voltage_line(hip, knee, hip_speed, knee_speed):
+    torque, _, _ = torques(hip, knee, speeds=(hip_speed, knee_speed), peak=5.0, loss=0.1)
+    assert np.all(np.abs(torque) <= 5.0)
+    for motor, speed in zip(torque[:2], (hip_speed, knee_speed), strict=True):
+        if motor * speed > 0.0:
+            line = 5.0 * max(NO_LOAD - abs(speed), 0.0) / (NO_LOAD - CORNER)
+            assert abs(motor) <= line + 1e-12
+
+
+def test_no_torque_drives_beyond_the_no_load_speed():
+    torque, _, _ = torques(-0.6, 1.2, speeds=(0.0, -NO_LOAD - 5.0), peak=5.0)
+    assert torque[1] == 0.0
+
+
+@pytest.mark.parametrize(("share", "left"), [(-0.5, 1.0), (0.0, 1.0), (0.25, 0.84375), (0.5, 0.5), (1.0, 0.0)])
+def test_torque_fades_smoothly_with_clearance(share, left):
+    full, _, _ = torques(-0.6, 1.2)
+    faded, _, _ = torques(-0.6, 1.2, clearance=share * 0.02)
+    assert faded[1] == pytest.approx(left * full[1], abs=1e-9)
+
+
+def test_a_foot_that_has_stood_and_risen_ends_control_for_good():
+    _, status, memory = torques(-0.6, 1.2)
+    assert status == k.RUNNING
+    _, status, _ = torques(-0.6, 1.2, clearance=0.021, memory=memory)
+    assert status == k.FLYING
+
+
+def test_a_foot_that_has_not_stood_yet_is_no_lift_off():
+    _, status, _ = torques(-0.6, 1.2, clearance=0.021)
+    assert status == k.RUNNING
+
+
+def test_literal_gate_is_all_or_nothing():
+    touching, _, _ = torques(-0.6, 1.2, clearance=-1e-6, fade=0.0)
+    clear, _, _ = torques(-0.6, 1.2, clearance=1e-6, fade=0.0)
+    assert touching[1] != 0.0
+    assert clear[1] == 0.0
+
+
+def test_losses_take_from_driving_and_add_to_braking():
+    driving, _, _ = torques(-0.6, 1.2, speeds=(0.0, -20.0), loss=0.1)
+    braking, _, _ = torques(-0.6, 1.2, speeds=(0.0, 20.0), loss=0.1)
+    assert driving[3] == pytest.approx(0.9 * driving[1])
+    assert braking[3] == pytest.approx(1.1 * braking[1])
+
+
+def test_a_state_that_is_not_finite_has_diverged():
+    _, status, _ = torques(np.nan, 1.2)
+    assert status == k.DIVERGED
+    _, status, _ = torques(-0.6, 1.2, speeds=(0.0, 2e4))
+    assert status == k.DIVERGED

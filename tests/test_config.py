@@ -1,0 +1,96 @@
+from dataclasses import dataclass
+from typing import Annotated
+
+import pytest
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.config import checked, read_toml
+from pareto_monoped.errors import InputError, MotorError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shell:
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    outer_diameter_mm: Annotated[float, Field(gt=0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thing:
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    mass_kg: Annotated[float, Field(gt=0)]
+    shell: Shell | None = None
+    name: str = "thing"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    inner_mm: float
+    outer_mm: float
+
+    def __post_init__(self):
+        if self.inner_mm >= self.outer_mm:
+            raise ValueError(
+                f"inner_mm = {self.inner_mm}: must be less than outer_mm = {self.outer_mm}; correct one of them"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pair:
+    ring: Ring
+
+
+def test_values_become_a_record():
+    thing = checked(Thing, {"mass_kg": 1, "shell": {"outer_diameter_mm": 2}}, source="file")
+    assert thing == Thing(mass_kg=1.0, shell=Shell(outer_diameter_mm=2.0))
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, ["mass_kg", "missing"]),
+        ({"mass_kg": 0}, ["mass_kg = 0", "greater than 0"]),
+        ({"mass_kg": "heavy"}, ["mass_kg = 'heavy'", "number"]),
+        ({"mass_kg": float("nan")}, ["mass_kg = nan", "greater than 0"]),
+        ({"mass_kg": 1, "mas_kg": 2}, ["unknown key 'mas_kg'", "mass_kg", "did you mean"]),
+        ({"mass_kg": 1, "colour": 2}, ["unknown key 'colour'", "allowed: mass_kg, name, shell"]),
+        ({"mass_kg": 1, "shell": {"outer_diameter_mm": -1}}, ["shell.outer_diameter_mm = -1", "greater than 0"]),
+        ({"mass_kg": 1, "shell": {}}, ["shell.outer_diameter_mm", "missing"]),
+    ],
+)
+def test_a_wrong_field_is_one_line_with_key_value_and_what_is_allowed(values, words):
+    with pytest.raises(MotorError) as caught:
+        checked(Thing, values, source="motor file my.toml", error=MotorError)
+    line = str(caught.value)
+    assert line.startswith("motor file my.toml: ")
+    assert "\n" not in line
+    for word in words:
+        assert word in line
+
+
+def test_toml_is_read(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("[a]\nb = 1\n")
+    assert read_toml(path, what="file") == {"a": {"b": 1}}
+
+
+def test_unreadable_toml_is_one_line(tmp_path):
+    path = tmp_path / "a.toml"
+    with pytest.raises(InputError, match="no such file"):
+        read_toml(path, what="motor file")
+    path.write_text("a = = 1")
+    with pytest.raises(InputError, match="not valid TOML"):
+        read_toml(path, what="motor file")
+    path.write_bytes(b"a = '\xff\xfe'")
+    with pytest.raises(InputError, match="not valid TOML"):
+        read_toml(path, what="motor file")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_toml(tmp_path, what="motor file")
+
+
+def test_a_complaint_of_a_records_own_ends_with_one_cure():
+    """It once ended with `correct one of them; correct it`."""
+    with pytest.raises(InputError) as caught:
+        checked(Pair, {"ring": {"inner_mm": 5.0, "outer_mm": 5.0}}, source="file")
+    assert str(caught.value) == "file: ring: inner_mm = 5.0: must be less than outer_mm = 5.0; correct one of them"
