@@ -19,6 +19,7 @@ LEVELS = [
     {"robot"},
     {"actuator", "leg"},
     {"geometry"},
+    {"measures"},
     {"design", "config"},
     {"files"},
     {"errors", "__init__"},

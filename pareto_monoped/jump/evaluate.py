@@ -11,6 +11,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 Floats = NDArray[np.float64]
@@ -28,24 +29,13 @@ _CHUNK = 256
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evaluations:
-    """What n jumps came to; a row a design, NaN where its status has no such value.
+    """Results of n jumps: one field per measure, with what it means in ``measures.MEASURES``.
 
     Attributes:
         status: one of ``STATUSES``, shape (n,).
         reason: why the status is not ``ok``; empty where it is.
-        height_m: highest base height above the floor, shape (n,), as all that follow.
-        energy_j: sum of max(torque * speed, 0) dt over both joints to the apex, at the motors (paper, section III-B).
-        energy_hip_j, energy_knee_j: its parts.
-        absorbed_j: work that the joints did on the motors.
-        drive_loss_j: lost in gear meshes and chain.
-        joule_heat_j: heat in the windings, R (torque / (ratio k_t))^2 dt.
-        foot_clearance_m: of the foot above the floor at the apex.
-        lift_off_s, apex_s: last contact and apex, from the start.
-        mass_kg: of the whole robot.
-        peak_torque_hip_n_m, peak_torque_knee_n_m, peak_speed_hip_rad_per_s, peak_speed_knee_rad_per_s,
-            peak_power_hip_w, peak_power_knee_w: largest magnitudes at the joints.
-        saturation_hip, saturation_knee: share of the controlled time at a torque limit.
-        efficiency: m g (height - 0.5 m) over energy.
+        height_m, ...: the measures, each of shape (n,); NaN where the jump failed, except for the mass of a robot that
+            could be built.
     """
 
     status: NDArray[np.str_]
@@ -85,8 +75,8 @@ class Evaluations:
         return columns | {"reason": np.array(self.reason, dtype=np.str_)}
 
 
-MEASURES: tuple[str, ...] = tuple(f.name for f in fields(Evaluations) if f.name not in ("status", "reason"))
-"""Names of the numeric columns."""
+MEASURES: tuple[str, ...] = MEASURE_NAMES
+"""Names of the numeric columns; new code imports ``measures.MEASURE_NAMES``."""
 
 
 class Evaluator:
@@ -159,7 +149,7 @@ class _Table:
     def __init__(self, n: int) -> None:
         self.status = np.full(n, "ok", dtype="<U12")
         self.reason = [""] * n
-        self.columns = {name: np.full(n, np.nan) for name in MEASURES}
+        self.columns = {name: np.full(n, np.nan) for name in MEASURE_NAMES}
 
     def fail(self, i: int, status: str, reason: str) -> None:
         self.status[i] = status

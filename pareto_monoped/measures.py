@@ -1,0 +1,230 @@
+"""The measures of a jump and of its audit: name, unit, meaning, direction, and how each is shown.
+
+This is the only table of measures. ``jump.evaluate.Evaluations`` and ``jump.audit.Audits`` have one field per measure,
+the database has one column per measure, and the report takes its labels from here.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pareto_monoped.design import BASE_START_HEIGHT_M
+
+Direction = Literal["maximise", "minimise"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measure:
+    """One measure.
+
+    Attributes:
+        name: of the field, the database column and the JSON key; ends in the unit unless the value is a share.
+        unit: of the stored value, SI; "1" for a share.
+        meaning: what is measured, for documentation.
+        direction: which way is better; None where neither is.
+        label: what the measure is called in reports.
+        shown_unit: unit in reports.
+        decimals: decimals in reports, in the shown unit.
+        scale: factor from the stored unit to the shown one.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    direction: Direction | None
+    label: str
+    shown_unit: str
+    decimals: int
+    scale: float = 1.0
+
+    def text(self, value: float) -> str:
+        """``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
+        return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}"
+
+
+def _measure(
+    name: str,
+    unit: str,
+    direction: Direction | None,
+    meaning: str,
+    label: str,
+    decimals: int,
+    shown: tuple[str, float] | None = None,
+) -> Measure:
+    """A measure shown in the unit it is stored in, unless ``shown`` gives another unit and the factor to it."""
+    shown_unit, scale = shown or (unit, 1.0)
+    return Measure(
+        name=name,
+        unit=unit,
+        meaning=meaning,
+        direction=direction,
+        label=label,
+        shown_unit=shown_unit,
+        decimals=decimals,
+        scale=scale,
+    )
+
+
+_PERCENT = ("%", 100.0)
+_MM = ("mm", 1000.0)
+_EFFICIENCY = f"m g (H - {BASE_START_HEIGHT_M:g} m) / E"
+
+MEASURES: tuple[Measure, ...] = (
+    _measure("height_m", "m", "maximise", "highest position of the base above the floor", "height", 3),
+    _measure(
+        "energy_j",
+        "J",
+        "minimise",
+        "sum of max(torque * speed, 0) dt over both motors up to the apex (paper, section III-B)",
+        "energy",
+        2,
+    ),
+    _measure("energy_hip_j", "J", "minimise", "the hip motor's part of energy_j", "energy of the hip", 2),
+    _measure("energy_knee_j", "J", "minimise", "the knee motor's part of energy_j", "energy of the knee", 2),
+    _measure("absorbed_j", "J", "minimise", "work that the joints do on the motors", "work absorbed by the motors", 2),
+    _measure("drive_loss_j", "J", "minimise", "energy lost in gear meshes and chain", "lost in gears and chain", 2),
+    _measure(
+        "joule_heat_j",
+        "J",
+        "minimise",
+        "heat in both windings: sum of R (torque / (ratio k_t))^2 dt; not part of energy_j",
+        "heat in the windings",
+        2,
+    ),
+    _measure(
+        "foot_clearance_m",
+        "m",
+        "maximise",
+        "gap between foot and floor at the apex",
+        "foot clearance at the apex",
+        0,
+        _MM,
+    ),
+    _measure("lift_off_s", "s", None, "time of the last contact with the floor, from the start", "lift-off", 3),
+    _measure("apex_s", "s", None, "time of the apex, from the start", "apex", 3),
+    _measure("mass_kg", "kg", "minimise", "mass of the whole robot", "mass", 3),
+    _measure(
+        "peak_torque_hip_n_m", "N m", "minimise", "largest torque at the hip before losses", "peak torque, hip", 1
+    ),
+    _measure(
+        "peak_torque_knee_n_m", "N m", "minimise", "largest torque at the knee before losses", "peak torque, knee", 1
+    ),
+    _measure("peak_speed_hip_rad_per_s", "rad/s", "minimise", "largest speed of the hip joint", "peak speed, hip", 1),
+    _measure(
+        "peak_speed_knee_rad_per_s", "rad/s", "minimise", "largest speed of the knee joint", "peak speed, knee", 1
+    ),
+    _measure("peak_power_hip_w", "W", "minimise", "largest power at the hip before losses", "peak power, hip", 0),
+    _measure("peak_power_knee_w", "W", "minimise", "largest power at the knee before losses", "peak power, knee", 0),
+    _measure(
+        "saturation_hip",
+        "1",
+        "minimise",
+        "share of the controlled time that the hip spends at a torque limit",
+        "time at the torque limit, hip",
+        1,
+        _PERCENT,
+    ),
+    _measure(
+        "saturation_knee",
+        "1",
+        "minimise",
+        "share of the controlled time that the knee spends at a torque limit",
+        "time at the torque limit, knee",
+        1,
+        _PERCENT,
+    ),
+    _measure("efficiency", "1", "maximise", _EFFICIENCY, f"efficiency, {_EFFICIENCY}", 1, _PERCENT),
+)
+"""Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
+MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
+
+_PERTURBED = "links moved by 1e-6"
+
+AUDIT_MEASURES: tuple[Measure, ...] = (
+    _measure(
+        "energy_balance_error",
+        "1",
+        "minimise",
+        "what the energy balance leaves open, as a share of the joint work",
+        "energy balance open by",
+        2,
+        _PERCENT,
+    ),
+    _measure(
+        "half_step_height_m", "m", "minimise", "change of height with half the step", "height, step halved", 2, _MM
+    ),
+    _measure(
+        "half_step_energy",
+        "1",
+        "minimise",
+        "relative change of energy with half the step",
+        "energy, step halved",
+        2,
+        _PERCENT,
+    ),
+    _measure(
+        "quarter_step_height_m",
+        "m",
+        "minimise",
+        "change of height with a quarter of the step",
+        "height, step quartered",
+        2,
+        _MM,
+    ),
+    _measure(
+        "quarter_step_energy",
+        "1",
+        "minimise",
+        "relative change of energy with a quarter of the step",
+        "energy, step quartered",
+        2,
+        _PERCENT,
+    ),
+    _measure(
+        "spread_height_m",
+        "m",
+        "minimise",
+        "90th percentile of the change of height over perturbed designs",
+        f"height, {_PERTURBED} (90th percentile)",
+        2,
+        _MM,
+    ),
+    _measure(
+        "spread_energy",
+        "1",
+        "minimise",
+        "90th percentile of the relative change of energy over perturbed designs",
+        f"energy, {_PERTURBED} (90th percentile)",
+        2,
+        _PERCENT,
+    ),
+    _measure(
+        "worst_height_m",
+        "m",
+        "minimise",
+        "largest change of height over perturbed designs",
+        f"height, {_PERTURBED} (worst)",
+        2,
+        _MM,
+    ),
+    _measure(
+        "worst_energy",
+        "1",
+        "minimise",
+        "largest relative change of energy over perturbed designs",
+        f"energy, {_PERTURBED} (worst)",
+        2,
+        _PERCENT,
+    ),
+)
+"""Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
+
+_BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES)}
+
+
+def measure(name: str) -> Measure:
+    """The measure called ``name``, of a jump or of an audit.
+
+    Raises:
+        KeyError: there is none.
+    """
+    return _BY_NAME[name]
