@@ -28,7 +28,7 @@ PERTURBATIONS = 5
 
 def main(count: int) -> None:
     """Print the three tables."""
-    designs = np.random.default_rng(0).uniform(LOWER, UPPER, (count, 7))
+    designs = np.random.default_rng(0).uniform(LOWER, UPPER, (count, len(LOWER)))
     print(f"{count} random designs; median / 90th percentile / worst; inf: a jump was lost")
     print("| calibration | jump | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|")

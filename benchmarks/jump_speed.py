@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import LOWER, UPPER
+from pareto_monoped.design import CONTROL, LOWER, UPPER, columns
 from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
 from pareto_monoped.jump.model import mjcf
@@ -42,7 +42,7 @@ def main(rounds: int) -> None:
     heads = ("batch", "steps", "us/step", "of raw", "of loop", "x naive", "2 threads", "us/step", "of raw")
     print(" ".join(f"{head:>9}" for head in heads))
     for size in (1, 8, 40, 200):
-        designs = np.random.default_rng(size).uniform(LOWER, UPPER, (size, 7))
+        designs = np.random.default_rng(size).uniform(LOWER, UPPER, (size, len(LOWER)))
         robots = robot_arrays(designs, actuators, calibration.mass)
         documents = [mjcf(robots, calibration, i) for i in range(size)]
         answers = one(designs)
@@ -55,7 +55,7 @@ def main(rounds: int) -> None:
         naive_steps = sum(len(torques[i]) for i in few)
         ways: dict[str, Callable[[], object]] = {
             "ours": lambda d=designs: one(d),  # type: ignore[misc]
-            "built": lambda r=robots, d=designs: evaluate_robots(r, d[:, 4:7], calibration),  # type: ignore[misc]
+            "built": lambda r=robots, d=designs: evaluate_robots(r, columns(d, CONTROL), calibration),  # type: ignore[misc]
             "two": lambda d=designs: two(d),  # type: ignore[misc]
             "raw": raw.rollout,
             "python": raw.python_loop,
@@ -124,7 +124,7 @@ def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibrati
     """Compile the XML and jump in plain Python."""
     gate = calibration.gate
     assert isinstance(gate, FadeGate)
-    stiffness, damping, torsion = design[4:].tolist()
+    stiffness, damping, torsion = columns(design, CONTROL).tolist()
     motors = motors_of(robots, i, calibration)
     return jump(document, stiffness, damping, torsion, motors, fade=gate.length_m)
 

@@ -1,10 +1,10 @@
-"""The seven design variables, their bounds, and the paper's four designs.
+"""The design variables, their bounds, and the designs of the paper's Table I.
 
-Order and symbols are the paper's (section III-B): Y = [l1, l2, g_k, g_h, K, C, T].
+Order and symbols are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T].
 """
 
-from collections.abc import Mapping
-from dataclasses import astuple, dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,15 @@ from pareto_monoped.errors import DesignError, complaint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
-    """One design variable: its name everywhere, the paper's symbol, unit and bounds (section III-B), and what it is."""
+    """One design variable.
+
+    Attributes:
+        name: its name in files, flags, databases and code.
+        symbol: the paper's symbol.
+        unit: of its values and bounds.
+        lower, upper: the paper's bounds (section III-B).
+        meaning: what it is, in a few words.
+    """
 
     name: str
     symbol: str
@@ -47,15 +55,33 @@ VARIABLES: tuple[Variable, ...] = (
     ),
 )
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
+"""The names of all variables; the order of the columns of every array of designs."""
+LENGTHS = ("thigh_length_m", "shank_length_m")
+RATIOS = ("knee_ratio", "hip_ratio")
+CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
+"""K, C and T of the virtual controller."""
 LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES])
 UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES])
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
 
+def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
+    """The values of some variables.
+
+    Args:
+        designs: shape (..., number of variables), in the order of ``NAMES``.
+        names: which variables, such as ``CONTROL``.
+
+    Returns:
+        A C-ordered copy, shape (..., len(names)), in the order of ``names``.
+    """
+    return np.take(np.asarray(designs, dtype=np.float64), [NAMES.index(name) for name in names], axis=-1)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """One design: a value for each of the seven variables, in the paper's order."""
+    """One design: a value for each variable, in the order of ``NAMES``."""
 
     thigh_length_m: float
     shank_length_m: float
@@ -66,24 +92,25 @@ class Design:
     torsional_stiffness_n_m_per_rad: float
 
     def as_array(self) -> NDArray[np.float64]:
-        """The seven values, shape (7,), in the order of ``NAMES``."""
-        return np.array(astuple(self), dtype=np.float64)
+        """The values in the order of ``NAMES``, shape (number of variables,)."""
+        return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
-        """The seven values by name."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        """The values by name."""
+        return {name: getattr(self, name) for name in NAMES}
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
-        """A design from seven values in the order of ``NAMES``.
+        """A design from its values in the order of ``NAMES``.
 
         Raises:
-            DesignError: not exactly seven finite numbers.
+            DesignError: a wrong number of values, or a value that is not finite.
         """
         array = np.asarray(values, dtype=np.float64)
-        if array.shape != (len(NAMES),):
+        shape = (len(NAMES),)
+        if array.shape != shape:
             raise DesignError(
-                complaint("shape of a design", array.shape, "(7,)", f"give {', '.join(NAMES)} in this order")
+                complaint("shape of a design", array.shape, str(shape), f"give {', '.join(NAMES)} in this order")
             )
         design = cls(**dict(zip(NAMES, array.tolist(), strict=True)))
         for name, value in design.as_dict().items():
@@ -92,7 +119,7 @@ class Design:
         return design
 
     def replace(self, changes: Mapping[str, float]) -> "Design":
-        """A copy with some variables set.
+        """A copy with some variables changed.
 
         Raises:
             DesignError: an unknown name or a value that is not finite.
@@ -106,32 +133,36 @@ class Design:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperCase:
-    """One row of the paper's Table I: the design with the height and energy the authors report."""
+    """One row of the paper's Table I.
+
+    Attributes:
+        name: of the row, as the paper has it.
+        design: its variables.
+        height_m, energy_j: what the authors report for it.
+        free: the variables that the paper's optimisation could change (section IV-B).
+    """
 
     name: str
     design: Design
     height_m: float
     energy_j: float
     free: tuple[str, ...]
-    """Which variables the paper's optimisation was free to change (section IV-B)."""
 
 
 def _case(name: str, values: tuple[float, ...], height_m: float, energy_j: float, free: tuple[str, ...]) -> PaperCase:
     return PaperCase(name=name, design=Design.from_array(values), height_m=height_m, energy_j=energy_j, free=free)
 
 
-_LENGTHS = NAMES[0:2]
-_RATIOS = NAMES[2:4]
-_CONTROL = NAMES[4:7]
-
-# Table I of the paper; the table prints g_h before g_k, here they stand in the order of NAMES.
+# Table I of the paper. The paper prints g_h before g_k; here the values stand in the order of NAMES.
 PAPER_CASES: Mapping[str, PaperCase] = {
     "nominal": _case("nominal", (0.400, 0.400, 6.0, 6.0, 50.0, 2.5, 10.0), 0.887, 31.44, ()),
-    "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, _RATIOS + _CONTROL),
-    "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, _LENGTHS + _CONTROL),
-    "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, _LENGTHS + _RATIOS + _CONTROL),
+    "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, RATIOS + CONTROL),
+    "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + CONTROL),
+    "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + CONTROL),
 }
+PAPER_MOTOR = "VT8020"
+"""The motor of all rows of Table I; the default wherever a motor may be named."""
 BASE_START_HEIGHT_M = 0.5
 """Height of the base above the floor at rest (paper, section IV-B)."""
 GRAVITY_M_PER_S2 = 9.81
-"""Standard value used by MuJoCo's default option and the paper's m g."""
+"""The default of MuJoCo, also used for the paper's m g."""

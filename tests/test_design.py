@@ -4,7 +4,7 @@ import io
 import numpy as np
 import pytest
 
-from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER, Design
+from pareto_monoped.design import CONTROL, LENGTHS, LOWER, NAMES, PAPER_CASES, RATIOS, UPPER, Design, columns
 from pareto_monoped.errors import DesignError
 
 # Table I of the paper, typed again from its LaTeX source: g_h, g_k, l1, l2, K, C, T, H, E.
@@ -34,6 +34,18 @@ def test_cases_are_table_1(row):
     g_h, g_k, l1, l2, k, c, t, height, energy = map(float, row[1:])
     assert case.design.as_array().tolist() == [l1, l2, g_k, g_h, k, c, t]
     assert (case.height_m, case.energy_j) == (height, energy)
+
+
+def test_every_variable_is_a_length_a_ratio_or_of_the_controller():
+    assert LENGTHS + RATIOS + CONTROL == NAMES
+
+
+def test_columns_are_found_by_name():
+    designs = np.stack([PAPER_CASES[name].design.as_array() for name in ("A", "C")])
+    assert columns(designs, RATIOS).tolist() == [[7.9, 4.0], [6.0, 4.0]]
+    assert columns(designs, ("hip_ratio", "thigh_length_m")).tolist() == [[4.0, 0.4], [4.0, 0.49]]
+    assert columns(designs[0], CONTROL).tolist() == [13.7, 6.5, 46.5]
+    assert columns(designs, CONTROL).flags.c_contiguous
 
 
 def test_cases_lie_within_the_papers_bounds():

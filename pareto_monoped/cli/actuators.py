@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from pareto_monoped.design import PAPER_MOTOR
+
 if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
@@ -17,7 +19,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command()
-@click.option("--motor", metavar="NAME", default="VT8020", help="Name or TOML file.")
+@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, help="Name or TOML file.")
 @click.option("--ratio", type=float, help="Explain the gearbox of one ratio, part by part.")
 @click.option("--without", metavar="CONSTRAINT", multiple=True, help="Switch a constraint off; may be repeated.")
 @click.option(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.design import NAMES, PAPER_CASES, VARIABLES, Design
+from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, PAPER_MOTOR, VARIABLES, Design, columns
 from pareto_monoped.errors import DesignError, complaint
 
 if TYPE_CHECKING:
@@ -19,9 +19,11 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
 @click.command()
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), default="nominal", help="Start from a row of Table I.")
-@click.option("--set", "changes", metavar="NAME=VALUE", multiple=True, help="Change one of the seven variables.")
+@click.option(
+    "--set", "changes", metavar="NAME=VALUE", multiple=True, help="Change a design variable; may be repeated."
+)
 @click.option("--calibration", "calibration_name", metavar="NAME", default="reference", help="Name or TOML file.")
-@click.option("--motor", metavar="NAME", default="VT8020", help="Name or TOML file.")
+@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, help="Name or TOML file.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write a row a step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the MJCF that is simulated.")
@@ -60,7 +62,7 @@ def simulate(
     report = _report(result, motor)
     if audited and result.status == "ok":
         audits = audit(values, actuator_map, calibration)
-        report["audit"] = _audit(audits, energy_balance(robots, values[:, 4:7], calibration))
+        report["audit"] = _audit(audits, energy_balance(robots, columns(values, CONTROL), calibration))
     if trace:
         rows = zip(*(column.tolist() for column in result.trace.values()), strict=True)
         lines = [",".join(result.trace), *(",".join("" if math.isnan(v) else repr(v) for v in row) for row in rows)]
@@ -148,7 +150,7 @@ def table1(as_json: bool) -> None:
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.table1 import table1 as rows_of
 
-    rows = rows_of(map_for("VT8020"))
+    rows = rows_of(map_for(PAPER_MOTOR))
     if as_json:
         click.echo(json.dumps([row.as_dict() for row in rows], indent=2))
         return
