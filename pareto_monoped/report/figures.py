@@ -191,9 +191,12 @@ def _map(payload: Payload, figure: Any) -> bool:
 
 def _links(payload: Payload, figure: Any) -> bool:
     axes = figure.add_subplot()
-    length = 1000.0 * _values(payload.links["length_m"])
-    axes.plot(length, _values(payload.links["thigh_kg"]), color=_STYLES[1][0], label="thigh")
-    axes.plot(length, _values(payload.links["shank_kg"]), "--", color=_STYLES[0][0], label="shank")
+    for k, table in enumerate(payload.maps):
+        leg, motor = table.leg, f", {table.motor}" if len(payload.maps) > 1 else ""
+        length = 1000.0 * _values(leg.length_m)
+        more = {"marker": _STYLES[k % len(_STYLES)][1], "ms": 2.5, "markevery": 10} if k else {}
+        axes.plot(length, _values(leg.thigh_kg), color=_STYLES[1][0], label=f"thigh{motor}", **more)
+        axes.plot(length, _values(leg.shank_kg), "--", color=_STYLES[0][0], label=f"shank{motor}", **more)
     axes.set(xlabel="link length (mm)", ylabel="mass (kg)", ylim=(0.0, None))
     axes.legend(loc="lower right")
     return True

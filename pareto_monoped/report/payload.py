@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from pareto_monoped import __version__
 from pareto_monoped.design import NAMES, PAPER_CASES, VARIABLES
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.leg.dimensions import DEFAULT
-from pareto_monoped.leg.links import shank_parts, thigh_parts
 from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
+from pareto_monoped.report.columns import column
 from pareto_monoped.report.comparison import compare, group_of
 from pareto_monoped.report.physics import Extras
-from pareto_monoped.report.quantities import AUDIT, DIGITS, EVERY_TRIAL, QUANTITIES
+from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
 from pareto_monoped.report.records import (
     ActuatorTable,
     Column,
@@ -75,7 +74,6 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     for source, label, most in zip(sources, labels, shares, strict=True):
         number = motors.index(source.extras.actuator_map.motor)
         cards.append(_card(source, label, most, number, firsts[number]))
-    lengths = np.linspace(0.15, 0.55, 81)
     return Payload(
         version=__version__,
         title=cards[0].name if len(cards) == 1 else f"{cards[0].name} and {len(cards) - 1} more",
@@ -88,36 +86,9 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         literal=literal,
         gearboxes=gearboxes,
         maps=maps,
-        links={
-            "length_m": column(lengths),
-            "thigh_kg": column(sum(part.mass_kg() for part in thigh_parts(lengths))),
-            "shank_kg": column(sum(part.mass_kg() for part in shank_parts(lengths))),
-        },
-        drawing={
-            "thigh_half_width_m": 1e-3 * DEFAULT.thigh_half_width_mm,
-            "thigh_hip_radius_m": 1e-3 * (DEFAULT.mount_pitch_radius_mm + 6.0),
-            "thigh_knee_radius_m": 1e-3 * DEFAULT.knee_radius_mm,
-            "shank_knee_radius_m": 1e-3 * DEFAULT.shank_top_radius_mm,
-            "shank_foot_radius_m": 1e-3 * DEFAULT.shank_bottom_radius_mm,
-            "housing_radius_m": 1e-3 * DEFAULT.housing_radius_mm,
-        },
         studies=cards,
         comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
     )
-
-
-def column(values: Any, digits: int = DIGITS) -> Column:
-    """Numbers to that many significant digits, None where they are not finite."""
-    array = np.asarray(values, dtype=np.float64)
-    finite = np.isfinite(array)
-    size = np.zeros_like(array)
-    nonzero = finite & (array != 0.0)
-    size[nonzero] = np.floor(np.log10(np.abs(array[nonzero])))
-    decimals = (digits - 1 - size).astype(int)
-    return [
-        round(value, max(places, 0)) if good else None
-        for value, places, good in zip(array.tolist(), decimals.tolist(), finite.tolist(), strict=True)
-    ]
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES
-from pareto_monoped.leg.dimensions import DEFAULT
+from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.links import foot_part
+from pareto_monoped.report.leg import leg_table
 from pareto_monoped.report.records import ActuatorTable, Case, Gearbox, Jump, MapPoint, Number
+from pareto_monoped.robot.build import leg_dimensions
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
@@ -66,10 +68,15 @@ class Extras:
     drift_m: float
 
     @property
+    def leg(self) -> LegDimensions:
+        """Dimensions of the leg that was simulated: they follow from the study's motor."""
+        return leg_dimensions(self.actuator_map)
+
+    @property
     def foot_radius_m(self) -> float:
         """Of the foot that was simulated."""
         given = self.calibration.mass.foot_radius_m
-        return 1e-3 * DEFAULT.foot_radius_mm if given is None else given
+        return 1e-3 * self.leg.foot_radius_mm if given is None else given
 
     def table(self, first: int) -> Table:
         """The stage 1 map, its gearboxes numbered from ``first``."""
@@ -92,7 +99,8 @@ class Extras:
                     family_mass_kg={family: round(mass, 4) for family, mass in best.items()},
                 )
             )
-        return Table(gearboxes=gearboxes, map=ActuatorTable(motor=self.actuator_map.motor.name, points=points))
+        motor = self.actuator_map.motor.name
+        return Table(gearboxes=gearboxes, map=ActuatorTable(motor=motor, points=points, leg=leg_table(self.leg)))
 
     def gearboxes(self, ratios: NDArray[np.float64]) -> NDArray[np.intp]:
         """Numbers of the gearboxes of ratios, shape (n,), counted as in ``table`` from 0; -1 where there is none."""
@@ -112,7 +120,7 @@ class Extras:
     def foot_kg(self) -> float:
         """Mass of the foot that was simulated, a part of the shank's."""
         given = self.calibration.mass.foot_mass_kg
-        return float(foot_part(float(LOWER[1])).mass_kg()) if given is None else given
+        return float(foot_part(float(LOWER[1]), self.leg).mass_kg()) if given is None else given
 
 
 def simulate_extras(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Extras:

@@ -47,6 +47,3 @@ AUDIT = tuple(q.name for q in QUANTITIES[-5:])
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial; of the front it has all of them."""
-
-DIGITS = 5
-"""Significant digits of numbers on the page: more than any of them is good for."""

@@ -53,11 +53,39 @@ class MapPoint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LegTable:
+    """The leg that fits a motor: masses of its links by length, and the dimensions to which the page draws it.
+
+    Attributes:
+        length_m, thigh_kg, shank_kg: link lengths, and what each link weighs with its drive, the shank without foot.
+        housing_radius_m: of an actuator's case.
+        output_radius_m: of an actuator's output flange.
+        base_top_m, base_top_radius_m: the round upper end of the base's cheek: height above the hip axis, radius.
+        thigh_half_width_m, thigh_hip_radius_m, thigh_knee_radius_m: the thigh's bar and its round ends.
+        shank_knee_radius_m, shank_foot_radius_m: the shank's round ends.
+    """
+
+    length_m: Column
+    thigh_kg: Column
+    shank_kg: Column
+    housing_radius_m: float
+    output_radius_m: float
+    base_top_m: float
+    base_top_radius_m: float
+    thigh_half_width_m: float
+    thigh_hip_radius_m: float
+    thigh_knee_radius_m: float
+    shank_knee_radius_m: float
+    shank_foot_radius_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorTable:
-    """The stage 1 map of one motor."""
+    """The stage 1 map of one motor, and the leg that fits it."""
 
     motor: str
     points: Sequence[MapPoint]
+    leg: LegTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,7 +241,5 @@ class Payload:
     literal: Sequence[Mapping[str, Any]]
     gearboxes: Sequence[Gearbox]
     maps: Sequence[ActuatorTable]
-    links: Mapping[str, Column]
-    drawing: Mapping[str, float]
     studies: Sequence[StudyCard]
     comparison: Comparison | None = field(default=None)

@@ -51,6 +51,13 @@ def weighted(folder) -> Path:
 
 
 @pytest.fixture(scope="session")
+def source_u12(folder) -> Source:
+    """A study of another motor than the default."""
+    data = read_study(made(folder, name="u12", motor="U12", evaluations=60, seed=5))
+    return Source(database="u12.db", data=data, extras=simulate_extras(data, most_jumps=1), models={})
+
+
+@pytest.fixture(scope="session")
 def data(db) -> StudyData:
     return read_study(db)
 

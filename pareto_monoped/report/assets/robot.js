@@ -21,7 +21,7 @@ function buildStage(chosen) {
   stage.replaceChildren();
   parts = null;
   const { values } = chosen;
-  const d = page.drawing;
+  const d = page.maps[chosen.study.map].leg;
   const l1 = values.thigh_length_m, l2 = values.shank_length_m;
   const flight = player.jump;
   const foot = chosen.study.foot_radius_m;
@@ -43,13 +43,13 @@ function buildStage(chosen) {
   if (flight) path.setAttribute("d", `M${flight.base_z_m.map((z, i) => `${flight.base_x_m[i].toFixed(4)} ${(-z).toFixed(4)}`).join("L")}`);
   const stroke = { "stroke-width": 0.004, stroke: "var(--card)" };
   const base = draw("g", {},
-    draw("path", { d: `M-0.04 -0.066 A0.04 0.04 0 0 1 0.04 -0.066 L${d.housing_radius_m} 0 L${-d.housing_radius_m} 0 Z`, fill: "var(--metal)", ...stroke }));
+    draw("path", { d: `M${-d.base_top_radius_m} ${-d.base_top_m} A${d.base_top_radius_m} ${d.base_top_radius_m} 0 0 1 ${d.base_top_radius_m} ${-d.base_top_m} L${d.housing_radius_m} 0 L${-d.housing_radius_m} 0 Z`, fill: "var(--metal)", ...stroke }));
   const thigh = draw("path", { d: linkPath(d.thigh_hip_radius_m, d.thigh_knee_radius_m, d.thigh_half_width_m, l1), fill: "var(--hip)", "fill-opacity": 0.85, ...stroke });
   const shank = draw("g", {},
     draw("path", { d: linkPath(d.shank_knee_radius_m, d.shank_foot_radius_m, d.shank_foot_radius_m * 0.98, l2), fill: "var(--knee)", "fill-opacity": 0.85, ...stroke }),
     draw("circle", { cx: 0, cy: l2, r: foot, fill: "var(--dark)" }));
   const housing = draw("g", {},
-    draw("circle", { r: d.housing_radius_m, fill: "var(--metal)", ...stroke }), draw("circle", { r: 0.0165, fill: "var(--dark)" }));
+    draw("circle", { r: d.housing_radius_m, fill: "var(--metal)", ...stroke }), draw("circle", { r: d.output_radius_m, fill: "var(--dark)" }));
   const pin = draw("circle", { r: 0.012, fill: "var(--card)" });
   svg.append(path, base, shank, thigh, housing, pin);
   stage.append(svg);

@@ -77,13 +77,20 @@ function drawMap(node) {
 }
 
 function drawLinks(node) {
-  const { length_m, thigh_kg, shank_kg } = page.links;
-  const mm = length_m.map((l) => l * 1000);
-  const line = (name, y, more) => ({ type: "scatter", mode: "lines", name, x: mm, y, line: more, hovertemplate: "%{x:.0f} mm: %{y:.3f} kg<extra></extra>" });
+  const inMm = (leg) => leg.length_m.map((l) => l * 1000);
+  const line = (name, x, y, more) => ({ type: "scatter", mode: "lines", name, x, y, line: more, hovertemplate: "%{x:.0f} mm: %{y:.3f} kg<extra></extra>" });
+  const links = page.maps.flatMap(({ motor, leg }, k) => {
+    const own = page.maps.length > 1 ? `, ${plain(motor)}` : "";
+    const dash = k ? "dot" : "solid";
+    return [
+      line(`thigh${own}`, inMm(leg), leg.thigh_kg, { color: colour("hip"), width: 2.2, dash }),
+      line(`shank${own}`, inMm(leg), leg.shank_kg, { color: colour("knee"), width: 2.2, dash }),
+    ];
+  });
+  const mm = inMm(page.maps[0].leg);
   const list = [
-    line("thigh", thigh_kg, { color: colour("hip"), width: 2.2 }),
-    line("shank", shank_kg, { color: colour("knee"), width: 2.2 }),
-    line("published link", mm.map((l) => 0.235 + 0.000828 * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
+    ...links,
+    line("published link", mm, mm.map((l) => 0.235 + 0.000828 * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
   ];
   Plotly.react(node, list, layout(axis("link length, mm"), axis("mass, kg", { rangemode: "tozero" }), {
     showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
