@@ -15,6 +15,7 @@ from pareto_monoped.errors import DesignError
 
 RATIO_LOW = 4
 RATIO_HIGH = 15
+RATIO_STEP = 0.1
 """The map covers the half-open intervals [4.0, 4.1) to [14.9, 15.0) (paper, section III-A)."""
 
 
@@ -45,7 +46,7 @@ class FamilyResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapEntry:
-    """One half-open interval [ratio_low, ratio_low + 0.1).
+    """One half-open interval [ratio_low, ratio_high).
 
     Attributes:
         ratio_low: lower end.
@@ -58,6 +59,11 @@ class MapEntry:
     actuator: Actuator | None
     runner_up: Candidate | None
     families: Mapping[Family, FamilyResult]
+
+    @property
+    def ratio_high(self) -> float:
+        """Upper end, which belongs to the next interval."""
+        return self.ratio_low + RATIO_STEP
 
     @property
     def binding(self) -> tuple[str, ...]:
@@ -75,7 +81,7 @@ class MapEntry:
             f"{family}: {' or '.join(names) if names else 'no integer tooth set'}"
             for family, names in self.forbidden_by.items()
         ]
-        return f"no gearbox in [{self.ratio_low:.1f}, {self.ratio_low + 0.1:.1f}), forbidden by " + "; ".join(reasons)
+        return f"no gearbox in [{self.ratio_low:.1f}, {self.ratio_high:.1f}), forbidden by " + "; ".join(reasons)
 
 
 # Compared by identity: a map is made once a motor and settings, and keys what is derived from it.
@@ -104,18 +110,22 @@ class ActuatorMap:
         present = np.array([entry.actuator is not None for entry in self.entries])
         return np.where(inside & present[np.where(inside, index, 0)], index, -1)
 
-    def lookup(self, ratio: float) -> Actuator:
-        """The actuator of the interval that the ratio lies in.
+    def entry(self, ratio: float) -> MapEntry:
+        """The interval that the ratio lies in, which has an actuator.
 
         Raises:
             DesignError: the ratio lies outside the map, or no gearbox exists there; the message names the constraint.
         """
         index = int(self.interval_index([ratio])[0])
-        if index >= 0:
-            actuator = self.entries[index].actuator
-            assert actuator is not None
-            return actuator
-        raise DesignError(f"gear ratio = {ratio!r}: {self.why_not(ratio)}; choose {self._existing()}")
+        if index < 0:
+            raise DesignError(f"gear ratio = {ratio!r}: {self.why_not(ratio)}; choose {self._existing()}")
+        return self.entries[index]
+
+    def lookup(self, ratio: float) -> Actuator:
+        """The actuator of the interval that the ratio lies in; raises as ``entry`` does."""
+        actuator = self.entry(ratio).actuator
+        assert actuator is not None
+        return actuator
 
     def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
         """Least mass in every interval, of one family or of both, NaN where there is none: the paper's figure.
