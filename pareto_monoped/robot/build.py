@@ -1,9 +1,7 @@
-"""Design -> Robot: the one place where actuators, links and base become bodies with masses and inertias.
+"""Design -> Robot: one robot with all its parts, as the CAD exports it.
 
-Both the simulation and the CAD read the robot from here: ``build_robot`` gives one robot with all its parts, and
-``robot_arrays`` weighs a whole population with the same part functions, a row a design.
-
-A continuous gear ratio gets the gearbox of its interval of 0.1 (stage 1), and the robot has that gearbox's real ratio.
+The simulation reads the same parts through ``population.robot_arrays``. A continuous gear ratio gets the gearbox of its
+interval of 0.1 (stage 1), so the robot has the real ratio of that gearbox.
 """
 
 from collections.abc import Mapping
@@ -16,19 +14,18 @@ from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions, with_chain_for
-from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
-from pareto_monoped.robot.frames import BODIES, OVER, UPRIGHT, Floats, in_body
+from pareto_monoped.robot.frames import BODIES, Floats, in_body
+from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
-    """A group of parts that is put into a body as a whole.
+    """A group of parts of one robot that sits in a body as a whole: a row of ``units.UNITS``, made.
 
     Attributes:
-        name: ``base_frame``, ``hip_actuator``, ``thigh``, ``knee_actuator``, ``journal`` (which carries the
-            knee actuator's free end), ``shank`` or ``foot``.
+        name: as in the table of units.
         body: the body that carries it, one of ``BODIES``.
         parts: in the unit's own frame.
         turn: rotation from the unit's frame to the body's part frame (x forward, y up, z along the joint axis).
@@ -108,22 +105,24 @@ def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
         if not value > 0.0:
             raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
     hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
-    shank_length_m = design.shank_length_m
     leg = leg_dimensions(actuator_map)
-    knee_length_m = 1e-3 * knee.length_mm
-    journal = journal_parts(knee_length_m, leg, back_clearance_mm=back_clearance_mm(knee))
-    units = (
-        Unit(name="base_frame", body="base", parts=base_parts(knee_length_m, leg), turn=UPRIGHT, z_mm=0.0),
-        Unit(name="hip_actuator", body="base", parts=hip.parts, turn=UPRIGHT, z_mm=leg.hip_mount_mm),
-        Unit(name="thigh", body="thigh", parts=thigh_parts(design.thigh_length_m, leg), turn=UPRIGHT, z_mm=0.0),
-        Unit(name="knee_actuator", body="thigh", parts=knee.parts_bolted_at_back, turn=OVER, z_mm=leg.knee_mount_mm),
-        Unit(name="journal", body="thigh", parts=journal, turn=UPRIGHT, z_mm=0.0),
-        Unit(name="shank", body="shank", parts=shank_parts(shank_length_m, leg), turn=UPRIGHT, z_mm=0.0),
-        Unit(name="foot", body="shank", parts=(foot_part(shank_length_m, leg),), turn=UPRIGHT, z_mm=0.0),
+    units = tuple(
+        Unit(
+            name=kind.name,
+            body=kind.body,
+            parts=_parts(kind, design, {"hip": hip, "knee": knee}, leg),
+            turn=kind.turn,
+            z_mm=kind.z_mm(leg),
+        )
+        for kind in UNITS
     )
     return Robot(design=design, hip=hip, knee=knee, units=units)
 
 
-def back_clearance_mm(actuator: Actuator) -> float:
-    """How much of an actuator's back the screws of its own pattern pass through before their threads begin."""
-    return actuator.mount.back_depth_mm if actuator.family == "ESSPG" else 0.0
+def _parts(
+    kind: ActuatorSized | LinkSized, design: Design, actuators: Mapping[str, Actuator], leg: LegDimensions
+) -> tuple[Part, ...]:
+    """The parts of one unit of this robot."""
+    if isinstance(kind, ActuatorSized):
+        return kind.parts(actuators[kind.joint], leg)
+    return kind.parts(getattr(design, kind.length), leg)

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.geometry.parts import MassProperties, Part, total
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.parts import MassProperties
 
 Floats = NDArray[np.float64]
 
@@ -12,19 +11,22 @@ BODIES = ("base", "thigh", "shank")
 JOINTS = ("hip", "knee")
 
 PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""Part frames have the joint axis along z and y up along the link; body frames have it along y and z up."""
-PART_TO_BODY.flags.writeable = False
-UPRIGHT = np.eye(3)
-OVER = np.diag([1.0, -1.0, -1.0])
-"""Half a turn about x: the knee actuator looks at the thigh from outside."""
+"""From part frames (z along the joint axis, y up along the link) to body frames (y along the joint axis, z up)."""
+UPRIGHT: Floats = np.eye(3)
+"""Turn of a unit that stands in its body's part frame as it is drawn."""
+OVER: Floats = np.diag([1.0, -1.0, -1.0])
+"""Half a turn about x: the output of the knee actuator points to -z, at the thigh."""
+for _matrix in (PART_TO_BODY, UPRIGHT, OVER):
+    _matrix.flags.writeable = False
 
 
-def upright(parts: tuple[Part, ...]) -> MassProperties:
-    """Parts that stand in a body's part frame, in the body frame."""
-    return in_body(total(part.mass_properties() for part in parts), UPRIGHT, 0.0)
+def in_body(properties: MassProperties, turn: Floats, z_mm: float) -> MassProperties:
+    """Mass properties from a unit's frame to the body frame.
 
-
-def in_body(properties: MassProperties, turn: Floats, z_mm: Numbers) -> MassProperties:
-    """From a unit's frame to the body frame."""
-    move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * float(z_mm)])
+    Args:
+        properties: of the unit, about the origin of its frame.
+        turn: rotation from the unit's frame to the body's part frame, shape (3, 3).
+        z_mm: where the unit's origin lies on the z axis of the body's part frame.
+    """
+    move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * z_mm])
     return properties.placed(PART_TO_BODY @ turn, move)

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import Annotated
 
 import numpy as np
@@ -10,9 +12,12 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES
+from pareto_monoped.geometry.parts import MassProperties
+from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.robot.build import leg_dimensions
-from pareto_monoped.robot.frames import JOINTS, Floats
-from pareto_monoped.robot.tables import actuator_table, weighed
+from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
+from pareto_monoped.robot.tables import ActuatorTable, actuator_table, weighed
+from pareto_monoped.robot.units import UNITS, ActuatorSized
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,23 +100,12 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         A row a design. Rows with a ``reason`` (no gearbox of that ratio) hold the numbers of some other gearbox.
     """
     values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
-    thigh_m, shank_m = values[:, 0], values[:, 1]
     table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
     intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
     reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
     hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
 
-    frame = table.frame.rows(knee)
-    if options.base_structure_mass_kg is not None:
-        frame = frame.scaled(options.base_structure_mass_kg / frame.mass_kg)
-    (thigh,), (shank, foot) = weighed("thigh", leg, thigh_m), weighed("shank", leg, shank_m)
-    if options.foot_mass_kg is not None:
-        foot = foot.scaled(options.foot_mass_kg / foot.mass_kg)
-    bodies = (
-        frame + table.at_hip.rows(hip),
-        thigh.scaled(options.link_mass_scale) + table.journal.rows(knee) + table.at_knee.rows(knee),
-        shank.scaled(options.link_mass_scale) + foot,
-    )
+    bodies = _body_masses(_unit_masses(table, leg, values, {"hip": hip, "knee": knee}), options)
     rows = np.stack([hip, knee], axis=1)
     armature = table.armature_kg_m2[rows]
     if options.rotor_inertia_kg_m2 is not None:
@@ -119,8 +113,8 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
     foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
     motor = actuator_map.motor
     return RobotArrays(
-        thigh_length_m=thigh_m.copy(),
-        shank_length_m=shank_m.copy(),
+        thigh_length_m=values[:, NAMES.index("thigh_length_m")].copy(),
+        shank_length_m=values[:, NAMES.index("shank_length_m")].copy(),
         body_mass_kg=np.stack([body.mass_kg for body in bodies], axis=1),
         body_com_m=np.stack([body.com_m for body in bodies], axis=1),
         body_inertia_kg_m2=np.stack([body.inertia_kg_m2 for body in bodies], axis=1),
@@ -135,6 +129,38 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         winding_resistance_ohm=np.full(rows.shape, motor.winding_resistance_ohm),
         reason=reason,
     )
+
+
+def _unit_masses(
+    table: ActuatorTable, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
+) -> dict[str, MassProperties]:
+    """Name -> mass properties of every unit in its body frame, a row per design.
+
+    Args:
+        table: the actuators.
+        leg: dimensions.
+        values: designs, shape (n, 7).
+        rows: joint -> row of each design's actuator in the table, shape (n,).
+    """
+    masses: dict[str, MassProperties] = {}
+    for unit in UNITS:
+        if isinstance(unit, ActuatorSized):
+            masses[unit.name] = table.units[unit.name].rows(rows[unit.joint])
+        elif unit.name not in masses:  # all units of one length come from one table
+            masses |= weighed(unit.length, leg, values[:, NAMES.index(unit.length)])
+    return masses
+
+
+def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list[MassProperties]:
+    """Each body's units together, in the order of ``BODIES``, with what a calibration sets in their place."""
+    masses = dict(units)
+    for name, mass_kg in (("base_frame", options.base_structure_mass_kg), ("foot", options.foot_mass_kg)):
+        if mass_kg is not None:
+            masses[name] = masses[name].scaled(mass_kg / masses[name].mass_kg)
+    for name in ("thigh", "shank"):
+        masses[name] = masses[name].scaled(options.link_mass_scale)
+    ordered = sorted(UNITS, key=lambda unit: unit.weighed_last)
+    return [reduce(add, (masses[unit.name] for unit in ordered if unit.body == body)) for body in BODIES]
 
 
 def _missing(actuator_map: ActuatorMap, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:

@@ -1,6 +1,6 @@
-"""Fast weighing: the actuators of a map as arrays, and the links as tables of their length."""
+"""Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,26 +11,27 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.tabulated import Tabulated, tabulate
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
-from pareto_monoped.robot.build import back_clearance_mm, leg_dimensions
-from pareto_monoped.robot.frames import OVER, UPRIGHT, Floats, in_body, upright
+from pareto_monoped.robot.build import leg_dimensions
+from pareto_monoped.robot.frames import Floats
+from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 _TABULATED_M = (0.25, 0.55)  # the paper's lengths, 0.3 to 0.5 m, and some more
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorTable:
-    """The map's k actuators as arrays, and the parts of the base whose size follows from the knee actuator's length.
+    """The k actuators of a map as arrays of shape (k,).
 
-    ``row`` leads from an interval of the map to its actuator's row; ``at_hip`` and ``at_knee`` are the actuators in the
-    frames of the bodies that carry them.
+    Attributes:
+        row: row of each interval's actuator, shape (intervals,); any row where the interval has none.
+        units: name -> mass properties of each ``ActuatorSized`` unit in its body frame, a row per actuator.
+        ratio: real ratio of the gearbox.
+        armature_kg_m2: reflected inertia at the joint.
+        peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``.
     """
 
     row: NDArray[np.intp]
-    at_hip: MassProperties
-    at_knee: MassProperties
-    frame: MassProperties
-    journal: MassProperties
+    units: Mapping[str, MassProperties]
     ratio: Floats
     armature_kg_m2: Floats
     peak_torque_n_m: Floats
@@ -45,14 +46,13 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
     leg = leg_dimensions(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
-    length_m = np.array([1e-3 * a.length_mm for a in actuators])
-    clearance_mm = np.array([back_clearance_mm(a) for a in actuators])
     return ActuatorTable(
         row=np.maximum(row, 0),
-        at_hip=in_body(_stacked(a.parts for a in actuators), UPRIGHT, leg.hip_mount_mm),
-        at_knee=in_body(_stacked(a.parts_bolted_at_back for a in actuators), OVER, leg.knee_mount_mm),
-        frame=upright(base_parts(length_m, leg)),
-        journal=upright(journal_parts(length_m, leg, back_clearance_mm=clearance_mm)),
+        units={
+            unit.name: unit.in_body(_stacked(unit.parts(actuator, leg) for actuator in actuators), leg)
+            for unit in UNITS
+            if isinstance(unit, ActuatorSized)
+        },
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
@@ -63,7 +63,7 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
-    """Mass properties of several units, a row a unit."""
+    """Mass properties of several units, one row per unit."""
     masses = [total(part.mass_properties() for part in parts) for parts in units]
     return MassProperties(
         mass_kg=np.array([m.mass_kg for m in masses]),
@@ -72,30 +72,40 @@ def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
     )
 
 
-def _thigh(lengths_m: Floats, leg: LegDimensions) -> tuple[MassProperties, ...]:
-    return (upright(thigh_parts(lengths_m, leg)),)
+def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassProperties]:
+    """The units of one link length in their body frames, part by part, a row per length."""
+    return [
+        unit.in_body(total(part.mass_properties() for part in unit.parts(lengths_m, leg)), leg)
+        for unit in link_units(length)
+    ]
 
 
-def _shank(lengths_m: Floats, leg: LegDimensions) -> tuple[MassProperties, ...]:
-    return upright(shank_parts(lengths_m, leg)), upright((foot_part(lengths_m, leg),))
-
-
-_LINKS = {"thigh": _thigh, "shank": _shank}
+def link_units(length: str) -> list[LinkSized]:
+    """The units that depend on a link length, in the order of the table."""
+    return [unit for unit in UNITS if isinstance(unit, LinkSized) and unit.length == length]
 
 
 @lru_cache(maxsize=32)
-def _link_table(link: str, leg: LegDimensions) -> Tabulated:
-    return tabulate(lambda lengths_m: _LINKS[link](lengths_m, leg), *_TABULATED_M)
+def _link_table(length: str, leg: LegDimensions) -> Tabulated:
+    return tabulate(lambda lengths_m: _weigh(length, leg, lengths_m), *_TABULATED_M)
 
 
-def weighed(link: str, leg: LegDimensions, lengths_m: Floats) -> tuple[MassProperties, ...]:
-    """The units of a link that depend on its length: from the table, beyond its ends part by part."""
-    table = _link_table(link, leg)
+def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, MassProperties]:
+    """Name -> mass properties of the units that depend on a link length, in their body frames, a row per length.
+
+    Lengths within the table are interpolated to 12 digits; those beyond its ends are weighed part by part.
+
+    Args:
+        length: which length, a name of ``design.NAMES``.
+        leg: dimensions.
+        lengths_m: shape (n,).
+    """
+    table = _link_table(length, leg)
     beyond = ~table.covers(lengths_m)
-    units = table(np.clip(lengths_m, table.low_m, table.high_m))
+    masses = table(np.clip(lengths_m, table.low_m, table.high_m))
     if beyond.any():
-        for unit, exact in zip(units, _LINKS[link](lengths_m[beyond], leg), strict=True):
-            unit.mass_kg[beyond] = exact.mass_kg
-            unit.first_kg_m[beyond] = exact.first_kg_m
-            unit.second_kg_m2[beyond] = exact.second_kg_m2
-    return units
+        for mass, exact in zip(masses, _weigh(length, leg, lengths_m[beyond]), strict=True):
+            mass.mass_kg[beyond] = exact.mass_kg
+            mass.first_kg_m[beyond] = exact.first_kg_m
+            mass.second_kg_m2[beyond] = exact.second_kg_m2
+    return dict(zip((unit.name for unit in link_units(length)), masses, strict=True))

@@ -5,12 +5,10 @@ import pytest
 
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import Design
 from pareto_monoped.geometry.parts import total
-from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg import links
 from pareto_monoped.leg.dimensions import DEFAULT
-from pareto_monoped.robot.build import build_robot, leg_dimensions
+from pareto_monoped.robot.build import leg_dimensions
 
 LENGTHS = np.linspace(0.3, 0.5, 9)
 
@@ -83,29 +81,6 @@ def test_the_chain_holds_the_largest_knee_torque():
     # 5.5 N m at 8.7 to one on the sprocket's pitch radius, against the 4.4 kN of ISO 606 for 05B-1.
     pitch_radius_m = 0.5e-3 * DEFAULT.chain_pitch_mm / np.sin(np.pi / DEFAULT.sprocket_teeth)
     assert 4400.0 / (5.5 * 8.7 / pitch_radius_m) > 2.0
-
-
-@pytest.mark.parametrize(("ratio", "family", "clearance_mm"), [(4.5, "ISSPG", 0.0), (7.5, "ESSPG", 3.0)])
-def test_journal_screws_hold_5_mm_of_thread_and_reach_no_rotor(ratio, family, clearance_mm):
-    gains = {"stiffness_n_per_m": 100.0, "damping_n_s_per_m": 1.0, "torsional_stiffness_n_m_per_rad": 10.0}
-    design = Design(thigh_length_m=0.4, shank_length_m=0.4, knee_ratio=ratio, hip_ratio=4.5, **gains)
-    robot = build_robot(design, map_for("VT8020"))
-    knee = robot.knee
-    assert knee.family == family
-    (screw,) = (part for unit in robot.units for part in unit.parts if part.name == "journal_screw")
-    # Heights in the knee actuator's frame, where its back is at -length.
-    first = DEFAULT.knee_mount_mm - max(prism.z1_mm for prism in screw.prisms if prism.outline.radius_mm < 2.5)
-    tip = DEFAULT.knee_mount_mm - min(prism.z0_mm for prism in screw.prisms)
-    assert first == pytest.approx(-knee.length_mm + clearance_mm)
-    assert tip - first >= 5.0 - 1e-9
-    assert screw.pitch_radius_mm == pytest.approx(0.5 * knee.mount.back_bolts.pitch_circle_mm)
-    low, high = screw.pitch_radius_mm - 2.5, screw.pitch_radius_mm + 2.5
-    for part in knee.parts:
-        if part.group != "housing":
-            for prism in part.prisms:
-                if prism.z0_mm < tip:
-                    bore = max((hole.radius_mm for hole in prism.holes if isinstance(hole, Circle)), default=0.0)
-                    assert bore > high or prism.outline.radius_mm < low, part.name
 
 
 def test_the_default_leg_is_the_default_motor_s():

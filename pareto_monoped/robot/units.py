@@ -1,0 +1,113 @@
+"""The table of units: what a robot is made of, each group of parts described once.
+
+``build`` makes the parts of one robot from this table, ``tables`` weighs the same parts for whole populations.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.geometry.parts import MassProperties, Part
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
+from pareto_monoped.robot.frames import OVER, UPRIGHT, Floats, in_body
+
+
+def _middle_plane(leg: LegDimensions) -> float:
+    """Z of a unit whose origin lies in the middle plane of the leg."""
+    return 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class UnitKind:
+    """A row of the table: which body carries the unit, and where.
+
+    Attributes:
+        name: unique.
+        body: the body that carries it, one of ``BODIES``.
+        turn: rotation from the unit's frame to the body's part frame.
+        z_mm: where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg.
+        weighed_last: added to its body's mass after the units that are not. Floating-point sums depend on their order,
+            and the results of stored studies on this one.
+    """
+
+    name: str
+    body: str
+    turn: Floats
+    z_mm: Callable[[LegDimensions], float] = _middle_plane
+    weighed_last: bool = False
+
+    def in_body(self, properties: MassProperties, leg: LegDimensions) -> MassProperties:
+        """Mass properties from the unit's frame to the body frame."""
+        return in_body(properties, self.turn, self.z_mm(leg))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ActuatorSized(UnitKind):
+    """A unit whose parts depend on an actuator.
+
+    Attributes:
+        joint: the joint that this actuator drives, one of ``JOINTS``.
+        parts: the parts of the unit, in its own frame, for that actuator.
+    """
+
+    joint: str
+    parts: Callable[[Actuator, LegDimensions], tuple[Part, ...]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinkSized(UnitKind):
+    """A unit whose parts depend on a link length.
+
+    Attributes:
+        length: the length, a name of ``design.NAMES``.
+        parts: the parts of the unit, in its own frame, for that length in metres (a float or shape (n,)).
+    """
+
+    length: str
+    parts: Callable[[Numbers, LegDimensions], tuple[Part, ...]]
+
+
+def _base_frame(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
+    return base_parts(1e-3 * knee.length_mm, leg)
+
+
+def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
+    # Screws into the motor of an ESSPG pass through its backplate first; an ISSPG has the threads in the backplate.
+    clearance_mm = knee.mount.back_depth_mm if knee.family == "ESSPG" else 0.0
+    return journal_parts(1e-3 * knee.length_mm, leg, back_clearance_mm=clearance_mm)
+
+
+UNITS: tuple[ActuatorSized | LinkSized, ...] = (
+    ActuatorSized(name="base_frame", body="base", turn=UPRIGHT, joint="knee", parts=_base_frame),
+    ActuatorSized(
+        name="hip_actuator",
+        body="base",
+        turn=UPRIGHT,
+        z_mm=lambda leg: leg.hip_mount_mm,
+        weighed_last=True,
+        joint="hip",
+        parts=lambda hip, _: hip.parts,
+    ),
+    LinkSized(name="thigh", body="thigh", turn=UPRIGHT, length="thigh_length_m", parts=thigh_parts),
+    ActuatorSized(
+        name="knee_actuator",
+        body="thigh",
+        turn=OVER,
+        z_mm=lambda leg: leg.knee_mount_mm,
+        weighed_last=True,
+        joint="knee",
+        parts=lambda knee, _: knee.parts_bolted_at_back,
+    ),
+    ActuatorSized(name="journal", body="thigh", turn=UPRIGHT, joint="knee", parts=_journal),
+    LinkSized(name="shank", body="shank", turn=UPRIGHT, length="shank_length_m", parts=shank_parts),
+    LinkSized(
+        name="foot",
+        body="shank",
+        turn=UPRIGHT,
+        length="shank_length_m",
+        parts=lambda length_m, leg: (foot_part(length_m, leg),),
+    ),
+)
+"""All units, from the base down to the foot: the order in which a robot lists them."""
