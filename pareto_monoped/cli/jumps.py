@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,25 +10,36 @@ import click
 
 from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, PAPER_MOTOR, VARIABLES, Design, columns
 from pareto_monoped.errors import DesignError, complaint
+from pareto_monoped.jump.calibration import DEFAULT
 
 if TYPE_CHECKING:
-    from pareto_monoped.jump.audit import Audits
-    from pareto_monoped.jump.single import EnergyBalance, JumpResult
+    from pareto_monoped.actuator.ratiomap import ActuatorMap
+    from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.jump.single import JumpResult
+    from pareto_monoped.jump.table1 import Row
 
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command()
-@click.option("--case", type=click.Choice(list(PAPER_CASES)), default="nominal", help="Start from a row of Table I.")
+@click.option(
+    "--case",
+    type=click.Choice(list(PAPER_CASES)),
+    default="nominal",
+    show_default=True,
+    help="Start from a row of Table I.",
+)
 @click.option(
     "--set", "changes", metavar="NAME=VALUE", multiple=True, help="Change a design variable; may be repeated."
 )
-@click.option("--calibration", "calibration_name", metavar="NAME", default="reference", help="Name or TOML file.")
-@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, help="Name or TOML file.")
+@click.option(
+    "--calibration", "calibration_name", metavar="NAME", default=DEFAULT, show_default=True, help="Name or TOML file."
+)
+@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write a row a step.")
-@click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the MJCF that is simulated.")
-@click.option("--audit", "audited", is_flag=True, help="Check energy balance, finer steps and perturbations.")
+@click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
+@click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
+@click.option("--audit", "audited", is_flag=True, help="Check energy balance, finer steps, perturbations.")
 def simulate(
     case: str,
     changes: tuple[str, ...],
@@ -38,37 +50,26 @@ def simulate(
     model: Path | None,
     audited: bool,
 ) -> None:
-    """Jump once."""
-    design = _design(case, changes)
+    """Simulate one jump and print its measures."""
     from pareto_monoped.actuator.search import map_for
-    from pareto_monoped.files import write_text
-    from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.calibration import load_calibration
-    from pareto_monoped.jump.model import mjcf
-    from pareto_monoped.jump.single import energy_balance
     from pareto_monoped.jump.single import simulate as jump
-    from pareto_monoped.robot.population import robot_arrays
 
+    design = _design(case, changes)
     calibration = load_calibration(calibration_name)
     actuator_map = map_for(motor)
     result = jump(design, actuator_map, calibration, trace=trace is not None)
     if result.status in ("bad_input", "no_gearbox"):
         raise DesignError(result.reason)
-    stands = result.status != "cannot_stand"
-    if not stands and (trace or model):
+    if result.status == "cannot_stand" and (trace or model):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
-    values = design.as_array()[None, :]
-    robots = robot_arrays(values, actuator_map, calibration.mass)
     report = _report(result, motor)
     if audited and result.status == "ok":
-        audits = audit(values, actuator_map, calibration)
-        report["audit"] = _audit(audits, energy_balance(robots, columns(values, CONTROL), calibration))
+        report["audit"] = _audit(design, actuator_map, calibration)
     if trace:
-        rows = zip(*(column.tolist() for column in result.trace.values()), strict=True)
-        lines = [",".join(result.trace), *(",".join("" if math.isnan(v) else repr(v) for v in row) for row in rows)]
-        write_text(trace, "\n".join(lines) + "\n")
+        _write_trace(trace, result)
     if model:
-        write_text(model, mjcf(robots, calibration, comment=f"design: {json.dumps(design.as_dict())}; motor: {motor}"))
+        _write_model(model, design, motor, actuator_map, calibration)
     if as_json:
         click.echo(json.dumps(report, indent=2))
     else:
@@ -76,7 +77,7 @@ def simulate(
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:
-    """The design asked for, with a note on stderr about values outside the paper's bounds."""
+    """The case with its changes; values outside the paper's bounds get a note on stderr."""
     numbers = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -99,7 +100,7 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
 
 
 def _plain(value: float) -> float | None:
-    """A JSON number, or null where there is none."""
+    """The value as a JSON number; None, which is null in JSON, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
@@ -114,13 +115,45 @@ def _report(result: "JumpResult", motor: str) -> dict[str, Any]:
     }
 
 
-def _audit(audits: "Audits", balance: "EnergyBalance") -> dict[str, Any]:
-    first = {name: values[0].item() for name, values in audits.as_columns().items()}
-    for name in ("status", "height_m", "energy_j"):
-        del first[name]
-    numbers = {name: _plain(v) if isinstance(v, float) else v for name, v in first.items()}
-    terms = ("actuator_work_j", "kinetic_j", "potential_j", "damping_j", "friction_j", "stops_j", "contact_j")
-    return {**numbers, "energy": {name: getattr(balance, name) for name in (*terms, "residual_j")}}
+def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibration") -> dict[str, Any]:
+    from pareto_monoped.jump.audit import audit
+    from pareto_monoped.jump.single import energy_balance
+    from pareto_monoped.robot.population import robot_arrays
+
+    values = design.as_array()[None, :]
+    audits = audit(values, actuator_map, calibration).as_columns()
+    # These stand in the report already.
+    first = {
+        name: column[0].item() for name, column in audits.items() if name not in ("status", "height_m", "energy_j")
+    }
+    balance = energy_balance(
+        robot_arrays(values, actuator_map, calibration.mass), columns(values, CONTROL), calibration
+    )
+    return {
+        **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
+        "energy": asdict(balance) | {"residual_j": balance.residual_j},
+    }
+
+
+def _write_trace(path: Path, result: "JumpResult") -> None:
+    """One line per step, every number to its last digit; a cell is empty where there is no number."""
+    from pareto_monoped.files import write_text
+
+    rows = zip(*(column.tolist() for column in result.trace.values()), strict=True)
+    lines = [",".join("" if math.isnan(value) else repr(value) for value in row) for row in rows]
+    write_text(path, "\n".join([",".join(result.trace), *lines]) + "\n")
+
+
+def _write_model(
+    path: Path, design: Design, motor: str, actuator_map: "ActuatorMap", calibration: "Calibration"
+) -> None:
+    from pareto_monoped.files import write_text
+    from pareto_monoped.jump.model import mjcf
+    from pareto_monoped.robot.population import robot_arrays
+
+    robots = robot_arrays(design.as_array()[None, :], actuator_map, calibration.mass)
+    comment = f"design: {json.dumps(design.as_dict())}; motor: {motor}"
+    write_text(path, mjcf(robots, calibration, comment=comment))
 
 
 def _print(report: dict[str, Any]) -> None:
@@ -146,14 +179,21 @@ def _lines(report: dict[str, Any], indent: str = "") -> list[tuple[str, str]]:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def table1(as_json: bool) -> None:
-    """The paper's Table I: as published, under `paper` and under `reference`."""
+    """Print the paper's Table I as published and as simulated here.
+
+    Simulated under the calibrations `paper` and `reference`.
+    """
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.table1 import table1 as rows_of
 
     rows = rows_of(map_for(PAPER_MOTOR))
     if as_json:
         click.echo(json.dumps([row.as_dict() for row in rows], indent=2))
-        return
+    else:
+        _print_table1(rows)
+
+
+def _print_table1(rows: "tuple[Row, ...]") -> None:
     from rich.console import Console
     from rich.table import Table
 
