@@ -89,3 +89,53 @@ def test_help_imports_nothing_heavy():
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+SPELLING = {"startswith", "endswith", "removeprefix", "removesuffix", "search", "match", "fullmatch", "find", "get"}
+
+
+def is_name_of_part(node: ast.AST) -> bool:
+    """``part.name``, ``instance.part.name``, ``kind.name`` and the like."""
+    if not (isinstance(node, ast.Attribute) and node.attr == "name"):
+        return False
+    owner = node.value.attr if isinstance(node.value, ast.Attribute) else getattr(node.value, "id", "")
+    return owner in ("part", "kind") or owner.endswith("_part")
+
+
+def decisions_by_part_name(tree: ast.AST) -> list[str]:
+    """Expressions that ask how a part's name is spelt; to look a joint's partner up by its name is allowed."""
+    found = []
+    for node in ast.walk(tree):
+        asked = False
+        if isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            asked = any(map(is_name_of_part, sides)) and not any(
+                isinstance(side, ast.Attribute) and side.attr == "partner" for side in sides
+            )
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in SPELLING:
+            asked = any(map(is_name_of_part, [node.func.value, *node.args]))
+        elif isinstance(node, ast.Match):
+            asked = is_name_of_part(node.subject)
+        if asked:
+            found.append(ast.unparse(node))
+    return found
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_nothing_is_decided_by_the_name_of_a_part(path):
+    assert decisions_by_part_name(ast.parse(path.read_text())) == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "part.name == 'motor_rotor'",
+        "instance.part.name in HIDDEN",
+        "'core' in instance.part.name",
+        "part.name.endswith('_screw')",
+        "FASTENER.search(part.name)",
+        "COLOURS.get(kind.name)",
+    ],
+)
+def test_a_decision_by_the_name_of_a_part_is_found(code):
+    assert len(decisions_by_part_name(ast.parse(code))) == 1

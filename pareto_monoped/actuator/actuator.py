@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pareto_monoped.actuator.external import external_parts
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency
 from pareto_monoped.actuator.internal import BACK_THREAD_MM, internal_parts
-from pareto_monoped.actuator.layout import STATOR_SCREW, Family, Layout, layout
+from pareto_monoped.actuator.layout import Family, Layout, layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import SCREWS, Group, Role
 from pareto_monoped.geometry.shapes import Numbers
 
 
@@ -92,7 +93,7 @@ class Actuator:
     @property
     def parts_bolted_at_back(self) -> tuple[Part, ...]:
         """Every part where something is bolted to the back: its screws hold the framed motor too."""
-        return tuple(part for part in self.parts if part.name != STATOR_SCREW)
+        return tuple(part for part in self.parts if part.role is not Role.STATOR_SCREW)
 
     def mass_breakdown_kg(self) -> dict[str, float]:
         """Mass by part, all instances of each."""
@@ -135,7 +136,7 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
         contact_ratio_sun=float(outer),
         contact_ratio_ring=float(inner),
         reflected_inertia_kg_m2=reflected_inertia_kg_m2(parts, gears, motor),
-        length_mm=-min(float(p.z0_mm) for part in parts if not part.name.endswith("_screw") for p in part.prisms),
+        length_mm=-min(float(p.z0_mm) for part in parts if part.role not in SCREWS for p in part.prisms),
         output=output_interface(settings),
         mount=mount_interface(motor, family, settings),
         parts=parts,
@@ -153,12 +154,12 @@ def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Moto
     spin = 1.0 - float(gears.ring_teeth) / float(gears.planet_teeth)
     total = motor.rotor_inertia_kg_m2 * ratio**2
     for part in parts:
-        if part.name == "motor_rotor" or part.group == "housing":
+        if part.role is Role.MOTOR_ROTOR or part.group is Group.HOUSING:
             continue
         about_axis = float(part.mass_properties().inertia_kg_m2[2, 2])
-        if part.group == "rotor":
+        if part.group is Group.ROTOR:
             total += ratio**2 * about_axis
-        elif part.group == "planet":
+        elif part.group is Group.PLANET:
             orbit = float(part.mass_kg()) * (1e-3 * float(part.pitch_radius_mm)) ** 2
             total += orbit + spin**2 * (about_axis - orbit)
         else:

@@ -7,6 +7,7 @@ from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.settings import ActuatorSettings, PartData
 from pareto_monoped.geometry.gears import DEDENDUM
 from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 
@@ -98,11 +99,15 @@ def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple
     return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_case, at.r_case - settings.parts.case.vent_wall_mm)
 
 
-def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str, note: str, joined: str = "") -> Part:
+def bought_bearing(
+    name: str, bearing: Bearing, z_front_mm: Numbers, group: Group, note: str, joint: Joint | None = None
+) -> Part:
     """A ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
     return Part(
         name=name,
+        role=Role.BEARING,
+        visibility=Visibility.INSIDE,
         material=BEARING_STEEL,
         prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),
         process="bought",
@@ -111,7 +116,7 @@ def bought_bearing(name: str, bearing: Bearing, z_front_mm: Numbers, group: str,
         note=told(
             "{} x {} x {} mm (ISO 15), " + note, bearing.inner_diameter_mm, bearing.outer_diameter_mm, bearing.width_mm
         ),
-        joined=joined,
+        joint=joint,
     )
 
 
@@ -153,17 +158,21 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     return (
         Part(
             name="planet",
+            role=Role.GEAR,
+            visibility=Visibility.INSIDE,
             material=material,
             prisms=planet_prisms(at, settings),
             process="machined",
-            group="planet",
+            group=Group.PLANET,
             note=told(GEAR_NOTE, gears.planet_teeth, gears.module_mm, data.gears.backlash_mm),
-            joined="pressed onto planet_bush",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="planet_bush",
+            role=Role.BUSH,
+            visibility=Visibility.INSIDE,
             material=Material(
                 name="bush bronze", density_kg_per_m3=data.density.bush_kg_per_m3, colour=(0.72, 0.53, 0.26)
             ),
@@ -171,22 +180,24 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * data.gears.planet_bore_mm, pin
             ),
             process="bought",
-            group="planet",
+            group=Group.PLANET,
             note=f"PTFE bronze bush, {stands_out:g} mm longer than the planet on either side",
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
         Part(
             name="planet_pin",
+            role=Role.PIN,
+            visibility=Visibility.INSIDE,
             material=steel(data),
             prisms=(
                 *slab(pin_low, pin_low + PIN_THREAD_MM + 2.0, pin, M3_THREAD_MM),
                 *slab(pin_low + PIN_THREAD_MM + 2.0, pin_front, pin),
             ),
             process="machined",
-            group="output",
+            group=Group.OUTPUT,
             note="hardened dowel, M3 thread in the rear end",
-            joined="pressed into secondary_carrier and carrier",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed into secondary_carrier and", partner="carrier"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
@@ -201,17 +212,19 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             material=steel(data),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
-            group="output",
+            group=Group.OUTPUT,
             note="holds the secondary carrier on its pin",
         ),
         Part(
             name="ring",
+            role=Role.GEAR,
+            visibility=Visibility.INSIDE,
             material=material,
             prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note=told(GEAR_NOTE, gears.ring_teeth, gears.module_mm, data.gears.backlash_mm),
-            joined="bonded into ring_housing",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
         ),
     )
 
@@ -247,10 +260,11 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     return (
         Part(
             name="carrier",
+            role=Role.CARRIER,
             material=material,
             prisms=body,
             process="machined",
-            group="output",
+            group=Group.OUTPUT,
             note=told(
                 "EN AW-7075; seats {} h6 for the main bearing, {} J7 for the end bearing; bores {} H7 for the pins",
                 2.0 * at.r_bore,
@@ -260,23 +274,27 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         ),
         Part(
             name="secondary_carrier",
+            role=Role.CARRIER,
+            visibility=Visibility.INSIDE,
             material=material,
             prisms=(
                 *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins),
                 *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws),
             ),
             process="machined",
-            group="output",
+            group=Group.OUTPUT,
             note=told("EN AW-7075; bores {} H7 for the pins; countersink the back", carrier.pin_diameter_mm),
         ),
         Part(
             name="retaining_ring",
+            role=Role.RETAINING_RING,
+            visibility=Visibility.INSIDE,
             material=steel(data),
             prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, r_groove),
             process="bought",
-            group="output",
+            group=Group.OUTPUT,
             note=told("DIN 471 for {} mm, in the carrier's groove before the main bearing", 2.0 * at.r_bore),
         ),
-        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, "output", "thin-section"),
-        bought_bearing("end_bearing", at.end_bearing, 0.0, "output", "carries the sun's end in the carrier"),
+        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, Group.OUTPUT, "thin-section"),
+        bought_bearing("end_bearing", at.end_bearing, 0.0, Group.OUTPUT, "carries the sun's end in the carrier"),
     )

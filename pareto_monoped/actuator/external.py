@@ -22,10 +22,11 @@ from pareto_monoped.actuator.common import (
     vents,
 )
 from pareto_monoped.actuator.internal import back_holes
-from pareto_monoped.actuator.layout import STATOR_SCREW, Layout
+from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
@@ -105,32 +106,39 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         *carrier_parts(at, settings),
         Part(
             name="sun",
+            role=Role.GEAR,
+            visibility=Visibility.INSIDE,
             material=gear_steel(data),
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
-            group="rotor",
+            group=Group.ROTOR,
             note=told(GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm),
-            joined="pressed onto sun_shaft",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="sun_shaft"),
         ),
         Part(
             name="sun_shaft",
+            role=Role.SHAFT,
+            visibility=Visibility.INSIDE,
             material=steel(data),
             prisms=slab(z_motor, -_END_PLAY_MM, shaft),
             process="machined",
-            group="rotor",
+            group=Group.ROTOR,
             note="hardened dowel",
-            joined="pressed into coupling",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
         ),
         Part(
             name="coupling",
+            role=Role.COUPLING,
+            visibility=Visibility.INSIDE,
             material=alu,
             prisms=slab(z_motor, z_coupling, r_coupling, shaft, rotor_screws, *windows),
             process="machined",
-            group="rotor",
+            group=Group.ROTOR,
             note="screwed to the motor's turning face",
         ),
         Part(
             name="ring_housing",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount),
@@ -145,21 +153,24 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *tube(z_flange, z_flange + case.flange_mm, r_flange, r_tube, screws),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note=told(
                 "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring", 2.0 * at.r_seat, 2.0 * at.r_ring
             ),
         ),
         Part(
             name="bore_retaining_ring",
+            role=Role.RETAINING_RING,
+            visibility=Visibility.INSIDE,
             material=steel(data),
             prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
             process="bought",
-            group="housing",
+            group=Group.HOUSING,
             note=told("DIN 472 for {} mm, in the ring housing's groove behind the main bearing", 2.0 * at.r_seat),
         ),
         Part(
             name="casing",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *tube(at.z_gear_back, z_flange, r_web, at.r_ring, threads),
@@ -168,18 +179,19 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note="EN AW-6082; bore and faces in one clamping",
         ),
         Part(
             name="backplate",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *slab(z_end, z_plate, at.r_plate, 8.0, back, back_holes(motor, 0.5), *back_vents),
                 *spigot(z_plate, at, settings),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note="EN AW-6082; step to fit the casing",
         ),
         screw_part(
@@ -193,7 +205,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=count,
             pitch_radius_mm=bolts,
-            group="housing",
+            group=Group.HOUSING,
             note="from the ring housing into the casing",
         ),
         screw_part(
@@ -207,7 +219,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=count,
             pitch_radius_mm=at.r_bolts,
-            group="housing",
+            group=Group.HOUSING,
             note="into the casing",
         ),
         screw_part(
@@ -221,11 +233,11 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=output.count,
             pitch_radius_mm=0.5 * output.pitch_circle_mm,
-            group="rotor",
+            group=Group.ROTOR,
             note="into the motor's turning face, flush",
         ),
         screw_part(
-            STATOR_SCREW,
+            "stator_screw",
             screw_for(mount_holes.diameter_mm, 0.5 * mount_holes.diameter_mm - 0.4),
             head="cap",
             seat_mm=z_end,
@@ -235,33 +247,37 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=mount_holes.count,
             pitch_radius_mm=0.5 * mount_holes.pitch_circle_mm,
-            group="housing",
+            group=Group.HOUSING,
+            role=Role.STATOR_SCREW,
             note="into the motor's base; left out where the journal's screws go there",
         ),
         Part(
             name="motor_stator",
+            role=Role.MOTOR_STATOR,
+            visibility=Visibility.INSIDE,
             material=MOTOR_STATOR,
             prisms=(
                 *slab(z_plate, z_plate + base, at.r_stator_out, back_holes(motor, -0.8)),
                 *tube(z_plate + base, z_motor - base - case.rotor_clearance_mm, at.r_stator_out, at.r_stator_in),
             ),
             process="bought",
-            group="housing",
+            group=Group.HOUSING,
             catalogue_mass_kg=(1.0 - rotor_share) * frame.mass_kg,
             note=f"{motor.name}, framed: stator, base and bearings",
         ),
         Part(
             name="motor_rotor",
+            role=Role.MOTOR_ROTOR,
             material=MOTOR_ROTOR,
             prisms=(
                 *slab(z_motor - base, z_motor, at.r_motor, rotor_threads),
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
             ),
             process="bought",
-            group="rotor",
+            group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * frame.mass_kg,
             note=f"{motor.name}, framed: rotor with its face",
-            joined="in the motor's own bearings on motor_stator",
+            joint=Joint(kind=JointKind.RUNNING, how="in the motor's own bearings on", partner="motor_stator"),
         ),
     )
 

@@ -25,6 +25,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
@@ -104,6 +105,8 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         *carrier_parts(at, settings),
         Part(
             name="sun",
+            role=Role.GEAR,
+            visibility=Visibility.INSIDE,
             material=gear_steel(data),
             prisms=(
                 *slab(z_neck, -_END_PLAY_MM, journal),
@@ -112,25 +115,28 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *slab(z_plate, at.z_gear_back, shaft),
             ),
             process="machined",
-            group="rotor",
+            group=Group.ROTOR,
             note=told(
                 "one piece with its shaft; " + GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm
             ),
-            joined="pressed into coupling",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
         ),
         Part(
             name="coupling",
+            role=Role.COUPLING,
+            visibility=Visibility.INSIDE,
             material=alu,
             prisms=(
                 *slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
                 *tube(z_seat, z_coupling - coupling.thickness_mm, shaft + _HUB_WALL_MM, shaft),
             ),
             process="machined",
-            group="rotor",
+            group=Group.ROTOR,
             note="screwed to the bell",
         ),
         Part(
             name="casing",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws, *front_vents),
@@ -140,11 +146,12 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note="EN AW-6082; bore and faces in one clamping",
         ),
         Part(
             name="ring_housing",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *tube(z_flange, -case.plate_mm, r_flange, at.r_seat, flange_threads),
@@ -160,7 +167,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 ),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note=told(
                 "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring, {} for the stator",
                 2.0 * at.r_seat,
@@ -170,6 +177,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         ),
         Part(
             name="backplate",
+            role=Role.HOUSING,
             material=alu,
             prisms=(
                 *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_threads, *back_vents),
@@ -178,7 +186,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
                 *spigot(z_plate, at, settings),
             ),
             process="machined",
-            group="housing",
+            group=Group.HOUSING,
             note=told("EN AW-6082; seat {} J7 for the rear bearing, step to fit the casing", 2.0 * rear_seat),
         ),
         screw_part(
@@ -192,7 +200,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=count,
             pitch_radius_mm=flange_bolts,
-            group="housing",
+            group=Group.HOUSING,
             note="flush with the mounting face",
         ),
         screw_part(
@@ -206,7 +214,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=count,
             pitch_radius_mm=at.r_bolts,
-            group="housing",
+            group=Group.HOUSING,
             note="into the casing",
         ),
         screw_part(
@@ -220,36 +228,39 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             material=steel(data),
             count=coupling.bolt_count,
             pitch_radius_mm=bell_circle,
-            group="rotor",
+            group=Group.ROTOR,
             note="through the bell into the coupling, flush",
         ),
         bought_bearing(
             "rear_bearing",
             at.rear_bearing,
             z_seat,
-            "housing",
+            Group.HOUSING,
             "carries the rotor",
-            joined="pressed into backplate",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="backplate"),
         ),
         Part(
             name="motor_stator",
+            role=Role.MOTOR_STATOR,
+            visibility=Visibility.INSIDE,
             material=MOTOR_STATOR,
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
             process="bought",
-            group="housing",
+            group=Group.HOUSING,
             catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
             note=f"{motor.name}, frameless",
-            joined="bonded onto ring_housing",
+            joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing"),
         ),
         Part(
             name="motor_rotor",
+            role=Role.MOTOR_ROTOR,
             material=MOTOR_ROTOR,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
                 *slab(z_coupling, z_bell, at.r_motor, shaft + 1.0, bell_screws),
             ),
             process="bought",
-            group="rotor",
+            group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * kit.mass_kg,
             note=f"{motor.name}, frameless",
         ),

@@ -26,8 +26,6 @@ RETAINING_RING_MM = 1.75
 """Thickness of the retaining ring in front of the main bearing: DIN 471 for 40 mm; 1.5 to 2.5 mm in the range used."""
 RING_GROOVE_WALL_MM = 0.75
 """What is left of the carrier in front of that ring's groove; the flange in front of it carries the rest."""
-STATOR_SCREW = "stator_screw"
-"""The part that holds a framed motor in its own mounting pattern, unless what is bolted to the back does."""
 END_BEARING_BORE_MM = 6.0
 """Bearing that carries the sun's end in the carrier."""
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group
 from pareto_monoped.robot.build import Robot, Unit
 from pareto_monoped.robot.frames import PART_TO_BODY
 
@@ -156,12 +157,12 @@ def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[fl
         The angle of the whole circle of instances, and from an instance's place on it to its own turn on its place.
     """
     if actuator is None:
-        return (theta_rad if part.group == "knee_drive" else 0.0), lambda _: 0.0
-    if part.group == "rotor":
+        return (theta_rad if part.group is Group.KNEE_DRIVE else 0.0), lambda _: 0.0
+    if part.group is Group.ROTOR:
         return actuator.ratio * theta_rad, lambda _: 0.0
-    if part.group == "output":
+    if part.group is Group.OUTPUT:
         return theta_rad, lambda _: 0.0
-    if part.group == "planet":
+    if part.group is Group.PLANET:
         gears = actuator.gears
         rolled = -theta_rad * gears.ring_teeth / gears.planet_teeth
         return theta_rad, lambda place: place * gears.sun_teeth / gears.planet_teeth + rolled

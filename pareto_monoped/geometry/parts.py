@@ -13,6 +13,7 @@ from functools import lru_cache, reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
 
 
@@ -210,6 +211,7 @@ class Part:
 
     Attributes:
         name: unique in the unit, lower case with underscores, such as ``planet``.
+        role: what it does.
         material: what it is made of.
         prisms: its geometry; drawn around the part's own centre if ``pitch_radius_mm`` is not zero.
         balls: further geometry that is round all over.
@@ -218,15 +220,16 @@ class Part:
         pitch_radius_mm: its instances sit evenly on a circle of this radius about the unit's z axis; 0: at the origin.
         phase_rad: angle of the first instance on that circle.
         places_mm: where the whole circle of instances, or the single one, is repeated: x, y, z from the unit's origin.
-        group: what it moves with, such as ``housing``, ``output``, ``rotor``, ``planet``; ``fixed`` in a link.
+        group: what it moves with.
         catalogue_mass_kg: mass of one, if it is bought and its solid is only an envelope; the density follows.
         note: what the maker should know (standard, fit, catalogue number).
-        joined: how it is held where its shape does not do it, ending in the name of the part that does, such as
-            ``pressed on sun_shaft``.
+        joint: what holds it where its shape does not.
+        visibility: where it is drawn.
         countersunk_mm: heights of the flush faces of countersunk heads, which are drawn as plain shanks.
     """
 
     name: str
+    role: Role
     material: Material
     prisms: tuple[Prism, ...]
     process: str
@@ -235,10 +238,11 @@ class Part:
     phase_rad: float = 0.0
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = _HERE
     balls: tuple[Ball, ...] = ()
-    group: str = "fixed"
+    group: Group = Group.FIXED
     catalogue_mass_kg: Numbers | None = None
     note: str = field(default="", compare=False)
-    joined: str = ""
+    joint: Joint | None = None
+    visibility: Visibility = Visibility.OUTSIDE
     countersunk_mm: tuple[Numbers, ...] = ()
 
     def volume_mm3(self) -> Numbers:

@@ -1,4 +1,4 @@
-"""What a part is for, and how it is joined to another: typed, so that no behaviour hangs on a part's name."""
+"""What a part is for, what it moves with, how it is joined: typed, so that no behaviour depends on a part's name."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,6 +9,7 @@ class Role(StrEnum):
 
     PLATE = "plate"
     CORE = "core"
+    BRACKET = "bracket"
     HOUSING = "housing"
     CARRIER = "carrier"
     GEAR = "gear"
@@ -16,23 +17,46 @@ class Role(StrEnum):
     CHAIN = "chain"
     TURNBUCKLE = "turnbuckle"
     SHAFT = "shaft"
+    COUPLING = "coupling"
     BUSH = "bush"
     BEARING = "bearing"
     SPACER = "spacer"
     RETAINING_RING = "retaining ring"
     PIN = "pin"
     SCREW = "screw"
-    NUT = "nut"
+    STATOR_SCREW = "stator screw"  # screws whose place the journal's screws take, see ``Actuator.parts_bolted_at_back``
+    BOLT = "bolt"  # a screw together with its nut
     ROD = "rod"
-    BUMPER = "bumper"
     FOOT = "foot"
     MOTOR_STATOR = "motor stator"
     MOTOR_ROTOR = "motor rotor"
-    ELECTRONICS = "electronics"
+
+
+SCREWS = frozenset({Role.SCREW, Role.STATOR_SCREW})
+FASTENERS = SCREWS | {Role.BOLT}
+
+
+class Group(StrEnum):
+    """What a part moves with inside its unit."""
+
+    FIXED = "fixed"  # the links' own parts
+    HOUSING = "housing"
+    OUTPUT = "output"
+    ROTOR = "rotor"
+    PLANET = "planet"
+    KNEE_DRIVE = "knee_drive"  # turns with the knee actuator's output
+
+
+class Visibility(StrEnum):
+    """Where a part is drawn."""
+
+    OUTSIDE = "outside"  # everywhere
+    DETAIL = "detail"  # in pictures, but not in the coarse meshes of the robot models
+    INSIDE = "inside"  # in neither: other parts cover it
 
 
 class JointKind(StrEnum):
-    """How a part is held where its shape alone does not hold it."""
+    """What holds a part that its shape alone does not hold."""
 
     PRESSED = "pressed"
     BONDED = "bonded"
@@ -44,14 +68,19 @@ class JointKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """A joint that no shape shows.
+    """A joint that the shapes of the parts do not show.
 
     Attributes:
         kind: what holds.
+        how: the joint in words, without the partner, such as ``pressed onto``.
         partner: name of the part of the same unit that holds.
-        text: the joint in words, for the parts list.
     """
 
     kind: JointKind
+    how: str
     partner: str
-    text: str
+
+    @property
+    def text(self) -> str:
+        """The joint in words, for the parts list."""
+        return f"{self.how} {self.partner}"

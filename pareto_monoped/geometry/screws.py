@@ -7,6 +7,7 @@ import numpy as np
 
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Numbers
 
 Head = Literal["cap", "countersunk", "hexagon"]
@@ -112,7 +113,9 @@ def screw_part(
     pitch_radius_mm: Numbers = 0.0,
     phase_rad: float = 0.0,
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] | None = None,
-    group: str = "fixed",
+    group: Group = Group.FIXED,
+    role: Role = Role.SCREW,
+    visibility: Visibility = Visibility.DETAIL,
     grade: str = "8.8",
     note: str = "",
 ) -> Part:
@@ -132,6 +135,8 @@ def screw_part(
         phase_rad: of the first on it.
         places_mm: of the circle's centre.
         group: what it moves with.
+        role: ``SCREW`` or ``STATOR_SCREW``.
+        visibility: where it is drawn.
         grade: property class (ISO 898-1).
         note: what else the maker should know.
 
@@ -156,6 +161,7 @@ def screw_part(
     standard = _STANDARDS.get(head) or (_COMMON if np.min(length) >= 8.0 and size >= 3.0 else _SMALL)
     part = Part(
         name=name,
+        role=role,
         material=material,
         prisms=drawn,
         process="bought",
@@ -163,6 +169,7 @@ def screw_part(
         pitch_radius_mm=pitch_radius_mm,
         phase_rad=phase_rad,
         group=group,
+        visibility=visibility,
         countersunk_mm=(seat_mm,) if head == "countersunk" else (),
         note=f"{screw.name}{long} {standard} {grade}{', ' + note if note else ''}",
     )

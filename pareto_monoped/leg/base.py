@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
 from pareto_monoped.leg.common import Place, holes_at, motor_screw
@@ -61,6 +62,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
     return (
         Part(
             name="base_near_cheek",
+            role=Role.PLATE,
             material=ALUMINIUM,
             process="laser cut",
             prisms=(
@@ -100,6 +102,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         ),
         Part(
             name="base_far_cheek",
+            role=Role.PLATE,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -115,6 +118,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         ),
         Part(
             name="base_bearing",
+            role=Role.BEARING,
             material=STEEL,
             process="bought",
             prisms=(
@@ -130,6 +134,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         ),
         Part(
             name="base_rod",
+            role=Role.ROD,
             material=ALUMINIUM,
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(thread,)),),
@@ -139,6 +144,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         screw_part(
             "base_rod_screw_near",
             M4,
+            visibility=Visibility.OUTSIDE,
             head="cap",
             seat_mm=near0,
             grip_mm=d.cheek_mm,
@@ -150,6 +156,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         screw_part(
             "base_rod_screw_far",
             M4,
+            visibility=Visibility.OUTSIDE,
             head="cap",
             seat_mm=far1,
             grip_mm=d.far_cheek_mm,
@@ -181,6 +188,7 @@ def journal_parts(
     return (
         Part(
             name="journal",
+            role=Role.SHAFT,
             material=ALUMINIUM,
             process="machined",
             prisms=(

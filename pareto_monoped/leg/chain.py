@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import ALUMINIUM, STEEL, LegDimensions
 from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm
@@ -60,11 +61,12 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         *(
             Part(
                 name=f"chain_{end}",
+                role=Role.CHAIN,
                 material=STEEL,
                 process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
                 catalogue_mass_kg=d.chain_kg_per_m * metres,
-                joined=f"around the teeth of {sprocket}",
+                joint=Joint(kind=JointKind.ENGAGED, how="around the teeth of", partner=sprocket),
                 note=f"{d.chain_name} (ISO 606), {count[end]} of {d.chain_pitch_mm:g} mm, an inner link at both ends",
             )
             for end, y_mm, sign, sprocket in (
@@ -74,15 +76,17 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="turnbuckle_barrel",
+            role=Role.TURNBUCKLE,
             material=ALUMINIUM,
             process="machined",
             prisms=_barrel(),
             places_mm=places,
-            joined="threaded onto turnbuckle_end",
+            joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end"),
             note=f"EN AW-7075, 7 mm square, tapped M4 right-hand and left-hand; {setting}, travel {travel}",
         ),
         Part(
             name="turnbuckle_end",
+            role=Role.TURNBUCKLE,
             material=STEEL,
             process="machined",
             prisms=_end(d),

@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_for, screw_length_mm
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.leg.dimensions import STEEL, LegDimensions
@@ -34,6 +35,7 @@ def sleeve_bolt(name: str, screw: Screw, half_stack_mm: float, places_mm: tuple[
     long = float(screw_length_mm(stack - sleeve, _OVERLAP[1]))
     return Part(
         name=name,
+        role=Role.BOLT,
         material=STEEL,
         process="bought",
         prisms=(

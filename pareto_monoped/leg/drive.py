@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.leg.common import sprocket_prisms
@@ -32,6 +33,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
     return (
         Part(
             name="hip_coupling",
+            role=Role.COUPLING,
             material=ALUMINIUM,
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=_RADIUS), z0_mm=coupler_face, z1_mm=-face, holes=coupling_holes),),
@@ -67,14 +69,16 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="drive_sprocket",
+            role=Role.SPROCKET,
             material=STEEL,
             process="machined",
             prisms=sprocket_prisms(d),
-            group="knee_drive",
+            group=Group.KNEE_DRIVE,
             note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606)",
         ),
         Part(
             name="drive_coupling",
+            role=Role.COUPLING,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -85,7 +89,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
                     holes=coupling_holes,
                 ),
             ),
-            group="knee_drive",
+            group=Group.KNEE_DRIVE,
             note="between knee output and drive sprocket",
         ),
         screw_part(
@@ -99,7 +103,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             material=STEEL,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
-            group="knee_drive",
+            group=Group.KNEE_DRIVE,
             grade="12.9",
             note="through the sprocket into the knee's output flange",
         ),

@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, cylinder, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, hull, rectangle
 from pareto_monoped.leg.common import (
@@ -47,6 +48,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
     return (
         Part(
             name="shank_plate",
+            role=Role.PLATE,
             material=ALUMINIUM,
             process="laser cut",
             prisms=(
@@ -77,6 +79,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         ),
         Part(
             name="shank_core",
+            role=Role.CORE,
             material=PLASTIC,
             process="3D printed",
             prisms=(
@@ -97,6 +100,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         *_axle_parts(d),
         Part(
             name="foot_block",
+            role=Role.BRACKET,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -119,6 +123,7 @@ def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part
     y_mm = -1000.0 * shank_length_m
     return Part(
         name="foot",
+        role=Role.FOOT,
         material=RUBBER,
         process="moulded",
         prisms=(),
@@ -131,7 +136,7 @@ def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part
             ),
         ),
         note="60 Shore A",
-        joined="moulded onto the tongue of foot_block",
+        joint=Joint(kind=JointKind.MOULDED, how="moulded onto the tongue of", partner="foot_block"),
     )
 
 
@@ -162,6 +167,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
     return (
         Part(
             name="knee_axle",
+            role=Role.SHAFT,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -174,6 +180,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="knee_axle_cap",
+            role=Role.SHAFT,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -184,6 +191,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="knee_spacer",
+            role=Role.SPACER,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -199,6 +207,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="knee_sprocket",
+            role=Role.SPROCKET,
             material=STEEL,
             process="machined",
             prisms=sprocket_prisms(d),
@@ -220,6 +229,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="knee_bolt",
+            role=Role.BOLT,
             material=STEEL,
             process="bought",
             prisms=(

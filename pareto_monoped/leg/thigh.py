@@ -3,6 +3,7 @@
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M25, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
 from pareto_monoped.leg.chain import chain_parts
@@ -72,6 +73,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     return (
         Part(
             name="thigh_plate_inner",
+            role=Role.PLATE,
             material=ALUMINIUM,
             process="laser cut",
             prisms=(
@@ -86,6 +88,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="thigh_plate_outer",
+            role=Role.PLATE,
             material=ALUMINIUM,
             process="laser cut",
             prisms=(
@@ -105,6 +108,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="thigh_core",
+            role=Role.CORE,
             material=PLASTIC,
             process="3D printed",
             prisms=(
@@ -123,6 +127,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="thigh_standoff",
+            role=Role.SPACER,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -148,6 +153,8 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     return (
         Part(
             name="knee_bearing_cup",
+            role=Role.HOUSING,
+            visibility=Visibility.INSIDE,
             material=ALUMINIUM,
             process="machined",
             prisms=(
@@ -168,6 +175,7 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             screw_part(
                 f"knee_cup_screw_{side}",
                 M25,
+                visibility=Visibility.OUTSIDE,
                 head="countersunk",
                 seat_mm=-direction * d.thigh_face_mm,
                 grip_mm=d.plate_mm,
@@ -184,6 +192,7 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         Part(
             name="knee_bearing",
+            role=Role.BEARING,
             material=STEEL,
             process="bought",
             prisms=(

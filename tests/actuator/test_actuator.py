@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator, reflected_inertia_kg_m2
+from pareto_monoped.geometry.roles import Group, Role
 
 
 @pytest.mark.parametrize("ratio", [4.0, 6.0, 7.9])
@@ -35,15 +36,15 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed(vt_map, vt8
     assert ring == pytest.approx(sun + 2 * planet)
     energy = 0.5 * vt8020.rotor_inertia_kg_m2 * sun_speed**2
     for part in actuator.parts:
-        if part.group == "housing" or part.name == "motor_rotor":
+        if part.group is Group.HOUSING or part.role is Role.MOTOR_ROTOR:
             continue
-        if part.group == "planet":
+        if part.group is Group.PLANET:
             mass = part.unit_mass_kg()
             moments = [(prism.moments(), float(prism.z1_mm - prism.z0_mm)) for prism in part.prisms]
             spin = sum((m.xx + m.yy) * length for m, length in moments) * 1e-15 * part.material.density_kg_per_m3
             energy += part.count * 0.5 * (mass * centre_speed**2 + spin * planet_speed**2)
         else:
-            speed = sun_speed if part.group == "rotor" else carrier_speed
+            speed = sun_speed if part.group is Group.ROTOR else carrier_speed
             energy += 0.5 * part.mass_properties().inertia_kg_m2[2, 2] * speed**2
     assert actuator.reflected_inertia_kg_m2 == pytest.approx(2.0 * energy, rel=1e-9)
     assert actuator.reflected_inertia_kg_m2 > vt8020.rotor_inertia_kg_m2 * ratio**2

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.geometry.parts import MassProperties, Material, Part, Prism, total
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern, rectangle
 
 ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2710.0, colour=(0.8, 0.8, 0.8))
@@ -13,7 +14,7 @@ sizes = st.floats(min_value=1.0, max_value=60.0)
 
 
 def part(*prisms, **changes):
-    return Part(name="thing", material=ALUMINIUM, prisms=prisms, process="machined", **changes)
+    return Part(name="thing", role=Role.PLATE, material=ALUMINIUM, prisms=prisms, process="machined", **changes)
 
 
 @given(radius=sizes, height=sizes, z=st.floats(min_value=-50.0, max_value=50.0))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.geometry.parts import Ball, Material, Part, Prism, total
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
@@ -25,6 +26,7 @@ def test_integrals_of_a_cut_ball_match_a_fine_grid(top_mm):
 def test_whole_ball_is_the_textbook_ball():
     part = Part(
         name="ball",
+        role=Role.FOOT,
         material=STEEL,
         prisms=(),
         balls=(Ball(radius_mm=10.0, y_mm=0.0, top_mm=10.0),),
@@ -49,6 +51,7 @@ def test_places_are_moved_copies_with_every_length_of_a_population():
     places = ((4.0, -lengths, 0.0), (-4.0, -0.5 * lengths, 2.0))
     several = Part(
         name="pin",
+        role=Role.PIN,
         material=STEEL,
         prisms=(pin,),
         process="bought",
@@ -56,7 +59,9 @@ def test_places_are_moved_copies_with_every_length_of_a_population():
         pitch_radius_mm=12.0,
         places_mm=places,
     )
-    one = Part(name="pin", material=STEEL, prisms=(pin,), process="bought", count=4, pitch_radius_mm=12.0)
+    one = Part(
+        name="pin", role=Role.PIN, material=STEEL, prisms=(pin,), process="bought", count=4, pitch_radius_mm=12.0
+    )
     for index, length in enumerate(lengths):
         moves = [np.array([4.0, -length, 0.0]), np.array([-4.0, -0.5 * length, 2.0])]
         expected = total(one.mass_properties().placed(translation_m=move * 1e-3) for move in moves)

@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance
 from pareto_monoped.cad.check.overlaps import Overlap, in_gear_cycle, in_pose, in_working_range
-from pareto_monoped.cad.check.retention import FASTENER, PLAY_MM, loose_parts
+from pareto_monoped.cad.check.retention import PLAY_MM, loose_parts
 from pareto_monoped.cad.kernel.client import SolidFacts
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.geometry.parts import MassProperties, Prism, total
+from pareto_monoped.geometry.roles import FASTENERS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
@@ -203,7 +204,7 @@ def _bolts(product: Product) -> Check:
     holes = _axes_of_holes(product)
     failures, worst, count = [], 0.0, 0
     for instance in product.instances:
-        if not FASTENER.search(instance.part.name):
+        if instance.part.role not in FASTENERS:
             continue
         count += 1
         centre, low, high = _shaft(instance)

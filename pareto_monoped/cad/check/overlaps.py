@@ -12,13 +12,13 @@ from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import InternalGear
+from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
 
 ALLOWED_DEPTH_MM = 0.02
 """Mean depth below which an overlap is the facets of two fitting cylinders, which lie within 0.01 mm of the circle."""
-GEARS = ("sun", "planet", "ring")
-"""Names of the parts that mesh."""
+_TURNING = (Group.OUTPUT, Group.ROTOR, Group.PLANET, Group.KNEE_DRIVE)
 _GEAR_STEPS = 8
 _SWEEP_STEP_RAD = np.radians(15.0)
 _TOUCH_MM = 1e-6
@@ -67,15 +67,13 @@ def in_gear_cycle(product: Product) -> tuple[list[Overlap], int]:
     for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
         if name == "knee_actuator" and actuator is product.robot.hip:
             break
-        unit = next(unit for unit in product.robot.units if unit.name == name)
-        geared = {part.name for part in unit.parts if part.name in GEARS}
         step = 2.0 * np.pi / (float(actuator.gears.sun_teeth) * actuator.ratio * _GEAR_STEPS)
         for k in range(_GEAR_STEPS):
             pose = Pose(hip_rad=k * step, knee_rad=k * step)
             meshing = [
                 _thing(i.name, product.unique[kind].mesh.body, i.moves)
                 for i, kind in zip(instances(product.robot, pose), product.kinds, strict=True)
-                if i.unit == name and i.part.name in geared
+                if i.unit == name and i.part.role is Role.GEAR
             ]
             for one, other in _near(meshing):
                 found += _overlap(one, other, f"in step {k} of the gears' cycle")
@@ -94,7 +92,7 @@ def in_working_range(product: Product) -> tuple[list[Overlap], float]:
     by_body: dict[str, list[tuple[Instance, m3.Manifold]]] = {"base": [], "thigh": [], "shank": []}
     for instance, kind in zip(at_zero, product.kinds, strict=True):
         # What turns inside an actuator turns with the next body and has its own check.
-        if instance.part.group in ("output", "rotor", "planet", "knee_drive"):
+        if instance.part.group in _TURNING:
             continue
         by_body[instance.body].append((instance, product.unique[kind].mesh.body))
     found: list[Overlap] = []

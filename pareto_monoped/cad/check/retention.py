@@ -7,10 +7,9 @@ cross-section cuts. Teeth count by their root circles, since a mesh turns and ho
 
 Some joints have no shape of their own. A screw's thread is found where its core fills a hole; a countersunk head, drawn
 as a plain shank, counts as a thin disc on its seat. What is pressed, bonded or threaded by other means says so in its
-record (``Part.joined``), which is believed only if the part that it names stands in its way on two opposite sides.
+record (``Part.joint``), which is believed only if the part that it names stands in its way on two opposite sides.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +21,7 @@ from pareto_monoped.cad.assembly import Instance, Pose, instances
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import FASTENERS, Group, Role
 from pareto_monoped.geometry.shapes import Circle, Shape
 from pareto_monoped.robot.build import Robot
 
@@ -29,8 +29,7 @@ PLAY_MM = 0.8
 """How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm."""
 THREAD_SHARE = 0.6
 """Least depth of thread over the screw's diameter."""
-FASTENER = re.compile(r"(screw|bolt)(_near|_far)?$")
-_GROUND = "base_rod"  # the test stand's carriage clamps to the rods
+_GROUND = Role.ROD  # the test stand's carriage clamps to the rods
 _AXES = ("x", "y", "z")  # of the assembly with both joints at zero; y is the joints' axis
 _CONTACT_MM2 = 0.25  # a square of 0.5 mm: less is no stop but the facets of a round fit
 _TOLERANCE_MM = 0.02
@@ -70,7 +69,7 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     slabs = _slabs(placed)
     runs_into = _contacts(placed, slabs)
     tied = _threads(placed, slabs) | _joints(placed, runs_into)
-    ground = np.array([instance.part.name == _GROUND for instance in placed])
+    ground = np.array([instance.part.role is _GROUND for instance in placed])
     free: list[list[str]] = [[] for _ in placed]
     # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
     weak = np.array([_weak(instance.part) for instance in placed])
@@ -89,7 +88,7 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
 
 
 def _weak(part: Part) -> bool:
-    return part.group == "rotor" or part.name.startswith(("chain_", "turnbuckle_"))
+    return part.group is Group.ROTOR or part.role in (Role.CHAIN, Role.TURNBUCKLE)
 
 
 def _reaches(edges: Bools, ground: Bools) -> Bools:
@@ -152,7 +151,7 @@ def _threads(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> Bools:
     bounds = np.array([slab.section.bounds() for slab in slabs])
     for a, screw in enumerate(slabs):
         part = placed[screw.owner].part
-        if not FASTENER.search(part.name):
+        if part.role not in FASTENERS:
             continue
         core = screw.section
         skin = core.offset(2.0 * _SKIN_MM, m3.JoinType.Round) - core.offset(_SKIN_MM, m3.JoinType.Round)
@@ -172,11 +171,11 @@ def _joints(placed: Sequence[Instance], runs_into: dict[tuple[str, str], Bools])
     """True at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
     for i, instance in enumerate(placed):
-        if not instance.part.joined:
+        joint = instance.part.joint
+        if joint is None:
             continue
-        partner = instance.part.joined.split()[-1]
         for j, other in enumerate(placed):
-            if other.part.name == partner and any(
+            if other.part.name == joint.partner and any(
                 runs_into[axis, "+"][i, j] and runs_into[axis, "-"][i, j] for axis in _AXES
             ):
                 tied[i, j] = tied[j, i] = True

@@ -12,7 +12,7 @@ from pareto_monoped.cad.assembly import unit_frame
 from pareto_monoped.cad.picture.drawing import Body, View, draw
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import mesh_from, placed
-from pareto_monoped.cad.write.models import is_hidden
+from pareto_monoped.geometry.roles import Visibility
 
 Image = NDArray[np.uint8]
 
@@ -48,7 +48,7 @@ def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) ->
     """The robot in its pose."""
     bodies = []
     for instance, kind in product.placed():
-        if is_hidden(instance.part):
+        if instance.part.visibility is Visibility.INSIDE:
             continue
         points = kind.mesh.points_mm @ instance.world[:3, :3].T + instance.world[:3, 3]
         bodies.append(Body(points_mm=points, triangles=kind.mesh.triangles, colour=kind.part.material.colour))

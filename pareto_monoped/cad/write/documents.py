@@ -68,7 +68,7 @@ def bom(product: Product) -> str:
                 "bought" if kind.part.process == "bought" else "made",
                 " x ".join(f"{size:.1f}" for size in extent_mm(kind.mesh)),
                 " ".join(kind.units),
-                "; ".join(filter(None, (kind.part.note, kind.part.joined))),
+                "; ".join(filter(None, (kind.part.note, kind.part.joint.text if kind.part.joint else ""))),
             )
         )
     return stream.getvalue()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.cad.assembly import unit_frame
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh, joined, mesh_of, placed
-from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
@@ -18,14 +18,6 @@ from pareto_monoped.robot.population import RobotArrays
 Floats = NDArray[np.float64]
 
 VISUAL_TOLERANCE_MM = 0.1
-_INSIDE = frozenset(
-    {
-        *("planet", "planet_bush", "planet_pin", "sun", "sun_shaft", "ring", "secondary_carrier", "coupling"),
-        *("main_bearing", "end_bearing", "rear_bearing", "retaining_ring", "bore_retaining_ring", "motor_stator"),
-        "knee_bearing_cup",
-    }
-)
-"""Parts that cannot be seen from outside."""
 _MARGIN_M = 1e-3
 
 
@@ -50,17 +42,12 @@ class Collider:
     position: tuple[float, float, float]
 
 
-def is_hidden(part: Part) -> bool:
-    """Whether a part is inside an actuator or a link."""
-    return part.name in _INSIDE
-
-
 def visuals(product: Product) -> tuple[Visual, ...]:
     """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
     shown: dict[tuple[str, str], list[tuple[Mesh, Floats]]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
     for instance, kind in product.placed():
-        if is_hidden(instance.part) or instance.part.name.endswith("_screw"):
+        if instance.part.visibility is not Visibility.OUTSIDE:
             continue
         key = (instance.body, kind.part.material.name.replace(" ", "_"))
         shown.setdefault(key, []).append((mesh_of(kind.part, VISUAL_TOLERANCE_MM), instance.in_body))
@@ -91,15 +78,16 @@ def colliders(product: Product) -> tuple[Collider, ...]:
                 position=(0.0, float(1e-3 * middle[1]), 0.0),
             )
         )
-    for name, body, unit_name in (
-        ("frame", "base", "base_frame"),
-        ("thigh", "thigh", "thigh"),
-        ("shank", "shank", "shank"),
+    # Rods, with the screws that stand out of the cheeks, for the frame; cores for the links.
+    for name, body, unit_name, roles in (
+        ("frame", "base", "base_frame", (Role.ROD, Role.SCREW)),
+        ("thigh", "thigh", "thigh", (Role.CORE,)),
+        ("shank", "shank", "shank", (Role.CORE,)),
     ):
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for instance, kind in product.placed():
-            # Rods for the frame; plates and cores for the links.
-            if instance.unit == unit_name and ("rod" if body == "base" else "core") in instance.part.name:
+            part = instance.part
+            if instance.unit == unit_name and part.role in roles and part.visibility is Visibility.OUTSIDE:
                 box = np.asarray(placed(kind.mesh.body, instance.in_body).bounding_box())
                 low, high = np.minimum(low, box[:3]), np.maximum(high, box[3:])
         half, centre = 0.5e-3 * (high - low) + _MARGIN_M, 0.5e-3 * (high + low)

@@ -7,8 +7,9 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.check import checks
-from pareto_monoped.cad.check.retention import FASTENER, PLAY_MM, loose_parts
+from pareto_monoped.cad.check.retention import PLAY_MM, loose_parts
 from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.geometry.roles import SCREWS, Joint, JointKind
 from pareto_monoped.geometry.screws import LENGTHS_MM
 from pareto_monoped.robot.build import build_robot
 
@@ -84,13 +85,15 @@ def test_what_a_missing_part_held_is_named(robot, removed, freed):
 
 
 def test_a_joint_without_a_shape_must_be_named_and_be_there(robot):
-    assert loose(replaced(robot, "hip_actuator/ring", joined="")) == {"hip_actuator/ring": ("+y",)}
-    assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joined="bonded into rear_bearing"))
-    assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joined="held by magic"))
+    assert loose(replaced(robot, "hip_actuator/ring", joint=None)) == {"hip_actuator/ring": ("+y",)}
+    for partner in ("rear_bearing", "magic"):
+        joint = Joint(kind=JointKind.BONDED, how="bonded into", partner=partner)
+        assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joint=joint))
 
 
 def test_words_alone_hold_nothing(robot):
-    moved = replaced(robot, "hip_actuator/rear_bearing", places_mm=((200.0, 0.0, 0.0),), joined="bonded into backplate")
+    joint = Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate")
+    moved = replaced(robot, "hip_actuator/rear_bearing", places_mm=((200.0, 0.0, 0.0),), joint=joint)
     assert loose(moved)["hip_actuator/rear_bearing"] == ("+x", "-x", "+y", "-y", "+z", "-z")
 
 
@@ -125,7 +128,7 @@ def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
     seen = 0
     for unit in robot.units:
         for part in unit.parts:
-            if not FASTENER.search(part.name) or part.name.endswith("_bolt"):
+            if part.role not in SCREWS:
                 continue
             radii = sorted({float(p.outline.radius_mm) for p in part.prisms})
             heads = [] if part.countersunk_mm else [p for p in part.prisms if p.outline.radius_mm == radii[-1]]

@@ -7,11 +7,13 @@ import pytest
 
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 PLATE = Part(
     name="plate",
+    role=Role.PLATE,
     material=STEEL,
     process="machined",
     prisms=(

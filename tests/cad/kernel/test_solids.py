@@ -11,6 +11,7 @@ from pareto_monoped.cad.kernel.solids import solid_of, solids_in
 from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.cad.shape.stacks import regrouped
 from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
 from pareto_monoped.leg.links import foot_part
 
@@ -74,6 +75,7 @@ def test_regrouping_keeps_the_body():
 def test_separate_bodies_become_a_compound():
     part = Part(
         name="pair",
+        role=Role.PIN,
         material=STEEL,
         process="bought",
         prisms=tuple(Prism(outline=Circle(radius_mm=2.0, x_mm=x), z0_mm=0.0, z1_mm=3.0) for x in (-5.0, 5.0)),
