@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Arc, Path
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.links import base_parts, shank_parts, thigh_parts
@@ -31,8 +32,8 @@ def leg_table(d: LegDimensions) -> LegTable:
 
 
 def _upper_end(d: LegDimensions) -> Arc:
-    """The arc at the top of the near cheek, which does not depend on the knee actuator's length."""
-    (cheek,) = (part for part in base_parts(0.1, d) if part.name == "base_near_cheek")
+    """The arc at the top of both cheeks, which does not depend on the knee actuator's length."""
+    cheek = next(part for part in base_parts(0.1, d) if part.role is Role.PLATE)
     outline = cheek.prisms[0].outline
     assert isinstance(outline, Path)
     return max((piece for piece in outline.pieces if isinstance(piece, Arc)), key=lambda arc: float(arc.y_mm))
