@@ -2,8 +2,9 @@
 
 MuJoCo calls ``mjcb_control`` in every step, after positions and speeds are known and before forces are (its
 documentation, "Programming, Simulation, Simulation loop"). A compiled callback keeps the batch's threads free of
-Python. A jump's row of numbers is the user data of its simulation, part of MuJoCo's own state, so that the callback
-needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C functions.
+Python. The controller's record of a jump is the user data of its simulation and thus part of MuJoCo's own state, so
+that the callback needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C
+functions.
 """
 
 import ctypes
@@ -23,7 +24,7 @@ from numba import types
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.compiled import c_function
-from pareto_monoped.jump.controller import N_ROW, control
+from pareto_monoped.jump.controller import RECORD, RECORD_NUMBERS, control
 
 _POSITION = types.CPointer(types.float64)
 _STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
@@ -45,9 +46,9 @@ _before: Callable[..., object] | None = None
 
 @contextmanager
 def controlled() -> Iterator[None]:
-    """Let the controller act in every simulation that carries a jump's row as its user data; in no other.
+    """Let the controller act in every simulation whose user data is a controller's record, and in no other.
 
-    The callback is one for the whole process: what was installed before comes back when the last user leaves.
+    A process has only one callback. The one that was installed before is restored when the last user leaves.
 
     Raises:
         SimulationError: MuJoCo's library is not where its package has it.
@@ -78,12 +79,12 @@ def _compiled() -> Any:
 
 
 def _origin(source: Path) -> int:
-    """What the callback is made from besides this file: the kernel's source, and the MuJoCo whose numbers it has."""
+    """A number for what the callback depends on outside this file: the controller's source and MuJoCo's version."""
     return zlib.crc32(source.read_bytes() + mujoco.__version__.encode())
 
 
 def _library() -> Path:
-    """MuJoCo's shared library, which its package loads, too."""
+    """The shared library that MuJoCo's package loads."""
     folder = Path(mujoco.__file__).parent
     for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
         for path in sorted(folder.glob(pattern)):
@@ -92,20 +93,22 @@ def _library() -> Path:
 
 
 def _controller(origin: int) -> Callable[[Any, Any], None]:
-    """``mjcb_control``, to be compiled: called in every step of every simulation of the process.
+    """``mjcb_control``, not yet compiled; MuJoCo calls it in every step of every simulation of the process.
 
     Args:
-        origin: closed over, so that a callback on disk that was made with another kernel is not taken for this one.
+        origin: closed over, so that numba does not load a callback from disk that was compiled with another controller.
     """
 
     def act(model: Any, data: Any) -> None:
         _ = origin
-        if _state_size(model, _USER) != N_ROW:
+        if _state_size(model, _USER) != RECORD_NUMBERS:
             return
         nv = _state_size(model, _POSITIONS)
-        state = np.empty(2 * nv + _JOINTS + N_ROW)
+        state = np.empty(2 * nv + _JOINTS + RECORD_NUMBERS)
         _get_state(model, data, state.ctypes, _READ)
-        control(state[:nv], state[nv : 2 * nv], state[2 * nv : 2 * nv + _JOINTS], state[2 * nv + _JOINTS :])
-        _set_state(model, data, state[2 * nv :].ctypes, _WRITTEN)
+        written = state[2 * nv :]
+        jump = written[_JOINTS:].view(RECORD)[0]
+        control(state[:nv], state[nv : 2 * nv], written[:_JOINTS], jump)
+        _set_state(model, data, written.ctypes, _WRITTEN)
 
     return act

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.search import ActuatorMap
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, NAMES
+from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2, NAMES, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
 from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.robot.frames import JOINTS
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 Floats = NDArray[np.float64]
@@ -71,8 +72,8 @@ class Evaluations:
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
         """Column name to values of shape (n,), ``status`` and ``reason`` first."""
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        return columns | {"reason": np.array(self.reason, dtype=np.str_)}
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return values | {"reason": np.array(self.reason, dtype=np.str_)}
 
 
 MEASURES: tuple[str, ...] = MEASURE_NAMES
@@ -108,7 +109,7 @@ class Evaluator:
         sane = np.setdiff1d(np.arange(len(values)), list(reasons))
         if len(sane):
             robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
-            _jump(robots, values[sane, 4:7], self.calibration, self.workers, table, sane)
+            _jump(robots, columns(values[sane], CONTROL), self.calibration, self.workers, table, sane)
         return table.evaluations()
 
 
@@ -180,48 +181,59 @@ def _jump(
 
 
 def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:
-    from pareto_monoped.jump import controller as k
+    """Fill ``rows`` of the table with the ends and measures of a population that has run."""
+    from pareto_monoped.jump.controller import HIP, KNEE
 
-    memory, step = population.rows, calibration.simulation.timestep_s
-    complaints = population.complaints()
-    energy = memory[:, k.ENERGY_HIP] + memory[:, k.ENERGY_KNEE]
-    for i, row in enumerate(rows):
-        status = memory[i, k.STATUS]
-        time = (memory[i, k.STEPS] - 1) * step
-        if complaints[i] or status == k.DIVERGED:
-            table.fail(row, "diverged", complaints[i] or f"positions or speeds left all bounds after {time:.3f} s")
-        elif status == k.SANK:
-            table.fail(row, "no_lift_off", f"the base sank to {k.SANK_M} m after {time:.3f} s")
-        elif status == k.NO_LIFT_OFF:
-            table.fail(row, "no_lift_off", f"the foot had not left the floor after {time:.3f} s")
-        elif status == k.TIMEOUT:
-            table.fail(row, "timeout", f"the base had not come to its apex after {time:.3f} s")
-        elif energy[i] == 0.0:
-            table.fail(row, "no_lift_off", f"the foot left the floor after {time:.3f} s without work of the motors")
+    records, step = population.records, calibration.simulation.timestep_s
+    energy = records["energy_j"][:, HIP] + records["energy_j"][:, KNEE]
+    _name_failures(population, energy, step, table, rows)
     ok = table.status[rows] == "ok"
     mass = table.columns["mass_kg"][rows]
-    rise = memory[:, k.HEIGHT] - BASE_START_HEIGHT_M
-    active = np.maximum(memory[:, k.ACTIVE_STEPS], 1.0)
+    rise = records["height_m"] - BASE_START_HEIGHT_M
+    active = np.maximum(records["active_steps"], 1.0)
+    saturated = records["saturated_steps"] / active[:, None]
     measures = {
-        "height_m": memory[:, k.HEIGHT],
+        "height_m": records["height_m"],
         "energy_j": energy,
-        "energy_hip_j": memory[:, k.ENERGY_HIP],
-        "energy_knee_j": memory[:, k.ENERGY_KNEE],
-        "absorbed_j": memory[:, k.ABSORBED_HIP] + memory[:, k.ABSORBED_KNEE],
-        "drive_loss_j": memory[:, k.LOST_HIP] + memory[:, k.LOST_KNEE],
-        "joule_heat_j": memory[:, k.HEAT_J],
-        "foot_clearance_m": memory[:, k.CLEARANCE],
-        "lift_off_s": (memory[:, k.LIFT_OFF_STEP] - 1) * step,
-        "apex_s": (memory[:, k.STEPS] - 1) * step,
-        "peak_torque_hip_n_m": memory[:, k.PEAK_TORQUE_HIP],
-        "peak_torque_knee_n_m": memory[:, k.PEAK_TORQUE_KNEE],
-        "peak_speed_hip_rad_per_s": memory[:, k.PEAK_SPEED_HIP],
-        "peak_speed_knee_rad_per_s": memory[:, k.PEAK_SPEED_KNEE],
-        "peak_power_hip_w": memory[:, k.PEAK_POWER_HIP],
-        "peak_power_knee_w": memory[:, k.PEAK_POWER_KNEE],
-        "saturation_hip": memory[:, k.SATURATED_HIP] / active,
-        "saturation_knee": memory[:, k.SATURATED_KNEE] / active,
+        **_by_joint("energy_{}_j", records["energy_j"]),
+        "absorbed_j": records["absorbed_j"][:, HIP] + records["absorbed_j"][:, KNEE],
+        "drive_loss_j": records["drive_loss_j"][:, HIP] + records["drive_loss_j"][:, KNEE],
+        "joule_heat_j": records["joule_heat_j"],
+        "foot_clearance_m": records["clearance_m"],
+        "lift_off_s": (records["lift_off_step"] - 1) * step,
+        "apex_s": (records["steps"] - 1) * step,
+        **_by_joint("peak_torque_{}_n_m", records["peak_torque_n_m"]),
+        **_by_joint("peak_speed_{}_rad_per_s", records["peak_speed_rad_per_s"]),
+        **_by_joint("peak_power_{}_w", records["peak_power_w"]),
+        **_by_joint("saturation_{}", saturated),
         "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(ok, energy, np.nan),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]
+
+
+def _by_joint(name: str, values: Floats) -> dict[str, Floats]:
+    """The columns of hip and knee, of ``values`` with shape (n, 2); the joint takes the braces' place in ``name``."""
+    return {name.format(joint): values[:, k] for k, joint in enumerate(JOINTS)}
+
+
+def _name_failures(
+    population: Population, energy_j: Floats, step_s: float, table: _Table, rows: NDArray[np.intp]
+) -> None:
+    """Give every jump that did not reach its apex, or reached it without work, its status and reason."""
+    from pareto_monoped.jump import controller
+
+    complaints = population.complaints()
+    for i, row in enumerate(rows):
+        status = population.records["status"][i]
+        time = (population.records["steps"][i] - 1) * step_s
+        if complaints[i] or status == controller.DIVERGED:
+            table.fail(row, "diverged", complaints[i] or f"positions or speeds left all bounds after {time:.3f} s")
+        elif status == controller.SANK:
+            table.fail(row, "no_lift_off", f"the base sank to {controller.SANK_M} m after {time:.3f} s")
+        elif status == controller.NO_LIFT_OFF:
+            table.fail(row, "no_lift_off", f"the foot had not left the floor after {time:.3f} s")
+        elif status == controller.TIMEOUT:
+            table.fail(row, "timeout", f"the base had not come to its apex after {time:.3f} s")
+        elif energy_j[i] == 0.0:
+            table.fail(row, "no_lift_off", f"the foot left the floor after {time:.3f} s without work of the motors")

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.search import ActuatorMap
-from pareto_monoped.design import GRAVITY_M_PER_S2, Design
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.model import mjcf
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 Floats = NDArray[np.float64]
@@ -96,7 +97,7 @@ def simulate(design: Design, actuator_map: ActuatorMap, calibration: Calibration
     rows: dict[str, Floats] = {}
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
         robots = robot_arrays(values, actuator_map, calibration.mass)
-        rows = trace_of(robots, values[:, 4:7], calibration)
+        rows = trace_of(robots, columns(values, CONTROL), calibration)
     return result_of(design, calibration, evaluations, rows)
 
 
@@ -104,13 +105,12 @@ def result_of(
     design: Design, calibration: Calibration, evaluations: Evaluations, trace: dict[str, Floats]
 ) -> JumpResult:
     """The first row of ``evaluations`` as a single result."""
-    columns = evaluations.as_columns()
     return JumpResult(
         design=design,
         calibration=calibration.label,
         status=str(evaluations.status[0]),
         reason=evaluations.reason[0],
-        measures={name: float(values[0]) for name, values in columns.items() if name not in ("status", "reason")},
+        measures={name: float(getattr(evaluations, name)[0]) for name in MEASURE_NAMES},
         trace=trace,
     )
 
@@ -127,7 +127,7 @@ class _Moment:
     after: Any
     qpos: Floats
     qvel: Floats
-    memory: Floats
+    record: Any
     last: bool
 
 
@@ -140,27 +140,28 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     """
     import mujoco
 
-    from pareto_monoped.jump import controller as k
-    from pareto_monoped.jump.population import first_rows
+    from pareto_monoped.jump.controller import FLYING
+    from pareto_monoped.jump.controller import control as act
+    from pareto_monoped.jump.population import first_records
 
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    row = first_rows(robots, control, calibration)[0]
-    derived = data if row[k.STAGES] == 1.0 else mujoco.MjData(model)
-    # This loop asks once a step, whatever the integrator.
-    row[k.STAGES] = 1.0
+    record = first_records(robots, control, calibration)[0]
+    derived = data if record["stages"] == 1.0 else mujoco.MjData(model)
+    # This loop calls the controller once per step, whatever the integrator.
+    record["stages"] = 1.0
     while True:
         qpos, qvel = data.qpos.copy(), data.qvel.copy()
-        k.control(qpos, qvel, data.ctrl, row)
-        running = row[k.STATUS] <= k.FLYING
+        act(qpos, qvel, data.ctrl, record)
+        running = record["status"] <= FLYING
         if derived is not data:
             derived.qpos[:], derived.qvel[:], derived.ctrl[:] = qpos, qvel, data.ctrl
         if not running or derived is not data:
             mujoco.mj_forward(model, derived)
         if running:
             mujoco.mj_step(model, data)
-        yield _Moment(model=model, data=derived, after=data, qpos=qpos, qvel=qvel, memory=row, last=not running)
+        yield _Moment(model=model, data=derived, after=data, qpos=qpos, qvel=qvel, record=record, last=not running)
         if not running:
             return
 
@@ -169,19 +170,17 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     """``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
     import mujoco
 
-    from pareto_monoped.jump import controller as k
-
     rows = []
     weight_n = float(robots.body_mass_kg[0].sum()) * GRAVITY_M_PER_S2
     radius = float(robots.foot_radius_m[0])
     for index, moment in enumerate(_moments(robots, control, calibration)):
-        data, q, v, m = moment.data, moment.qpos, moment.qvel, moment.memory
+        data, q, v = moment.data, moment.qpos, moment.qvel
         slides = len(q) == 4
         foot = data.site_xpos[0]
         force = _contact_force(data)
         matrix = np.zeros((len(v), len(v)))
         mujoco.mj_fullM(moment.model, data, matrix)
-        torques = (0.0,) * 4 if moment.last else (m[k.TORQUE_HIP], m[k.TORQUE_KNEE], data.ctrl[0], data.ctrl[1])
+        torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl)
         rows.append(
             (
                 index * calibration.simulation.timestep_s,

@@ -90,11 +90,11 @@ def test_calibrations_on_several_threads_do_not_meet():
                 np.testing.assert_array_equal(values, alone[name][column], err_msg=f"{name} {column}")
 
 
-def test_a_callback_on_disk_is_told_from_one_of_another_kernel(tmp_path):
-    """The cache on disk sees this file and what the callback closes over, not the kernel that it calls."""
+def test_a_callback_on_disk_is_told_from_one_of_another_controller(tmp_path):
+    """The cache on disk depends on the callback's file and closure, not on the controller that the callback calls."""
     origins = []
     for text in ("axial = 1.0", "axial = 2.0", "axial = 2.0"):
-        path = tmp_path / "kernel.py"
+        path = tmp_path / "controller.py"
         path.write_text(text)
         origins.append(callback._origin(path))
     assert origins[0] != origins[1] == origins[2]

@@ -5,31 +5,45 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.jump import controller as k
+from pareto_monoped.jump import controller
 
 THIGH, SHANK, RADIUS, WEIGHT = 0.4, 0.4, 0.03, 30.0
 STIFFNESS, DAMPING, TORSION = 20.0, 3.0, 15.0
 NO_LOAD, CORNER = 80.0, 60.0
 
 
-def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, memory=None, latch=True):
-    """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the memory after one call."""
-    if memory is None:
-        memory = np.zeros(k.N_ROW)
-    memory[[k.THIGH, k.SHANK, k.FOOT_RADIUS, k.STIFFNESS, k.DAMPING, k.TORSION, k.WEIGHT]] = (
-        THIGH, SHANK, RADIUS, STIFFNESS, DAMPING, TORSION, WEIGHT,
-    )  # fmt: skip
-    memory[k.PEAK_HIP : k.PEAK_KNEE + 1] = peak
-    memory[k.NO_LOAD_HIP : k.NO_LOAD_KNEE + 1] = NO_LOAD
-    memory[k.CORNER_HIP : k.CORNER_KNEE + 1] = CORNER
-    memory[k.LOSS_HIP : k.LOSS_KNEE + 1] = loss
-    memory[[k.REST_LENGTH, k.TIMESTEP, k.STEP_LIMIT, k.FADE_LENGTH]] = 10.0, 0.001, 3000, fade
-    memory[[k.STAGES, k.LATCH, k.LOSS_SPEED, k.VOLTAGE_LIMIT]] = 1.0, latch, 0.5, 1.0
+def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, record=None, latch=True):
+    """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the record after one call."""
+    if record is None:
+        record = np.zeros(1, dtype=controller.RECORD)[0]
+    values = {
+        "rest_length_m": 10.0,
+        "timestep_s": 0.001,
+        "step_limit": 3000,
+        "stages": 1,
+        "fade_length_m": fade,
+        "latch": latch,
+        "loss_speed_rad_per_s": 0.5,
+        "voltage_limit": True,
+        "thigh_length_m": THIGH,
+        "shank_length_m": SHANK,
+        "foot_radius_m": RADIUS,
+        "stiffness_n_per_m": STIFFNESS,
+        "damping_n_s_per_m": DAMPING,
+        "torsional_stiffness_n_m_per_rad": TORSION,
+        "weight_n": WEIGHT,
+        "torque_limit_n_m": peak,
+        "no_load_speed_rad_per_s": NO_LOAD,
+        "corner_speed_rad_per_s": CORNER,
+        "loss": loss,
+    }
+    for name, value in values.items():
+        record[name] = value
     foot = -THIGH * np.cos(hip) - SHANK * np.cos(hip + knee)
     qpos, qvel = np.array([0.0, clearance + RADIUS - foot, hip, knee]), np.array([0.0, 0.1, *speeds])
     ctrl = np.zeros(2)
-    k.control(qpos, qvel, ctrl, memory)
-    return np.array([memory[k.TORQUE_HIP], memory[k.TORQUE_KNEE], *ctrl]), memory[k.STATUS], memory
+    controller.control(qpos, qvel, ctrl, record)
+    return np.array([*record["motor_torque_n_m"], *ctrl]), record["status"], record
 
 
 def foot(hip, knee):
@@ -105,15 +119,15 @@ def test_torque_fades_smoothly_with_clearance(share, left):
 
 
 def test_a_foot_that_has_stood_and_risen_ends_control_for_good():
-    _, status, memory = torques(-0.6, 1.2)
-    assert status == k.RUNNING
-    _, status, _ = torques(-0.6, 1.2, clearance=0.021, memory=memory)
-    assert status == k.FLYING
+    _, status, record = torques(-0.6, 1.2)
+    assert status == controller.RUNNING
+    _, status, _ = torques(-0.6, 1.2, clearance=0.021, record=record)
+    assert status == controller.FLYING
 
 
 def test_a_foot_that_has_not_stood_yet_is_no_lift_off():
     _, status, _ = torques(-0.6, 1.2, clearance=0.021)
-    assert status == k.RUNNING
+    assert status == controller.RUNNING
 
 
 def test_literal_gate_is_all_or_nothing():
@@ -132,6 +146,6 @@ def test_losses_take_from_driving_and_add_to_braking():
 
 def test_a_state_that_is_not_finite_has_diverged():
     _, status, _ = torques(np.nan, 1.2)
-    assert status == k.DIVERGED
+    assert status == controller.DIVERGED
     _, status, _ = torques(-0.6, 1.2, speeds=(0.0, 2e4))
-    assert status == k.DIVERGED
+    assert status == controller.DIVERGED

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.controller import N_ROW
+from pareto_monoped.jump.controller import RECORD_NUMBERS
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.population import prepare
 from pareto_monoped.jump.pose import start_pose
@@ -34,8 +34,8 @@ def test_batch_simulates_exactly_the_exported_model(designs, name):
             if isinstance(value, np.ndarray) and field not in ("key_qpos", "_sizes"):
                 np.testing.assert_array_equal(value, getattr(simulated, field), err_msg=field)
                 compared += 1
-        # The batch's simulations carry the controller's numbers, too.
-        assert (exported.nuserdata, simulated.nuserdata) == (0, N_ROW)
+        # In the batch, user data holds the controller's record.
+        assert (exported.nuserdata, simulated.nuserdata) == (0, RECORD_NUMBERS)
         assert np.count_nonzero(exported._sizes != simulated._sizes) == 1
         np.testing.assert_array_equal(exported.key_qpos[0], population.batch.bind("qpos")[i])
         assert bytes(str(exported.opt), "utf-8") == bytes(str(simulated.opt), "utf-8")
