@@ -1,4 +1,4 @@
-"""Checked reading of TOML into frozen dataclasses; the one place that turns a wrong field into one clear line."""
+"""Read TOML files into checked, frozen dataclasses; a wrong field becomes an error of one line."""
 
 import difflib
 import tomllib
@@ -18,11 +18,11 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
 
     Args:
         path: the file.
-        what: what the file should be, for the message, such as ``"motor file"``.
-        error: which kind of ``InputError`` to raise.
+        what: what the file should be, for the error message, such as ``"motor file"``.
+        error: the kind of ``InputError`` to raise.
 
     Raises:
-        InputError: (or ``error``) the file is missing, unreadable, or no TOML.
+        InputError: (or ``error``) the file is missing or unreadable, or is not valid TOML.
     """
     try:
         with path.open("rb") as stream:
@@ -36,19 +36,20 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
 
 
 def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> T:
-    """An instance of dataclass ``kind`` from plain values, every field checked by its annotation.
+    """Make an instance of dataclass ``kind`` from plain values; every field is checked against its annotation.
 
-    Bounds stand in the annotations (``Annotated[float, Field(gt=0)]``); unknown keys are refused if the
-    dataclass carries ``__pydantic_config__ = ConfigDict(extra="forbid")``.
+    Bounds stand in the annotations (``Annotated[float, Field(gt=0)]``). Unknown keys are refused if the dataclass
+    has ``__pydantic_config__ = ConfigDict(extra="forbid")``.
 
     Args:
         kind: the dataclass.
-        values: key to value, nested for nested dataclasses.
-        source: where the values come from, the first word of the message, such as ``"motor file my.toml"``.
-        error: which kind of ``InputError`` to raise.
+        values: the fields by name, nested for nested dataclasses.
+        source: where the values come from; begins the error message, such as ``"motor file my.toml"``.
+        error: the kind of ``InputError`` to raise.
 
     Raises:
-        InputError: (or ``error``) naming the first wrong key, its value, what is allowed and the cure.
+        InputError: (or ``error``) a field is wrong; the message names the first one, its value, what is allowed and
+            the cure.
     """
     try:
         return TypeAdapter(kind).validate_python(dict(values))
@@ -57,8 +58,9 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
 
 
 def _line(kind: type, problem: ValidationError) -> str:
+    """The first error in one line. Pydantic lists them in the order of the fields."""
     first = problem.errors(include_url=False)[0]
-    # A field of a union type adds the tried type's name to the location; only keys and indices help the user.
+    # For a field of a union type, pydantic adds the name of the type to the location, which does not help the user.
     key = ".".join(str(step) for step in first["loc"] if not str(step).startswith(("tagged-union", "function-")))
     if first["type"] == "missing":
         return f"{key} is missing; add it"
@@ -72,6 +74,7 @@ def _line(kind: type, problem: ValidationError) -> str:
     message = first["msg"].removeprefix("Value error, ")
     if not key:
         return message
-    if first["type"] == "value_error":  # one of our own, which has value and cure
+    # Errors raised in our own __post_init__ state value and cure already.
+    if first["type"] == "value_error":
         return f"{key}: {message}"
     return f"{key} = {first['input']!r}: {message[0].lower()}{message[1:]}; correct it"

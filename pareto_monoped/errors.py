@@ -1,23 +1,26 @@
-"""What can go wrong, as a tree of exceptions.
+"""Everything that this package raises on purpose, as a tree of exceptions.
 
     ParetoMonopedError          everything this package raises on purpose; exit code 1
     |-- InputError              what the user gave cannot be used; exit code 2
     |   |-- DesignError         a design variable or a robot that cannot be built
-    |   |-- MotorError          a motor name or motor file
-    |   |-- CalibrationError    a calibration name or file
-    |   |-- StudyError          a study file, or a study that may not be changed so
-    |   |-- DatabaseError       a database that is missing, damaged, locked or of another kind
-    |   |-- SelectionError      no design answers the selection asked for
-    |   `-- OutputError         a place that cannot be written to or must not be overwritten
+    |   |-- MotorError          a motor name or a motor file
+    |   |-- CalibrationError    a calibration name or a calibration file
+    |   |-- StudyError          a study file, or a change that the stored study forbids
+    |   |-- DatabaseError       a database that is missing, damaged, locked or not a study
+    |   |-- SelectionError      a selection that no design on the front meets
+    |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
     |-- SimulationError         a simulation that should have worked failed
-    `-- CheckError              a finished product failed its own checks (CAD clash, open mesh, ...)
+    `-- CheckError              an export failed its own checks (overlap, open mesh, ...)
 
-Every message is one line: the quantity, its value, what is allowed, and the cure.
+Every message is one line that gives the quantity, its value, what is allowed, and the cure, in one of two forms::
+
+    knee_ratio = 3: must be 4 to 8.7; choose another value
+    motor file 'my.toml': no such file; check the path
 """
 
 
 class ParetoMonopedError(Exception):
-    """Base of all errors raised on purpose; the command line prints its one line and exits with ``exit_code``."""
+    """Base of all errors raised on purpose; the command line prints the message and exits with ``exit_code``."""
 
     exit_code = 1
 
@@ -49,7 +52,7 @@ class DatabaseError(InputError):
 
 
 class SelectionError(InputError):
-    """No design of the front answers the selection."""
+    """No design on the front meets the selection."""
 
 
 class OutputError(InputError):
@@ -61,9 +64,9 @@ class SimulationError(ParetoMonopedError):
 
 
 class CheckError(ParetoMonopedError):
-    """A product failed its own checks; the message names the parts and the measure."""
+    """An export failed its own checks; the message names the parts and the measured values."""
 
 
 def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:
-    """One line in the form every input error has: quantity, value, what is allowed, cure."""
+    """The message of an error in the first of the two forms above."""
     return f"{quantity} = {value!r}: must be {allowed}; {cure}"

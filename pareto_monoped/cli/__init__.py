@@ -25,11 +25,11 @@ _COMMANDS = {
     "export": "exports",
     "report": "reports",
 }
-"""Command -> module of this package that holds it, in the order of the work."""
+"""Command -> module of this package that defines it, in the order of use."""
 
 
 class _Commands(click.Group):
-    """Commands in the order of the work, each module imported when its command is asked for."""
+    """Lists commands in the order of use and imports a command's module only when the command is needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_COMMANDS)
@@ -49,7 +49,7 @@ class _Commands(click.Group):
 def cli() -> None:
     """Design a jumping one-legged robot: gearboxes, links and controller at once.
 
-    A study finds the front of jump height against energy; every point of it exports to CAD.
+    A study finds the front of jump height against energy; every design on it can be exported to CAD.
     """
 
 
@@ -62,14 +62,11 @@ def _run(arguments: list[str] | None) -> int:
     try:
         code = cli.main(args=arguments, prog_name="pareto-monoped", standalone_mode=False)
         return code if isinstance(code, int) else 0
-    except click.exceptions.Abort:
-        click.echo("interrupted", err=True)
-        return 130
-    except KeyboardInterrupt:
+    except (click.exceptions.Abort, KeyboardInterrupt):
         click.echo("interrupted", err=True)
         return 130
     except click.ClickException as error:
-        # One line, as for our own errors; click's default adds the usage text.
+        # One line, as for our own errors; by default click prints the usage text, too.
         hint = ""
         if isinstance(error, click.UsageError) and error.ctx is not None:
             hint = f" (see '{error.ctx.command_path} --help')"
@@ -79,6 +76,6 @@ def _run(arguments: list[str] | None) -> int:
         click.echo(f"error: {error}", err=True)
         return error.exit_code
     except BrokenPipeError:
-        # The reader (head, less) has closed: not an error; keep the interpreter's exit from flushing into it.
+        # The reader (head, less) has closed the pipe, which is no error. Redirect stdout, which is flushed at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0

@@ -1,7 +1,8 @@
-"""``front`` and ``pick``, and the options that select one design, which ``export`` shares."""
+"""Commands that read a front: ``front`` and ``pick``; also the options that select one design, shared by ``export``."""
 
 import functools
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,20 +17,20 @@ if TYPE_CHECKING:
     from pareto_monoped.pareto.pick import Selector
 
 COLUMNS = ("trial", "height_m", "energy_j", *NAMES)
-"""What ``front`` and ``pick`` give of each design."""
+"""The columns of each design in the output of ``front`` and ``pick``."""
 
 
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that select one design; ``command`` gets them as one ``selector`` keyword.
+    """Add the options that select one design; ``command`` receives them as the keyword ``selector``.
 
-    At most one of them may be given; with none ``selector`` is None, which ``required`` refuses.
+    More than one of them is a usage error. Without any, ``selector`` is None, which ``required`` refuses.
     """
 
-    @click.option("--min-height", type=float, metavar="M", help="Cheapest design that jumps at least M metres.")
-    @click.option("--max-energy", type=float, metavar="J", help="Highest jump on at most J joules.")
-    @click.option("--knee", is_flag=True, help="Where the front bends most.")
+    @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
+    @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
+    @click.option("--knee", is_flag=True, help="The design where the front bends most.")
     @click.option("--weights", metavar="WH,WE", help="Best weighted sum of scaled height and energy.")
-    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="One trial by its number.")
+    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
     @functools.wraps(command)
     def wrapper(
         *arguments: Any,
@@ -71,7 +72,7 @@ def _selector(
 
 
 def required(selector: "Selector | None") -> "Selector":
-    """The selector, or a usage error that names the options."""
+    """The selector; without one, a usage error that names the options."""
     if selector is None:
         raise click.UsageError(
             "no selector given: must be one of --min-height M, --max-energy J, --knee, --weights WH,WE, --trial N; "
@@ -81,8 +82,6 @@ def required(selector: "Selector | None") -> "Selector":
 
 
 def _finite(option: str, value: float) -> float:
-    import math
-
     if not math.isfinite(value):
         raise click.UsageError(f"{option} = {value}: must be a finite number; correct it")
     return value
@@ -99,8 +98,10 @@ def _pair(text: str) -> tuple[float, float]:
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
-@click.option("--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write them to FILE.")
-@click.option("--all", "include_all", is_flag=True, help="Keep designs on it that failed their audit.")
+@click.option(
+    "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write the designs to a CSV file."
+)
+@click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
 def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> None:
     """List the non-dominated designs, from the lowest jump to the highest."""
     from pareto_monoped.study.reader import read_study
@@ -130,7 +131,7 @@ def _print_table(rows: "DataFrame") -> None:
 @selector_options
 @click.option("--json", "as_json", is_flag=True, help="Print the design as JSON.")
 def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
-    """Pick one design off the front, and say why that one."""
+    """Pick one design from the front and say why it was chosen."""
     from pareto_monoped.pareto.pick import pick as pick_design
     from pareto_monoped.study.reader import read_study
 

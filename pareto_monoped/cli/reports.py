@@ -1,4 +1,4 @@
-"""``report``: studies to one HTML page, and figures for print."""
+"""Command ``report``: one HTML page of one or more studies, and figures for print."""
 
 from pathlib import Path
 
@@ -7,18 +7,23 @@ import click
 
 @click.command()
 @click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.html", help="The page.")
+@click.option(
+    "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.html", help="The HTML page."
+)
 @click.option(
     "--figures",
     type=click.Path(file_okay=False, path_type=Path),
     metavar="DIR",
-    help="Also write SVG and PNG for print.",
+    help="Folder for figures for print, as SVG and PNG.",
 )
 @click.option(
-    "--exports", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Exported designs, DIR/trial_N."
+    "--exports",
+    type=click.Path(file_okay=False, path_type=Path),
+    metavar="DIR",
+    help="Folder of exported designs, DIR/trial_N.",
 )
 def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exports: Path | None) -> None:
-    """Write the report of a study; several studies are laid over each other.
+    """Write the report of a study, or of several in comparison.
 
     The page is one file that works without a network.
     """

@@ -1,10 +1,10 @@
-"""``run``, ``resume`` and ``status``."""
+"""Commands that run studies: ``run``, ``resume`` and ``status``."""
 
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from pareto_monoped.study.run import RunSummary
 
 _evaluations = click.option(
-    "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, in place of the study's."
+    "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, instead of the study's."
 )
 _workers = click.option(
-    "--workers", type=click.IntRange(min=1), metavar="N", help="Threads that simulate.  [all cores]"
+    "--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]"
 )
 _SECONDS_BETWEEN_LINES = 5.0
 _REASONS = {
@@ -24,20 +24,22 @@ _REASONS = {
     "wall_time": "the wall time is used up",
     "plateau": "the hypervolume has stopped growing",
     "exhausted": "the algorithm has no more designs",
-    "interrupted": "interrupted; 'resume' goes on with it",
+    "interrupted": "interrupted; continue it with 'resume'",
 }
 
 
 @click.command()
 @click.argument("study_file", metavar="STUDY.toml", type=click.Path(path_type=Path))
 @_evaluations
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, in place of the study's.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
 @_workers
-@click.option("--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [STUDY.db beside STUDY.toml]")
+@click.option(
+    "--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [default: STUDY.db beside STUDY.toml]"
+)
 def run(study_file: Path, evaluations: int | None, seed: int | None, workers: int | None, db: Path | None) -> int:
-    """Run a study, or go on with it where it stopped.
+    """Run a study, or continue it where it stopped.
 
-    Every evaluated design is stored; the study can be stopped at any moment and run again.
+    Every evaluated design is stored; the study can be stopped and run again at any time.
     """
     from pareto_monoped.study.definition import load_study
     from pareto_monoped.study.run import run as run_study
@@ -56,7 +58,7 @@ def run(study_file: Path, evaluations: int | None, seed: int | None, workers: in
 @_evaluations
 @_workers
 def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
-    """Go on with a study from its database alone; N is the new total."""
+    """Continue a study from its database alone, without its TOML file."""
     from pareto_monoped.study.run import resume as resume_study
 
     with progress_reports() as progress:
@@ -68,7 +70,7 @@ def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
 @click.argument("db", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def status(db: Path, as_json: bool) -> None:
-    """Show how far a study is, its hypervolume, rate and settings."""
+    """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.study.status import status as study_status
 
     facts = study_status(db)
@@ -77,12 +79,9 @@ def status(db: Path, as_json: bool) -> None:
         return
     rate = facts["evaluations_per_second"]
     at_height = facts["least_energy_at_0_8_m_j"]
-    ended = facts["state"] == "finished" and facts["stop_reason"]
     lines = {
         "study": facts["name"],
-        "state": facts["state"]
-        + (f" ({_REASONS[ended]})" if ended else "")
-        + (f" (process {facts['process']})" if facts["process"] else ""),
+        "state": _state(facts),
         "motor, calibration": f"{facts['motor']}, {facts['calibration']}",
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
         "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
@@ -98,6 +97,15 @@ def status(db: Path, as_json: bool) -> None:
     }
     for name, value in lines.items():
         click.echo(f"{name:<22} {value}")
+
+
+def _state(facts: dict[str, Any]) -> str:
+    state: str = facts["state"]
+    if state == "finished" and facts["stop_reason"]:
+        state += f" ({_REASONS[facts['stop_reason']]})"
+    if facts["process"]:
+        state += f" (process {facts['process']})"
+    return state
 
 
 def _say(line: str) -> None:
@@ -118,7 +126,7 @@ def _finish(summary: "RunSummary") -> int:
 
 @contextmanager
 def progress_reports() -> "Iterator[Callable[[Progress], None]]":
-    """A callback that shows progress on stderr: a live bar on a terminal, else a line every few seconds."""
+    """A callback that shows progress on stderr: a bar on a terminal, otherwise one line every few seconds."""
     import sys
 
     if sys.stderr.isatty():

@@ -1,7 +1,6 @@
 """The folder of an export: whole or not there, nothing outside it, and only its own files replaced."""
 
 import json
-import os
 import re
 import shutil
 import tempfile
@@ -10,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from pareto_monoped.errors import OutputError
+from pareto_monoped.files import current_umask, unwritable
 
 RECORD = "design.json"
 """Lists the files of an export; written last."""
@@ -62,19 +62,13 @@ def beside(out_dir: Path) -> Iterator[Path]:
         out_dir.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{out_dir.name}-", dir=out_dir.parent))
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise OutputError(f"output {str(out_dir)!r}: cannot be written ({reason}); give a writable folder") from error
+        raise unwritable(out_dir, error, "give a writable folder") from error
     try:
-        # mkdtemp makes folders private; an export is meant to be read like any other folder of the user.
-        umask = os.umask(0)
-        os.umask(umask)
-        folder.chmod(0o777 & ~umask)
+        # mkdtemp makes private folders, but an export should have the permissions of any other folder of the user.
+        folder.chmod(0o777 & ~current_umask())
         yield folder
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise OutputError(
-            f"output {str(out_dir)!r}: cannot be written ({reason}); make room or give another"
-        ) from error
+        raise unwritable(out_dir, error, "make room or give another") from error
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
