@@ -18,8 +18,7 @@ def test_evaluations_have_one_field_per_measure():
 
 def test_audits_have_one_field_per_measure():
     names = [entry.name for entry in AUDIT_MEASURES]
-    around = ["status", "height_m", "energy_j"], ["well_conditioned", "reason"]
-    assert [f.name for f in fields(Audits)] == [*around[0], *names, *around[1]]
+    assert [f.name for f in fields(Audits)] == ["status", "height_m", "energy_j", *names, "reason"]
 
 
 @pytest.mark.parametrize("entry", [*MEASURES, *AUDIT_MEASURES], ids=lambda entry: entry.name)

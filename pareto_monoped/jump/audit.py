@@ -1,63 +1,90 @@
-"""How far a jump's height and energy can be trusted: energy balance, finer steps, perturbations.
+"""The audit of a jump, and what "well-conditioned" means.
 
-A number that moves when a link grows by a micrometre is an accident, not a result.
+A jump is well-conditioned if its height and energy are properties of the design and not accidents of the simulation:
+its energy balance closes, and neither a finer step nor a link longer by less than a micrometre changes it much.
+``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict that studies, reports and commands use.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.search import ActuatorMap
-from pareto_monoped.design import NAMES
+from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.design import CONTROL, NAMES, RATIOS, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.single import energy_balance
+from pareto_monoped.measures import measure
 from pareto_monoped.robot.population import robot_arrays
 
 Floats = NDArray[np.float64]
 
 PERTURBATION = 1e-6
-"""Relative size of the perturbations."""
-CONTINUOUS = tuple(k for k, name in enumerate(NAMES) if not name.endswith("_ratio"))
-"""Columns that are perturbed: a gear ratio only chooses a gearbox, the robot does not change with it in between."""
+"""Relative size of the perturbations: half a micrometre of a link, far below any tolerance of manufacture."""
+SPREAD_PERCENTILE = 90.0
+"""Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
+PERTURBED = tuple(k for k, name in enumerate(NAMES) if name not in RATIOS)
+"""Columns that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """What a well-conditioned jump keeps within.
+class Limit:
+    """The most that a measure of the audit may be.
 
     Attributes:
-        spread_height_m, spread_energy: 90th percentile of the change under perturbations.
-        step_height_m, step_energy: change when the step is halved.
-        balance: what the energy balance may leave open, as a share of the actuator work.
+        name: of the measure, in ``measures.AUDIT_MEASURES``.
+        most: in the stored unit of the measure.
+        text: what is off if the limit is exceeded.
     """
 
-    spread_height_m: float = 0.001
-    spread_energy: float = 0.005
-    step_height_m: float = 0.003
-    step_energy: float = 0.01
-    balance: float = 0.01
+    name: str
+    most: float
+    text: str
 
 
-LIMITS = Limits()
+LIMITS: tuple[Limit, ...] = (
+    # A change this small in the design must not show: 1 mm is less than a jump can be filmed to, and 0.5 percent is the
+    # same share of the energy as 1 mm is of a rise by 0.2 m.
+    Limit(name="spread_height_m", most=0.001, text="height under perturbations"),
+    Limit(name="spread_energy", most=0.005, text="energy under perturbations"),
+    # The error of the step is systematic and shifts similar designs alike, so it may be larger: 3 mm is 1 percent of a
+    # rise by 0.3 m.
+    Limit(name="half_step_height_m", most=0.003, text="height with the step halved"),
+    Limit(name="half_step_energy", most=0.01, text="energy with the step halved"),
+    # Energy that is unaccounted for is no better than energy that changes with the step.
+    Limit(name="energy_balance_error", most=0.01, text="energy balance"),
+)
+"""All conditions on a well-conditioned jump, besides that there is a jump."""
+
+
+def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:
+    """One line for each of ``LIMITS`` that an audited jump does not keep; empty if it is well-conditioned.
+
+    Args:
+        values: name to value of the audit's measures; NaN counts as too much.
+    """
+    lines = []
+    for limit in LIMITS:
+        shown = measure(limit.name)
+        unit = "percent" if shown.shown_unit == "%" else shown.shown_unit
+        value = values[limit.name]
+        if not value <= limit.most:
+            lines.append(f"{limit.text} off by {value * shown.scale:.3g} {unit} (limit {limit.most * shown.scale:g})")
+    return tuple(lines)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Audits:
-    """The audit of n designs, a row a design; NaN for a design without a jump. Energy changes are shares.
+    """The audits of n designs; ``measures.AUDIT_MEASURES`` says what each measure means.
 
     Attributes:
-        status: of the jump, as in ``Evaluations``.
-        height_m, energy_j: as evaluated.
-        energy_balance_error: see ``EnergyBalance.error``.
-        half_step_height_m, half_step_energy, quarter_step_height_m, quarter_step_energy: absolute change with the step
-            halved and quartered.
-        spread_height_m, spread_energy: 90th percentile of the absolute change over perturbations of 1e-6.
-        worst_height_m, worst_energy: the largest of these changes.
-        well_conditioned: whether all is within the limits.
-        reason: what is not.
+        status: of the jump, as in ``Evaluations``, shape (n,).
+        height_m, energy_j: as evaluated, shape (n,).
+        energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump;
+            infinity where a jump is lost by a finer step or a perturbation.
+        reason: why the jump is not well-conditioned; empty where it is.
     """
 
     status: NDArray[np.str_]
@@ -72,18 +99,32 @@ class Audits:
     spread_energy: Floats
     worst_height_m: Floats
     worst_energy: Floats
-    well_conditioned: NDArray[np.bool_]
     reason: tuple[str, ...] = field(default=())
 
+    @property
+    def well_conditioned(self) -> NDArray[np.bool_]:
+        """Which designs jump and keep all ``LIMITS``, shape (n,)."""
+        return np.array([not reason for reason in self.reason], dtype=bool)
+
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,)."""
-        return {f.name: np.asarray(getattr(self, f.name)) for f in fields(self)}
+        """Column name to values of shape (n,), ``well_conditioned`` and ``reason`` last."""
+        values = {f.name: np.asarray(getattr(self, f.name)) for f in fields(self) if f.name != "reason"}
+        return values | {"well_conditioned": self.well_conditioned, "reason": np.asarray(self.reason)}
 
 
 def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
-    """``count`` copies of each design, its continuous variables moved by up to 1e-6 of their value, (n * count, 7)."""
+    """Perturbed copies of designs: each continuous variable changed by up to 1e-6 of its value.
+
+    Args:
+        designs: shape (n, number of variables).
+        count: copies per design.
+        rng: source of the perturbations.
+
+    Returns:
+        The copies of the first design, then those of the second, ..., shape (n * count, number of variables).
+    """
     copies = np.repeat(np.atleast_2d(designs), count, axis=0)
-    copies[:, CONTINUOUS] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(CONTINUOUS)))
+    copies[:, PERTURBED] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(PERTURBED)))
     return copies
 
 
@@ -101,18 +142,16 @@ def audit(
     workers: int = 1,
     perturbations: int = 10,
     seed: int = 0,
-    limits: Limits = LIMITS,
 ) -> Audits:
     """Audit the jumps of designs.
 
     Args:
-        designs: shape (n, 7).
+        designs: shape (n, number of variables).
         actuator_map: the gearboxes.
         calibration: the jump model.
         workers: threads.
-        perturbations: how many perturbed copies of each design jump.
+        perturbations: perturbed copies per design.
         seed: of the perturbations; the same seed gives the same audit.
-        limits: for ``well_conditioned``.
     """
     values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
     n = len(values)
@@ -127,57 +166,41 @@ def audit(
     ok = np.flatnonzero(base.ok)
     for i in ok:
         robots = robot_arrays(values[i : i + 1], actuator_map, calibration.mass)
-        balance[i] = energy_balance(robots, values[i : i + 1, 4:7], calibration).error
-    columns = {
+        balance[i] = energy_balance(robots, columns(values[i : i + 1], CONTROL), calibration).error
+    measured = {
         "energy_balance_error": balance,
         **_changes("half_step", base, half),
         **_changes("quarter_step", base, quarter),
-        # A perturbed jump that fails is the worst of changes: NaN becomes infinity.
-        "spread_height_m": _percentile(height, ok),
-        "spread_energy": _percentile(energy, ok),
+        "spread_height_m": _percentile(height, ok, SPREAD_PERCENTILE),
+        "spread_energy": _percentile(energy, ok, SPREAD_PERCENTILE),
         "worst_height_m": _percentile(height, ok, 100.0),
         "worst_energy": _percentile(energy, ok, 100.0),
     }
-    reasons = tuple(_reason(base, columns, i, limits) for i in range(n))
-    return Audits(
-        status=base.status,
-        height_m=base.height_m,
-        energy_j=base.energy_j,
-        **columns,
-        well_conditioned=np.array([not reason for reason in reasons], dtype=bool),
-        reason=reasons,
+    reasons = tuple(
+        "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
+        if base.ok[i]
+        else f"no jump: {base.status[i]}"
+        for i in range(n)
     )
+    return Audits(status=base.status, height_m=base.height_m, energy_j=base.energy_j, **measured, reason=reasons)
 
 
 def _changes(prefix: str, base: Evaluations, other: Evaluations) -> dict[str, Floats]:
+    """Absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
     lost = base.ok & ~other.ok
     height = np.where(lost, np.inf, np.abs(other.height_m - base.height_m))
     energy = np.where(lost, np.inf, np.abs(other.energy_j / base.energy_j - 1.0))
     return {f"{prefix}_height_m": height, f"{prefix}_energy": energy}
 
 
-def _percentile(changes: Floats, ok: NDArray[np.intp], percent: float = 90.0) -> Floats:
+def _percentile(changes: Floats, ok: NDArray[np.intp], percent: float) -> Floats:
+    """A percentile of each row of ``changes``, shape (n, copies); NaN for rows not in ``ok``.
+
+    A perturbed jump that fails is the worst of changes: NaN becomes infinity. The percentile is the smallest change
+    that at least ``percent`` of the copies do not exceed. It is not interpolated, which infinity would spoil.
+    """
     result = np.full(len(changes), np.nan)
     known = np.sort(np.where(np.isnan(changes[ok]), np.inf, changes[ok]), axis=1)
-    # The next change above the percentile, not an interpolation, which infinity would spoil.
     rank = int(np.ceil(percent / 100.0 * changes.shape[1])) - 1
     result[ok] = known[:, rank]
     return result
-
-
-def _reason(base: Evaluations, columns: dict[str, Floats], i: int, limits: Limits) -> str:
-    if not base.ok[i]:
-        return f"no jump: {base.status[i]}"
-    checks: Sequence[tuple[str, str, float, float, str]] = (
-        ("spread_height_m", "height under perturbations", 1e3, limits.spread_height_m, "mm"),
-        ("spread_energy", "energy under perturbations", 1e2, limits.spread_energy, "percent"),
-        ("half_step_height_m", "height with the step halved", 1e3, limits.step_height_m, "mm"),
-        ("half_step_energy", "energy with the step halved", 1e2, limits.step_energy, "percent"),
-        ("energy_balance_error", "energy balance", 1e2, limits.balance, "percent"),
-    )
-    over = [
-        f"{text} off by {columns[name][i] * scale:.3g} {unit} (limit {limit * scale:g})"
-        for name, text, scale, limit, unit in checks
-        if not columns[name][i] <= limit
-    ]
-    return "; ".join(over)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2, NAMES, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.audit import perturbed
 from pareto_monoped.jump.calibration import Calibration, load_calibration
