@@ -26,9 +26,9 @@ from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
 from pareto_monoped.study.algorithms import Algorithm, create
 from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.physics import Evaluate, load_physics
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.study.simulator import Evaluate, load_simulator
 
 HERE = Path(__file__).parent
 MARKS = (1_000, 2_000, 5_000, 10_000)
@@ -187,20 +187,20 @@ def main() -> None:
     arguments = parser.parse_args()
     evaluations, seeds, effort = (10_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
     evaluations = arguments.evaluations or evaluations
-    physics = load_physics(study({"name": "random"}, 1, 1), workers=default_workers())
+    simulator = load_simulator(study({"name": "random"}, 1, 1), workers=default_workers())
     kept = HERE.parent / "build" / "search_algorithms.json"
     kept.parent.mkdir(exist_ok=True)
     results: dict[str, Any] = {"rows": {}}
     if arguments.full and kept.exists():
         results = json.loads(kept.read_text())
-    # A change of the physics makes all that was kept worthless.
-    if results.get("probe") != physics.probe():
-        results = {"probe": physics.probe(), "machine": platform.machine(), "rows": {}}
+    # A change of the simulator makes all that was kept worthless.
+    if results.get("probe") != simulator.probe():
+        results = {"probe": simulator.probe(), "machine": platform.machine(), "rows": {}}
     if "reference" not in results:
-        results["reference"] = reference(physics.evaluator, effort)
+        results["reference"] = reference(simulator.evaluator, effort)
     default = ("nsga2-40", "random", "weighted_cmaes, 10 weights")
     for name in arguments.only or (CONTENDERS if arguments.full else default):
-        results["rows"][name] = contend(physics.evaluator, name, seeds, evaluations, results["reference"])
+        results["rows"][name] = contend(simulator.evaluator, name, seeds, evaluations, results["reference"])
         print(f"{name} done", file=sys.stderr, flush=True)
         if arguments.full:
             kept.write_text(json.dumps(results, indent=1) + "\n")

@@ -16,9 +16,9 @@ from pandas import DataFrame
 
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.physics import load_physics
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
+from pareto_monoped.study.simulator import load_simulator
 
 WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
@@ -41,9 +41,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--evaluations", type=int, default=8_000, help="of each search of each case")
     evaluations = parser.parse_args().evaluations
-    physics = load_physics(study_from_dict({"name": "b", "evaluations": 1}, source="benchmark"), workers=1)
+    simulator = load_simulator(study_from_dict({"name": "b", "evaluations": 1}, source="benchmark"), workers=1)
     cases = [PAPER_CASES[name] for name in ("A", "B", "C")]
-    simulated = physics.evaluator(np.array([case.design.as_array() for case in cases]))
+    simulated = simulator.evaluator(np.array([case.design.as_array() for case in cases]))
     print(
         "| case | published | paper's design here | weighted CMA-ES: least J at the published height | front: least J "
         "there | weighted: least J at the design's height here | front: least J there |\n|---|---|---|---|---|---|---|"

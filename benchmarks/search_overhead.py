@@ -29,10 +29,10 @@ from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.definition import Bounds, Study, study_from_dict
-from pareto_monoped.study.physics import Physics, load_physics
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import default_workers, run
 from pareto_monoped.study.settings import EvolutionSettings
+from pareto_monoped.study.simulator import Simulator, load_simulator
 from tests.jump.oracle import jump, motors_of
 
 
@@ -48,15 +48,15 @@ def medians(times: list[tuple[float, float]]) -> tuple[float, float]:
     return statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times)
 
 
-def bare(physics: Physics, designs: NDArray[np.float64], batch: int) -> NDArray[np.float64]:
+def bare(simulator: Simulator, designs: NDArray[np.float64], batch: int) -> NDArray[np.float64]:
     """Heights of the designs, simulated in batches."""
-    parts = [physics.evaluator(designs[first : first + batch]).height_m for first in range(0, len(designs), batch)]
+    parts = [simulator.evaluator(designs[first : first + batch]).height_m for first in range(0, len(designs), batch)]
     return np.concatenate(parts)
 
 
-def optuna_loop(study: Study, physics: Physics, folder: Path, trials: int) -> list[optuna.trial.FrozenTrial]:
+def optuna_loop(study: Study, simulator: Simulator, folder: Path, trials: int) -> list[optuna.trial.FrozenTrial]:
     """Optuna's own loop with a naive simulation."""
-    gate = physics.calibration.gate
+    gate = simulator.calibration.gate
     assert isinstance(gate, FadeGate)
     fade_m = gate.length_m
 
@@ -65,14 +65,14 @@ def optuna_loop(study: Study, physics: Physics, folder: Path, trials: int) -> li
             n: trial.suggest_float(n, v.lower, v.upper) for n, v in study.variables.items() if isinstance(v, Bounds)
         }
         robots = robot_arrays(
-            np.array([list(values.values())]), physics.evaluator.actuator_map, physics.calibration.mass
+            np.array([list(values.values())]), simulator.evaluator.actuator_map, simulator.calibration.mass
         )
         result = jump(
-            mjcf(robots, physics.calibration, 0),
+            mjcf(robots, simulator.calibration, 0),
             values["stiffness_n_per_m"],
             values["damping_n_s_per_m"],
             values["torsional_stiffness_n_m_per_rad"],
-            motors_of(robots, 0, physics.calibration),
+            motors_of(robots, 0, simulator.calibration),
             fade=fade_m,
         )
         return result.height, result.energy
@@ -98,8 +98,8 @@ def main() -> None:
         {"name": "b", "case": "C", "evaluations": evaluations, "audit": False, "algorithm": {"name": "nsga2"}},
         source="benchmark",
     )
-    physics = load_physics(study, workers=arguments.workers)
-    physics.probe()
+    simulator = load_simulator(study, workers=arguments.workers)
+    simulator.probe()
     assert isinstance(study.algorithm, EvolutionSettings)
     population = study.algorithm.population
     stored, generations, batch = [], [], []
@@ -111,14 +111,14 @@ def main() -> None:
             stored.append(timed(partial(run, study, db, workers=arguments.workers)))
             trials = read_study(db).trials
             designs = trials[list(NAMES)].to_numpy()
-            generations.append(timed(partial(bare, physics, designs, population)))
-            batch.append(timed(partial(bare, physics, designs, len(designs))))
-        assert np.array_equal(bare(physics, designs[:200], 200), trials["height_m"][:200], equal_nan=True)
+            generations.append(timed(partial(bare, simulator, designs, population)))
+            batch.append(timed(partial(bare, simulator, designs, len(designs))))
+        assert np.array_equal(bare(simulator, designs[:200], 200), trials["height_m"][:200], equal_nan=True)
         size = (folder / "0.db").stat().st_size
         few = 100
-        loop_s, loop_cpu_s = timed(lambda: optuna_loop(study, physics, folder, few))
+        loop_s, loop_cpu_s = timed(lambda: optuna_loop(study, simulator, folder, few))
         naive = optuna.load_study(study_name=None, storage=f"sqlite:///{folder}/optuna.db").trials
-        ours = physics.evaluator(np.array([[t.params[n] for n in NAMES] for t in naive])).height_m
+        ours = simulator.evaluator(np.array([[t.params[n] for n in NAMES] for t in naive])).height_m
         theirs = np.array([t.values[0] if t.values else np.nan for t in naive])
         agree = np.isclose(ours, theirs, rtol=0.0, atol=1e-9).mean()
         assert agree >= 0.95, f"only {agree:.0%} of the naive loop's heights agree"

@@ -131,10 +131,15 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
 
 
 @lru_cache(maxsize=16)
+def map_of(motor: Motor) -> ActuatorMap:
+    """The map of a motor with default settings; kept for the next call."""
+    return build_map(motor)
+
+
 def map_for(motor_name_or_path: str) -> ActuatorMap:
     """The map with default settings of a shipped motor, or of one in a TOML file; kept for the next call.
 
     Raises:
         MotorError: see ``load_motor``.
     """
-    return build_map(load_motor(motor_name_or_path))
+    return map_of(load_motor(motor_name_or_path))

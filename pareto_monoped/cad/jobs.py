@@ -7,13 +7,12 @@ import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.search import ActuatorMap, build_map
+from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.export import FORMATS, RECORD, chosen_formats, export_design
 from pareto_monoped.cad.write.documents import MADE_BY, contents
 from pareto_monoped.config import checked
@@ -45,12 +44,6 @@ class Job:
     source: dict[str, Any]
     hip_rad: float | None = None
     knee_rad: float | None = None
-
-
-@lru_cache(maxsize=4)
-def map_of(motor: Motor) -> ActuatorMap:
-    """The map of a motor with default settings; kept for the next call."""
-    return build_map(motor)
 
 
 def recorded(

@@ -95,12 +95,11 @@ def export(
         picked = pick(rows, wanted)
         click.echo(picked.why, err=True)
         rows = rows[rows["trial"] == picked.trial]
-    motor, calibration = _contents(data.meta["contents"], db)
     jobs = [
         _job(
             Design.from_array([row[name] for name in NAMES]),
-            motor,
-            calibration,
+            data.motor,
+            data.calibration,
             output / f"trial_{int(row['trial'])}" if whole_front else output,
             formats,
             force,
@@ -116,23 +115,6 @@ def export(
 
 def _names(formats: str | None) -> list[str] | None:
     return None if formats is None else [name.strip() for name in formats.split(",")]
-
-
-def _contents(contents: dict[str, Any], db: Path) -> "tuple[Motor, Calibration]":
-    """Motor and calibration as a study stored them: their files may be gone or changed."""
-    from pareto_monoped.actuator.motors import Motor
-    from pareto_monoped.config import checked
-    from pareto_monoped.errors import DatabaseError
-    from pareto_monoped.jump.calibration import Calibration
-
-    source = f"study database {str(db)!r}"
-    motor, calibration = (
-        values if isinstance(values := contents.get(key), dict) else {} for key in ("motor", "calibration")
-    )
-    return (
-        checked(Motor, motor, source=source, error=DatabaseError),
-        checked(Calibration, calibration, source=source, error=DatabaseError),
-    )
 
 
 def _posed(job: "Job", hip_deg: float | None, knee_deg: float | None) -> "Job":

@@ -85,13 +85,11 @@ def _compare(data: "StudyData", knee: int) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from pareto_monoped.actuator.search import map_for
-    from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.evaluate import Evaluator
     from pareto_monoped.pareto.pick import MinHeight, pick
 
     study, front = data.study, data.front()
-    again = Evaluator(map_for(study.motor), load_calibration(study.calibration))(_CASE.design.as_array())
+    again = Evaluator(data.actuator_map, data.calibration)(_CASE.design.as_array())
     height_m = float(again.height_m[0])
     rows = [
         ("paper's Case C, as published", _CASE.height_m, _CASE.energy_j),

@@ -4,6 +4,7 @@ Three ship with the package (``data/calibrations``): ``reference``, well-posed a
 reading of the paper fitted to its Table I; ``ideal``, ``reference`` without losses. A user's own is read from TOML.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.errors import CalibrationError
+from pareto_monoped.errors import CalibrationError, InputError
 from pareto_monoped.robot.population import MassOptions
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -253,11 +254,26 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
             "correct the name"
         )
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
-    source = f"calibration file {path.name}"
-    calibration = checked(Calibration, values, source=source, error=CalibrationError)
+    return calibration_of(values, source=f"calibration file {path.name}")
+
+
+def calibration_of(
+    values: Mapping[str, Any], *, source: str, error: type[InputError] = CalibrationError
+) -> Calibration:
+    """A calibration from plain values, nested as in its file.
+
+    Args:
+        values: every value of the calibration.
+        source: where they come from, the first words of a message.
+        error: which kind of ``InputError`` to raise.
+
+    Raises:
+        CalibrationError: (or ``error``) a field is missing, unknown or out of range.
+    """
+    calibration = checked(Calibration, values, source=source, error=error)
     step, least = calibration.simulation.timestep_s, calibration.simulation.time_limit_s / _MOST_STEPS
     if step < least:
-        raise CalibrationError(
+        raise error(
             f"{source}: simulation.timestep_s = {step:g}: must be at least {least:g}, a millionth of time_limit_s; "
             "lengthen the step"
         )

@@ -21,7 +21,7 @@ def group_of(data: StudyData) -> str:
     values = data.study.as_dict()
     for key in ("name", "description", "seed", "evaluations", "stop"):
         values.pop(key, None)
-    contents = data.meta.get("contents", {})
+    contents = data.meta.contents
     return json.dumps([values, contents], sort_keys=True, default=str)
 
 
@@ -36,7 +36,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
             {
                 "label": label,
                 "motor": data.study.motor,
-                "calibration": data.meta["calibration"],
+                "calibration": data.meta.calibration,
                 "algorithm": data.study.algorithm.name,
                 "seed": data.study.seed,
                 "evaluations": len(data.trials),

@@ -121,7 +121,7 @@ def _kept(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> NDArray
 def _card(source: Source, label: str, most: int, map_number: int, first_gearbox: int) -> StudyCard:
     data, study, extras = source.data, source.data.study, source.extras
     front = data.front()
-    bad = set(data.audits.loc[~data.audits["well_conditioned"].astype(bool), "trial"].astype(int))
+    bad = set(data.ill_conditioned.tolist())
     weights = _weighted(data)
     number = data.trials["trial"].to_numpy()
     always = np.isin(number, [*front["trial"], *bad, *(trial for _, trial in weights)])
@@ -139,15 +139,15 @@ def _card(source: Source, label: str, most: int, map_number: int, first_gearbox:
         database=source.database,
         motor=extras.actuator_map.motor.name,
         motor_name=study.motor,
-        calibration=str(data.meta["calibration"]),
+        calibration=data.meta.calibration,
         calibration_name=study.calibration,
         map=map_number,
         algorithm=study.algorithm.name,
         seed=study.seed,
         group=group_of(data),
-        state="finished" if data.meta["finished"] else "unfinished",
-        budget=int(data.meta["budget"]),
-        seconds=float(data.meta["wall_time_s"]),
+        state="finished" if data.meta.finished else "unfinished",
+        budget=data.meta.budget,
+        seconds=data.wall_time_s,
         counts=counts,
         reasons={str(status): int(count) for status, count in failed.items()},
         hypervolume=float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
@@ -253,15 +253,15 @@ def _provenance(source: Source) -> list[list[str]]:
     rows = [
         ("study", study.name),
         ("database", source.database),
-        ("created", meta.get("created", "")),
-        ("state", "finished" if meta["finished"] else "unfinished"),
-        ("ended because of", meta.get("stop_reason") or "nothing yet"),
+        ("created", meta.created),
+        ("state", "finished" if meta.finished else "unfinished"),
+        ("ended because of", meta.stop_reason or "nothing yet"),
         ("seed", study.seed),
         ("motor", study.motor),
-        ("calibration", meta["calibration"]),
-        ("settings hash (SHA-256)", meta.get("hash", "")),
-        *((f"version of {name}", version) for name, version in dict(meta.get("versions", {})).items()),
-        *((name, value) for name, value in dict(meta.get("environment", {})).items()),
+        ("calibration", meta.calibration),
+        ("settings hash (SHA-256)", meta.hash),
+        *((f"version of {name}", version) for name, version in meta.versions.items()),
+        *((name, value) for name, value in meta.environment.items()),
     ]
     settings = _flat(study.as_dict())
     skipped = ("name", "description", "seed", "motor", "calibration")
@@ -281,4 +281,4 @@ def _flat(values: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
 
 def _reproduce(data: StudyData) -> str:
     """The command that runs the same study again, from its study file."""
-    return f"pareto-monoped run STUDY.toml --seed {data.study.seed} --evaluations {int(data.meta['budget'])}"
+    return f"pareto-monoped run STUDY.toml --seed {data.study.seed} --evaluations {data.meta.budget}"

@@ -126,10 +126,8 @@ class Extras:
 def simulate_extras(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Extras:
     """Simulate what the page shows of a study beyond its database."""
     from pareto_monoped.pareto.pick import Knee, pick
-    from pareto_monoped.study.physics import load_physics
 
-    physics = load_physics(data.study, workers=1, files=data.meta["files"])
-    actuator_map, calibration = physics.evaluator.actuator_map, physics.calibration
+    actuator_map, calibration = data.actuator_map, data.calibration
     front = data.front()
     chosen = set(_spread(len(front), most_jumps))
     if len(front):

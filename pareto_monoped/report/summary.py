@@ -68,13 +68,13 @@ def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
 def notes(data: StudyData, extras: "Extras") -> list[str]:
     """What the reader has to know before trusting the page."""
     lines = []
-    done, budget = len(data.trials), int(data.meta["budget"])
-    if not data.meta["finished"]:
+    done, budget = len(data.trials), data.meta.budget
+    if not data.meta.finished:
         lines.append(
             f"Unfinished: {done} of {budget} designs are simulated, and its front is audited only at the end. "
             "The front will still move."
         )
-    bad = int((~data.audits["well_conditioned"].astype(bool)).sum())
+    bad = len(data.ill_conditioned)
     if bad:
         lines.append(
             f"{bad} design{' was' if bad == 1 else 's were'} taken off the front by the audit: their height or energy "

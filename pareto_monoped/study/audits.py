@@ -4,15 +4,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.study.physics import Physics
 from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.simulator import Simulator
 from pareto_monoped.study.store import Store
 
 _CHUNK = 64
 """Designs audited and stored at a time: an interrupt loses no more than that."""
 
 
-def audit_front(db: Path, store: Store, physics: Physics, notify: Callable[[str], None]) -> None:
+def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
     """Audit every design of the front that has no audit yet, and store the audits.
 
     What fails its audit leaves the front, and what it dominated comes up; so it goes on until all of the front is
@@ -31,9 +31,9 @@ def audit_front(db: Path, store: Store, physics: Physics, notify: Callable[[str]
             rows = fresh.iloc[first : first + _CHUNK]
             audits = audit(
                 rows[list(NAMES)].to_numpy(),
-                physics.evaluator.actuator_map,
-                physics.calibration,
-                workers=physics.evaluator.workers,
+                simulator.evaluator.actuator_map,
+                simulator.calibration,
+                workers=simulator.evaluator.workers,
             )
             columns = {name: values.tolist() for name, values in audits.as_columns().items()}
             good = columns.pop("well_conditioned")

@@ -18,9 +18,9 @@ from pareto_monoped.study.algorithms import Algorithm, Scores, create
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.physics import Evaluate
 from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, StudyData
 from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.study.simulator import Evaluate
 from pareto_monoped.study.store import Store
 
 
@@ -64,7 +64,7 @@ class Loop:
         self._free = np.array([name in study.free for name in NAMES])
         self._generation = data.checkpoint.generation
         self.total = self._before = len(data.trials)
-        self._seconds_before = float(data.meta["wall_time_s"])
+        self._seconds_before = data.wall_time_s
         self._started = time.monotonic()
         self._history: list[tuple[int, float]] = list(
             zip(data.history["evaluations"].tolist(), data.history["hypervolume"].tolist(), strict=True)

@@ -2,37 +2,33 @@
 
 import json
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from pareto_monoped.config import checked
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.meta import StudyMeta, meta_of_rows
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.motors import Motor
+    from pareto_monoped.actuator.search import ActuatorMap
+    from pareto_monoped.jump.calibration import Calibration
 
 HEADLINE_HEIGHT_M = 0.8
 """Height at which progress and status give the least energy: that of the paper's Case C."""
 
 _TEXT = ("state", "status", "reason")
 _WHOLE = ("trial", "generation")
-_META = {
-    "motor": str,
-    "calibration": str,
-    "contents": dict,
-    "files": dict,
-    "versions": dict,
-    "hash": str,
-    "probe": list,
-    "created": str,
-    "budget": int,
-    "finished": bool,
-}
-"""What must be known of every study, by key and type."""
 _FIRST = ("trial", "generation", "state", "status", "reason", *NAMES, "height_m", "energy_j")
 
 
@@ -45,13 +41,14 @@ class Checkpoint:
     state: dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)  # without slots: cached properties need a place to keep their values
 class StudyData:
     """All of a study.
 
     Attributes:
+        db: the database it was read from.
         study: its definition.
-        meta: versions, seed, hash, contents of motor and calibration, budget, finished, stop_reason, wall_time_s, ...
+        meta: what else is stored about it: versions, hash, budget, how it ended, contents of motor and calibration.
         trials: a row a trial: trial, generation, state, status, reason, the seven variables, height_m, energy_j, every
             other measure, violation, height_weight (of a weighted search).
         history: evaluations, hypervolume, seconds, generation by generation.
@@ -59,12 +56,57 @@ class StudyData:
         checkpoint: for resuming.
     """
 
+    db: Path
     study: Study
-    meta: dict[str, Any]
+    meta: StudyMeta
     trials: pd.DataFrame
     history: pd.DataFrame
     audits: pd.DataFrame
     checkpoint: Checkpoint
+
+    @cached_property
+    def motor(self) -> "Motor":
+        """The motor that the study simulates with, as stored: the user's file may be gone or changed.
+
+        Raises:
+            DatabaseError: the stored values are damaged.
+        """
+        from pareto_monoped.actuator.motors import Motor
+
+        return checked(Motor, self.meta.contents.get("motor", {}), source=self._source, error=DatabaseError)
+
+    @cached_property
+    def calibration(self) -> "Calibration":
+        """The calibration that the study simulates with, as stored.
+
+        Raises:
+            DatabaseError: the stored values are damaged.
+        """
+        from pareto_monoped.jump.calibration import calibration_of
+
+        return calibration_of(self.meta.contents.get("calibration", {}), source=self._source, error=DatabaseError)
+
+    @cached_property
+    def actuator_map(self) -> "ActuatorMap":
+        """The gearboxes of ``motor``."""
+        from pareto_monoped.actuator.search import map_of
+
+        return map_of(self.motor)
+
+    @property
+    def _source(self) -> str:
+        return f"study database {str(self.db)!r}"
+
+    @property
+    def wall_time_s(self) -> float:
+        """Running time so far, over all sessions."""
+        return float(self.history["seconds"].iloc[-1]) if len(self.history) else 0.0
+
+    @property
+    def ill_conditioned(self) -> NDArray[np.int64]:
+        """Numbers of the trials that failed their audit; ``jump.audit`` says what that means."""
+        good = self.audits["well_conditioned"].to_numpy(dtype=bool)
+        return self.audits["trial"].to_numpy(dtype=np.int64)[~good]
 
     @property
     def reference_point(self) -> ReferencePoint:
@@ -79,9 +121,8 @@ class StudyData:
                 they dominated comes up.
         """
         eligible = (self.trials["state"] == "feasible").to_numpy()
-        if not include_ill_conditioned and len(self.audits):
-            bad = self.audits.loc[~self.audits["well_conditioned"].astype(bool), "trial"]
-            eligible = eligible & ~self.trials["trial"].isin(bad).to_numpy()
+        if not include_ill_conditioned:
+            eligible = eligible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()
         mask = front_mask(self.trials["height_m"].to_numpy(), self.trials["energy_j"].to_numpy(), eligible)
         return self.trials[mask].sort_values("height_m", ignore_index=True)
 
@@ -103,14 +144,11 @@ def read_study(db: Path) -> StudyData:
         audit_rows = connection.execute(
             "SELECT trial, well_conditioned, measures FROM monoped_audits ORDER BY trial"
         ).fetchall()
+    meta = meta_of_rows(meta_rows, db)
+    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     try:
-        meta = {str(key): json.loads(value) for key, value in meta_rows}
-        study = study_from_dict(meta["study"], source=f"study database {str(db)!r}")
         generation, told, state = checkpoint_row
         checkpoint = Checkpoint(generation=int(generation), told=int(told), state=json.loads(state))
-        for key, kind in _META.items():
-            if not isinstance(meta[key], kind):
-                raise TypeError(f"{key} is {meta[key]!r}")
         audits = [
             {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
             for trial, good, measures in audit_rows
@@ -119,8 +157,8 @@ def read_study(db: Path) -> StudyData:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
-    meta["wall_time_s"] = float(history_rows[-1][3]) if history_rows else 0.0
     return StudyData(
+        db=db,
         study=study,
         meta=meta,
         trials=trials,

@@ -16,8 +16,9 @@ from pareto_monoped.study.definition import Study
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.loop import Loop, Progress
-from pareto_monoped.study.physics import Physics, load_physics
+from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.simulator import Simulator, load_simulator, stored_simulator
 from pareto_monoped.study.store import Store
 from pareto_monoped.study.store import create as create_database
 
@@ -84,15 +85,15 @@ def run(
     if seed is not None:
         study = replace(study, seed=seed)
     with locked(db):
-        physics = load_physics(study, workers=workers or default_workers())
+        simulator = load_simulator(study, workers=workers or default_workers())
         if not db.exists():
-            create_database(db, study, _meta(study, physics), create(study).state())
+            create_database(db, study, _meta(study, simulator), create(study).state())
             data = read_study(db)
         else:
             data = read_study(db)
-            _refuse_changes(data, study, physics, db)
+            _refuse_changes(data, study, simulator, db)
         return _go_on(
-            db, data, study, physics, evaluations or study.evaluations, progress or _silent, notify or _silent
+            db, data, study, simulator, evaluations or study.evaluations, progress or _silent, notify or _silent
         )
 
 
@@ -120,36 +121,36 @@ def resume(
     read_study(db)
     with locked(db):
         data = read_study(db)
-        physics = load_physics(data.study, workers=workers or default_workers(), files=data.meta["files"])
-        _refuse_changes(data, data.study, physics, db)
-        budget = evaluations or int(data.meta["budget"])
-        return _go_on(db, data, data.study, physics, budget, progress or _silent, notify or _silent)
+        simulator = stored_simulator(data, workers=workers or default_workers())
+        _refuse_changes(data, data.study, simulator, db)
+        budget = evaluations or data.meta.budget
+        return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent)
 
 
-def _meta(study: Study, physics: Physics) -> dict[str, Any]:
-    package_versions = provenance.versions(study)
-    decisive = provenance.decisive(study, physics.contents, package_versions)
-    return {
-        "study": study.as_dict(),
-        "motor": study.motor,
-        "calibration": physics.calibration.label,
-        "seed": study.seed,
-        "contents": physics.contents,
-        "files": physics.files,
-        "versions": package_versions,
-        "environment": provenance.environment(),
-        "hash": provenance.digest(decisive),
-        "probe": physics.probe(),
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "budget": study.evaluations,
-        "finished": False,
-        "stop_reason": None,
-    }
+def _meta(study: Study, simulator: Simulator) -> StudyMeta:
+    versions = provenance.versions(study)
+    decisive = provenance.decisive(study, simulator.contents, versions)
+    return StudyMeta(
+        study=study.as_dict(),
+        motor=study.motor,
+        calibration=simulator.calibration.label,
+        seed=study.seed,
+        contents=simulator.contents,
+        files=simulator.files,
+        versions=versions,
+        environment=provenance.environment(),
+        hash=provenance.digest(decisive),
+        probe=simulator.probe(),
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        budget=study.evaluations,
+        finished=False,
+        stop_reason=None,
+    )
 
 
-def _refuse_changes(data: StudyData, study: Study, physics: Physics, db: Path) -> None:
-    before = provenance.decisive(data.study, data.meta["contents"], data.meta["versions"])
-    now = provenance.decisive(study, physics.contents, provenance.versions(study))
+def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: Path) -> None:
+    before = provenance.decisive(data.study, data.meta.contents, data.meta.versions)
+    now = provenance.decisive(study, simulator.contents, provenance.versions(study))
     changes = provenance.differences(before, now)
     if study.evaluations < data.study.evaluations:
         changes.append(f"study.evaluations: {data.study.evaluations} -> {study.evaluations} (only more is allowed)")
@@ -160,8 +161,8 @@ def _refuse_changes(data: StudyData, study: Study, physics: Physics, db: Path) -
         )
 
 
-def _refuse_other_results(data: StudyData, physics: Physics, db: Path) -> None:
-    before, now = data.meta["probe"], physics.probe()
+def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> None:
+    before, now = data.meta.probe, simulator.probe()
     if before != now:
         raise StudyError(
             f"study database {str(db)!r}: began with other results: height and energy of the probe designs were "
@@ -171,30 +172,30 @@ def _refuse_other_results(data: StudyData, physics: Physics, db: Path) -> None:
 
 def _nothing_left(data: StudyData, study: Study, budget: int) -> bool:
     """Whether the study ended by itself and would end at once again."""
-    same = data.meta["finished"] and study == data.study
-    return bool(same and (len(data.trials) >= budget or data.meta["stop_reason"] != "budget"))
+    same = data.meta.finished and study == data.study
+    return same and (len(data.trials) >= budget or data.meta.stop_reason != "budget")
 
 
 def _go_on(
     db: Path,
     data: StudyData,
     study: Study,
-    physics: Physics,
+    simulator: Simulator,
     budget: int,
     progress: Callable[[Progress], None],
     notify: Callable[[str], None],
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
         return _summary(db, data, data, 0.0)
-    _refuse_other_results(data, physics, db)
+    _refuse_other_results(data, simulator, db)
     with Store(db, study) as store:
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
-        loop = Loop(data, study, physics.evaluator, store, budget, progress)
+        loop = Loop(data, study, simulator.evaluator, store, budget, progress)
         with Interrupt(notify) as interrupt:
             reason = loop.go(interrupt)
         finished = reason != "interrupted"
         if finished and study.audit:
-            audit_front(db, store, physics, notify)
+            audit_front(db, store, simulator, notify)
         store.set_meta({"finished": finished, "stop_reason": reason})
     return _summary(db, data, read_study(db), loop.elapsed)
 
@@ -206,8 +207,8 @@ def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> R
         evaluations=len(after.trials),
         new_evaluations=len(after.trials) - len(before.trials),
         front_size=len(front),
-        ill_conditioned=int((~after.audits["well_conditioned"].astype(bool)).sum()),
+        ill_conditioned=len(after.ill_conditioned),
         hypervolume=hypervolume(front[["height_m", "energy_j"]].to_numpy(), after.reference_point),
         seconds=seconds,
-        stop_reason=after.meta["stop_reason"],
+        stop_reason=after.meta.stop_reason or "",
     )

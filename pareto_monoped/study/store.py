@@ -17,6 +17,7 @@ from pareto_monoped.jump.evaluate import MEASURES
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.meta import StudyMeta, strict_json
 from pareto_monoped.study.optuna_tables import KNOWN_SCHEMAS, OptunaTables, create_tables
 
 _OUR_TABLES = """
@@ -35,13 +36,13 @@ CREATE TABLE monoped_trials (
 """
 
 
-def create(path: Path, study: Study, meta: Mapping[str, Any], state: Mapping[str, Any]) -> None:
+def create(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
     """A new study database without trials, whole or not at all.
 
     Args:
         path: where; must not exist.
         study: the study.
-        meta: what is known about it, JSON values by key.
+        meta: what is known about it.
         state: the fresh algorithm's state.
 
     Raises:
@@ -50,7 +51,8 @@ def create(path: Path, study: Study, meta: Mapping[str, Any], state: Mapping[str
     """
     with replacing(path) as temporary:
         temporary.unlink()
-        create_tables(temporary, study, {key: meta[key] for key in ("study", "versions", "hash")})
+        attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
+        create_tables(temporary, study, attributes)
         with translated(path):
             connection = sqlite3.connect(temporary, isolation_level=None)
             try:
@@ -58,9 +60,9 @@ def create(path: Path, study: Study, meta: Mapping[str, Any], state: Mapping[str
                 connection.execute("BEGIN IMMEDIATE")
                 for statement in _OUR_TABLES.format(columns=columns).split(";"):
                     connection.execute(statement)
-                rows = [(key, _strict(value)) for key, value in ({"format": FORMAT} | dict(meta)).items()]
+                rows = [("format", strict_json(FORMAT)), *meta.as_rows()]
                 connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
-                connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (_strict(state),))
+                connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
                 connection.execute("COMMIT")
             finally:
                 connection.close()
@@ -125,7 +127,7 @@ class Store:
     def set_meta(self, values: Mapping[str, Any]) -> None:
         """Replace what is known about the study under some keys."""
         with translated(self.path), _transaction(self._connection):
-            rows = [(key, _strict(value)) for key, value in values.items()]
+            rows = [(key, strict_json(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
@@ -176,13 +178,8 @@ class Store:
         if generation.state is not None:
             execute(
                 "UPDATE monoped_checkpoint SET generation = ?, told = ?, state = ?",
-                (generation.number + 1, total, _strict(generation.state)),
+                (generation.number + 1, total, strict_json(generation.state)),
             )
-
-
-def _strict(value: Any) -> str:
-    """JSON that any reader takes: no NaN, no infinity."""
-    return json.dumps(value, allow_nan=False)
 
 
 class _transaction:  # noqa: N801

@@ -84,7 +84,7 @@ def cut(data: StudyData, keep: np.ndarray, *, finished: bool = False, state: str
         trials["state"] = pd.array([state] * len(trials), dtype="str")
     history = data.history[data.history["evaluations"] <= len(trials)]
     audits = data.audits[data.audits["trial"].isin(trials["trial"])].reset_index(drop=True)
-    meta = data.meta | {"finished": finished, "stop_reason": None}
+    meta = replace(data.meta, finished=finished, stop_reason=None)
     return replace(data, trials=trials, history=history, audits=audits, meta=meta)
 
 

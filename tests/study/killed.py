@@ -16,9 +16,9 @@ from pathlib import Path
 
 from pareto_monoped.study.algorithms import create
 from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.physics import load_physics
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
+from pareto_monoped.study.simulator import load_simulator
 
 
 def start(study, db, workers):
@@ -69,7 +69,7 @@ def kill(study, db, workers, delay, *, at_work):
 def main():
     kills, generator = int(sys.argv[1]), random.Random(int(sys.argv[2]))
     # Compiled code is loaded once, here; a single worker leaves no thread behind that a fork would lose.
-    load_physics(load_study(Path(sys.argv[3]) / "s.toml"), workers=1).probe()
+    load_simulator(load_study(Path(sys.argv[3]) / "s.toml"), workers=1).probe()
     reports = []
     for folder in map(Path, sys.argv[3:]):
         study = load_study(folder / "s.toml")

@@ -9,6 +9,7 @@ from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import create as create_algorithm
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.scoring import judge
 from pareto_monoped.study.store import Store, create
 
@@ -33,22 +34,22 @@ def made_evaluations(height_m, energy_j, status=None, seed=0):
 
 def made_meta(study):
     versions = provenance.versions(study)
-    return {
-        "study": study.as_dict(),
-        "motor": study.motor,
-        "calibration": "reference-1",
-        "seed": study.seed,
-        "contents": CONTENTS,
-        "files": {"motor": None, "calibration": None},
-        "versions": versions,
-        "environment": provenance.environment(),
-        "hash": provenance.digest(provenance.decisive(study, CONTENTS, versions)),
-        "probe": [],
-        "created": "2025-01-01T00:00:00+00:00",
-        "budget": study.evaluations,
-        "finished": False,
-        "stop_reason": None,
-    }
+    return StudyMeta(
+        study=study.as_dict(),
+        motor=study.motor,
+        calibration="reference-1",
+        seed=study.seed,
+        contents=CONTENTS,
+        files={"motor": None, "calibration": None},
+        versions=versions,
+        environment=provenance.environment(),
+        hash=provenance.digest(provenance.decisive(study, CONTENTS, versions)),
+        probe=[],
+        created="2025-01-01T00:00:00+00:00",
+        budget=study.evaluations,
+        finished=False,
+        stop_reason=None,
+    )
 
 
 def made_generation(study, number, first, evaluations, state=None, seed=0, height_weight=None):

@@ -39,7 +39,7 @@ def killed(folder, algorithms, evaluations, kills, seed=3):
         assert resumed.trials.equals(whole.trials)
         assert resumed.front().equals(whole.front())
         assert resumed.checkpoint == whole.checkpoint
-        assert resumed.meta["hash"] == whole.meta["hash"]
+        assert resumed.meta.hash == whole.meta.hash
         assert resumed.history["hypervolume"].equals(whole.history["hypervolume"])
 
 

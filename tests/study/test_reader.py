@@ -32,8 +32,8 @@ def test_history_and_meta(tmp_path):
     data = read_study(tmp_path / "s.db")
     assert data.history["evaluations"].tolist() == [4, 6]
     assert data.history["hypervolume"].tolist() == [0.0, 1.0]
-    assert data.meta["wall_time_s"] == 1.5
-    assert data.meta["finished"] is False
+    assert data.wall_time_s == 1.5
+    assert data.meta.finished is False
     assert (data.reference_point.height_m, data.reference_point.energy_j) == (0.55, 100.0)
 
 

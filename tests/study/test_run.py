@@ -18,9 +18,9 @@ from pareto_monoped.jump.evaluate import MEASURES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.definition import Bounds, Constraints, Stop, study_from_dict
-from pareto_monoped.study.physics import load_physics
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.simulator import load_simulator
 from pareto_monoped.study.status import status
 from pareto_monoped.study.store import Store
 
@@ -45,7 +45,7 @@ def test_stores_what_the_evaluator_gives(whole):
     _, summary, data, _ = whole
     assert summary.evaluations == summary.new_evaluations == len(data.trials) == 60
     assert summary.stop_reason == "budget"
-    again = load_physics(made(), workers=1).evaluator(data.trials[list(NAMES)].to_numpy())
+    again = load_simulator(made(), workers=1).evaluator(data.trials[list(NAMES)].to_numpy())
     for name in MEASURES:
         assert np.array_equal(data.trials[name].to_numpy(), getattr(again, name), equal_nan=True), name
     assert data.trials["status"].tolist() == again.status.tolist()
@@ -142,7 +142,7 @@ def test_other_results_of_the_same_settings_are_refused(whole, tmp_path):
     path = tmp_path / "s.db"
     path.write_bytes(whole[0].read_bytes())
     data = read_study(path)
-    probe = data.meta["probe"]
+    probe = data.meta.probe
     probe[0][0] += 1e-15
     with Store(path, data.study) as store:
         store.set_meta({"probe": probe})
@@ -162,7 +162,7 @@ def test_goes_on_without_the_users_own_files(tmp_path):
     run(load_study(tmp_path / "s.toml"), tmp_path / "s.db")
     (tmp_path / "mine.toml").unlink()
     assert resume(tmp_path / "s.db", evaluations=30).new_evaluations == 10
-    assert read_study(tmp_path / "s.db").meta["calibration"].startswith("mine")
+    assert read_study(tmp_path / "s.db").meta.calibration.startswith("mine")
 
 
 def test_stops_on_a_plateau(tmp_path):
@@ -270,7 +270,7 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
     assert "ending after this generation; press Ctrl-C again to end at once" in said
     assert "Traceback" not in said
     data = read_study(db)
-    assert data.meta["stop_reason"] == "interrupted"
+    assert data.meta.stop_reason == "interrupted"
     assert len(data.trials) == data.checkpoint.told > 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["s.db", "s.toml"]
 
@@ -321,5 +321,5 @@ def test_a_disk_that_fills_up_loses_nothing(tmp_path):
     stored = len(data.trials)
     assert 0 < stored < 2000
     assert resume(tmp_path / "s.db", evaluations=stored + 100).new_evaluations == 100
-    again = load_physics(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:100])
+    again = load_simulator(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:100])
     assert np.array_equal(again.height_m, data.trials["height_m"][:100], equal_nan=True)

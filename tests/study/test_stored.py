@@ -10,9 +10,9 @@ import pytest
 from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, pick
 from pareto_monoped.study import provenance
 from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.physics import load_physics
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.simulator import load_simulator, stored_simulator
 from pareto_monoped.study.status import status
 
 DATA = Path(__file__).parent / "data"
@@ -31,13 +31,13 @@ def stored(name, tmp_path, monkeypatch):
     path = tmp_path / f"{name}.db"
     shutil.copy(DATA / path.name, path)
     data = read_study(path)
-    versions = dict(data.meta["versions"])
+    versions = dict(data.meta.versions)
     monkeypatch.setattr(provenance, "__version__", versions.pop("pareto-monoped"))
     if other := {package: version(package) for package, v in versions.items() if version(package) != v}:
         pytest.skip(f"a study goes on only with the libraries that began it: here are {other}")
-    probe = load_physics(data.study, workers=1, files=data.meta["files"]).probe()
-    if probe != data.meta["probe"]:
-        assert probe == [pytest.approx(pair, rel=1e-6) for pair in data.meta["probe"]]
+    probe = stored_simulator(data, workers=1).probe()
+    if probe != data.meta.probe:
+        assert probe == [pytest.approx(pair, rel=1e-6) for pair in data.meta.probe]
         pytest.skip("a study goes on only where it began: this machine computes other last digits")
     # MuJoCo writes its log into the current folder.
     monkeypatch.chdir(tmp_path)
@@ -74,10 +74,10 @@ def test_picks_are_the_same(name):
 def test_the_hash_is_what_this_code_computes(name):
     """From the study file and the user's files, and again from what the database holds."""
     data = read_study(DATA / f"{name}.db")
-    for study, files in ((load_study(DATA / f"{name}.toml"), None), (data.study, data.meta["files"])):
-        contents = load_physics(study, workers=1, files=files).contents
-        decisive = provenance.decisive(study, contents, data.meta["versions"])
-        assert provenance.digest(decisive) == data.meta["hash"]
+    study = load_study(DATA / f"{name}.toml")
+    for simulator in (load_simulator(study, workers=1), stored_simulator(data, workers=1)):
+        decisive = provenance.decisive(study, simulator.contents, data.meta.versions)
+        assert provenance.digest(decisive) == data.meta.hash
 
 
 @named
@@ -91,7 +91,7 @@ def test_resumed_it_ends_like_an_uninterrupted_run(name, stored, tmp_path):
     assert resumed.trials.equals(whole.trials)
     assert resumed.trials[: len(before.trials)].equals(before.trials)
     assert resumed.checkpoint == whole.checkpoint
-    assert resumed.meta["hash"] == whole.meta["hash"] == before.meta["hash"]
+    assert resumed.meta.hash == whole.meta.hash == before.meta.hash
     assert resumed.front().equals(whole.front())
     # The audits of the earlier end stay as they were.
     audits = resumed.audits.set_index("trial")

@@ -1,0 +1,79 @@
+"""What a study database says of its study besides the trials: one checked record, one row of JSON per field."""
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from pydantic import StrictBool, StrictFloat, StrictInt
+
+from pareto_monoped.config import checked
+from pareto_monoped.errors import DatabaseError
+
+Number = StrictFloat | None
+"""A number as JSON keeps it: None stands for NaN, which JSON lacks."""
+# Strict types, because a stored "3" in place of 3 is damage.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyMeta:
+    """The table ``monoped_meta`` without its format number: key and value of each row are name and value of a field.
+
+    Attributes:
+        study: the settings, as ``Study.as_dict`` gives them.
+        motor: name of the motor, or path of its file, as the study gives it.
+        calibration: name and version.
+        seed: of the search.
+        contents: every value of the ``motor`` and of the ``calibration``; the study simulates with these.
+        files: texts of the user's own ``motor`` and ``calibration`` files, for the record; None for shipped ones.
+        versions: of the packages that decide the results.
+        environment: Python, system and machine, for the record.
+        hash: SHA-256 of everything that decides the results.
+        probe: height and energy of a few fixed designs: a fingerprint of code and machine.
+        created: date and time, ISO 8601 in UTC.
+        budget: how many trials it was last run for.
+        finished: whether the last run came to its end.
+        stop_reason: why it ended; None while it runs or after it was killed.
+    """
+
+    study: dict[str, Any]
+    motor: str
+    calibration: str
+    seed: StrictInt
+    contents: dict[str, dict[str, Any]]
+    files: dict[str, str | None]
+    versions: dict[str, str]
+    environment: dict[str, str]
+    hash: str
+    probe: list[list[Number]]
+    created: str
+    budget: StrictInt
+    finished: StrictBool
+    stop_reason: str | None
+
+    def as_rows(self) -> list[tuple[str, str]]:
+        """Key and JSON text of each field, as stored."""
+        return [(field.name, strict_json(getattr(self, field.name))) for field in fields(self)]
+
+
+def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: Path) -> StudyMeta:
+    """The record from its stored rows; rows with other keys are passed over.
+
+    Raises:
+        DatabaseError: a value is missing or of the wrong type.
+    """
+    try:
+        values = {str(key): json.loads(value) for key, value in rows}
+        return checked(StudyMeta, values, source="monoped_meta", error=DatabaseError)
+    except (TypeError, ValueError, DatabaseError) as error:
+        raise DatabaseError(f"study database {str(db)!r}: is damaged ({error}); restore a copy") from None
+
+
+def strict_json(value: Any) -> str:
+    """JSON that any reader takes.
+
+    Raises:
+        ValueError: NaN or infinity in ``value``.
+    """
+    return json.dumps(value, allow_nan=False)

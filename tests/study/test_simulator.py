@@ -1,0 +1,111 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.errors import CalibrationError, DatabaseError, MotorError
+from pareto_monoped.jump.calibration import calibration_names
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.simulator import load_simulator, stored_simulator
+from tests.study.support import made_database, made_study
+
+
+def stored(data, simulator):
+    """The study as if it had been stored with this simulator, through JSON as in the database."""
+    return replace(data, meta=replace(data.meta, contents=json.loads(json.dumps(simulator.contents))))
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    path = tmp_path_factory.mktemp("stored") / "s.db"
+    made_database(path)
+    return read_study(path)
+
+
+def test_the_probe_is_a_fingerprint_of_the_results():
+    first, again = (load_simulator(made_study(), workers=w).probe() for w in (1, 2))
+    assert first == again
+    assert load_simulator(made_study(calibration="ideal"), workers=1).probe() != first
+    assert all(0.5 < height < 3.0 and energy > 0.0 for height, energy in first if height is not None)
+
+
+def test_contents_hold_every_value_of_motor_and_calibration():
+    simulator = load_simulator(made_study(motor="U8"), workers=1)
+    assert simulator.contents["motor"]["name"] == "U8"
+    assert simulator.contents["motor"]["rated_voltage_v"] == 24
+    assert simulator.contents["calibration"]["simulation"]["timestep_s"] == simulator.calibration.simulation.timestep_s
+    assert simulator.files == {"motor": None, "calibration": None}
+
+
+@pytest.mark.parametrize("calibration", calibration_names())
+@pytest.mark.parametrize("motor", motor_names())
+def test_stored_contents_give_the_same_motor_and_calibration_to_the_last_bit(data, motor, calibration):
+    first = load_simulator(made_study(motor=motor, calibration=calibration), workers=1)
+    again = stored_simulator(stored(data, first), workers=1)
+    # All their values are numbers, text and None; repr() tells any two floats apart.
+    assert repr(again.motor) == repr(first.motor)
+    assert repr(again.calibration) == repr(first.calibration)
+    assert json.dumps(again.contents) == json.dumps(first.contents)
+    assert again.evaluator.actuator_map is first.evaluator.actuator_map
+
+
+def test_a_users_files_are_not_needed_again(data, tmp_path):
+    from importlib import resources
+
+    folder = resources.files("pareto_monoped") / "data" / "calibrations"
+    text = (folder / "reference.toml").read_text().replace('name = "reference"', 'name = "mine"')
+    (tmp_path / "mine.toml").write_text(text)
+    first = load_simulator(made_study(calibration=str(tmp_path / "mine.toml")), workers=1)
+    assert first.files == {"motor": None, "calibration": text}
+    (tmp_path / "mine.toml").unlink()
+    again = stored_simulator(stored(data, first), workers=1)
+    design = np.array([[0.4, 0.4, 6.0, 6.0, 50.0, 2.5, 10.0]])
+    assert again.evaluator(design).height_m == first.evaluator(design).height_m
+
+
+@pytest.mark.parametrize("name", ["../../../etc/passwd.toml", "/etc/cron.d/x.toml", "..", ".toml"])
+def test_a_strangers_file_name_leads_nowhere(data, tmp_path, monkeypatch, name):
+    """Names and texts of files in a database are never used."""
+    monkeypatch.chdir(tmp_path)
+    bent = stored(data, load_simulator(made_study(), workers=1))
+    study = replace(data.study, motor=name, calibration=name)
+    meta = replace(bent.meta, motor=name, calibration=name, files={"motor": "x = ", "calibration": "x = "})
+    simulator = stored_simulator(replace(bent, study=study, meta=meta), workers=1)
+    assert (simulator.motor.name, simulator.calibration.name) == ("VT8020", "reference")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "value", "words"),
+    [
+        ("motor", "winding_resistance_ohm", -1.0, "winding_resistance_ohm = -1.0"),
+        ("motor", "mount_holes", "none", "mount_holes = 'none'"),
+        ("motor", "surprise", 1, "unknown key 'surprise'"),
+        ("calibration", "version", 0, "version = 0"),
+        ("calibration", "simulation", {"integrator": "Euler", "timestep_s": 1e-9}, "timestep_s = 1e-09: must be at"),
+    ],
+)
+def test_damaged_contents_are_refused(data, part, key, value, words):
+    bent = stored(data, load_simulator(made_study(), workers=1))
+    bent.meta.contents[part][key] = value
+    with pytest.raises(DatabaseError, match=words) as caught:
+        stored_simulator(bent, workers=1)
+    assert str(caught.value).startswith(f"study database {str(data.db)!r}: ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("part", ["motor", "calibration"])
+def test_missing_contents_are_refused(data, part):
+    bent = stored(data, load_simulator(made_study(), workers=1))
+    del bent.meta.contents[part]
+    with pytest.raises(DatabaseError, match="is missing"):
+        stored_simulator(bent, workers=1)
+
+
+def test_unknown_names_are_refused():
+    with pytest.raises(MotorError):
+        load_simulator(made_study(motor="none such"), workers=1)
+    with pytest.raises(CalibrationError):
+        load_simulator(made_study(calibration="none such"), workers=1)
