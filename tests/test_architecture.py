@@ -19,6 +19,7 @@ LEVELS = [
     {"robot"},
     {"actuator", "leg"},
     {"geometry"},
+    {"materials"},
     {"measures"},
     {"design", "config"},
     {"files"},

@@ -116,12 +116,11 @@ def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: Actuato
 
 def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings) -> Actuator:
     """The actuator around one gear set, which is taken as it is: no constraint is checked."""
-    width = float(face_width_mm(gears, motor, settings.parts.gears))
+    width = float(face_width_mm(gears, motor, settings))
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
     ratio = float(gears.ratio)
     outer, inner = contact_ratios(gears)
-    data = settings.parts
     return Actuator(
         motor=motor,
         family=family,
@@ -132,7 +131,7 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
         peak_torque_n_m=ratio * motor.peak_torque_n_m,
         continuous_torque_n_m=ratio * motor.continuous_torque_n_m,
         no_load_speed_rad_per_s=motor.no_load_speed_rad_per_s / ratio,
-        efficiency=float(efficiency(gears, data.gears.mesh_friction_coefficient)),
+        efficiency=float(efficiency(gears, settings.materials.gear_steel.mesh_friction_coefficient)),
         contact_ratio_sun=float(outer),
         contact_ratio_ring=float(inner),
         reflected_inertia_kg_m2=reflected_inertia_kg_m2(parts, gears, motor),

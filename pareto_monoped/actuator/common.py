@@ -4,12 +4,13 @@ import numpy as np
 
 from pareto_monoped.actuator.bearings import Bearing
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
-from pareto_monoped.actuator.settings import ActuatorSettings, PartData
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import DEDENDUM
-from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
+from pareto_monoped.materials import Material
 
 GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm; hardened steel, wire-cut"
 M3_THREAD_MM = M3.core
@@ -24,27 +25,6 @@ SPIGOT_MM = 1.5
 """Height of the steps that centre one piece of the housing in another."""
 RING_GROOVE_MM = 1.0
 """Depth of a retaining ring's groove: DIN 471 and DIN 472 have 1.0 to 1.5 mm in the range used."""
-
-_ALUMINIUM_COLOUR = (0.78, 0.80, 0.83)
-_STEEL_COLOUR = (0.45, 0.46, 0.48)
-BEARING_STEEL = Material(name="bearing steel", density_kg_per_m3=7800.0, colour=(0.62, 0.64, 0.68))
-MOTOR_STATOR = Material(name="motor stator", density_kg_per_m3=4680.0, colour=(0.72, 0.45, 0.20))
-MOTOR_ROTOR = Material(name="motor rotor", density_kg_per_m3=7500.0, colour=(0.25, 0.26, 0.30))
-
-
-def aluminium(data: PartData) -> Material:
-    """For all machined parts that are no gears, pins or shafts (paper, section III-A)."""
-    return Material(name="aluminium", density_kg_per_m3=data.density.aluminium_kg_per_m3, colour=_ALUMINIUM_COLOUR)
-
-
-def steel(data: PartData) -> Material:
-    """For pins, shafts and rings."""
-    return Material(name="steel", density_kg_per_m3=data.density.steel_kg_per_m3, colour=_STEEL_COLOUR)
-
-
-def gear_steel(data: PartData) -> Material:
-    """For sun, planets and ring."""
-    return Material(name="gear steel", density_kg_per_m3=data.gears.density_kg_per_m3, colour=(0.55, 0.55, 0.57))
 
 
 def told(text: str, *numbers: Numbers) -> str:
@@ -100,7 +80,13 @@ def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple
 
 
 def bought_bearing(
-    name: str, bearing: Bearing, z_front_mm: Numbers, group: Group, note: str, joint: Joint | None = None
+    name: str,
+    material: Material,
+    bearing: Bearing,
+    z_front_mm: Numbers,
+    group: Group,
+    note: str,
+    joint: Joint | None = None,
 ) -> Part:
     """A ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
@@ -108,7 +94,7 @@ def bought_bearing(
         name=name,
         role=Role.BEARING,
         visibility=Visibility.INSIDE,
-        material=BEARING_STEEL,
+        material=material,
         prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),
         process="bought",
         group=group,
@@ -148,10 +134,9 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Planets with bushes, pins and the pins' screws, ring."""
-    data = settings.parts
+    data, materials = settings.parts, settings.materials
     carrier, gears = data.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
-    material = gear_steel(data)
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
     stands_out = carrier.planet_clearance_mm - BUSH_PLAY_MM
@@ -160,7 +145,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="planet",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
-            material=material,
+            material=materials.gear_steel,
             prisms=planet_prisms(at, settings),
             process="machined",
             group=Group.PLANET,
@@ -173,9 +158,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="planet_bush",
             role=Role.BUSH,
             visibility=Visibility.INSIDE,
-            material=Material(
-                name="bush bronze", density_kg_per_m3=data.density.bush_kg_per_m3, colour=(0.72, 0.53, 0.26)
-            ),
+            material=materials.bush_bronze,
             prisms=tube(
                 at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * data.gears.planet_bore_mm, pin
             ),
@@ -189,7 +172,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="planet_pin",
             role=Role.PIN,
             visibility=Visibility.INSIDE,
-            material=steel(data),
+            material=materials.steel,
             prisms=(
                 *slab(pin_low, pin_low + PIN_THREAD_MM + 2.0, pin, M3_THREAD_MM),
                 *slab(pin_low + PIN_THREAD_MM + 2.0, pin_front, pin),
@@ -209,7 +192,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             grip_mm=carrier.secondary_thickness_mm - carrier.pin_depth_mm,
             room_mm=PIN_THREAD_MM,
             direction=1.0,
-            material=steel(data),
+            material=materials.steel,
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
             group=Group.OUTPUT,
@@ -219,7 +202,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="ring",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
-            material=material,
+            material=materials.gear_steel,
             prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
             process="machined",
             group=Group.HOUSING,
@@ -236,9 +219,8 @@ def z_pin_front(thread_depth_mm: float, diaphragm_mm: float) -> float:
 
 def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Carrier with output flange, retaining ring, main and end bearing, secondary carrier."""
-    data = settings.parts
+    data, materials = settings.parts, settings.materials
     carrier = data.carrier
-    material = aluminium(data)
     threads = output_holes(settings)
     z_diaphragm = -carrier.thread_depth_mm
     z_pins = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
@@ -261,7 +243,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         Part(
             name="carrier",
             role=Role.CARRIER,
-            material=material,
+            material=materials.aluminium,
             prisms=body,
             process="machined",
             group=Group.OUTPUT,
@@ -276,7 +258,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="secondary_carrier",
             role=Role.CARRIER,
             visibility=Visibility.INSIDE,
-            material=material,
+            material=materials.aluminium,
             prisms=(
                 *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins),
                 *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws),
@@ -289,12 +271,21 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             name="retaining_ring",
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
-            material=steel(data),
+            material=materials.steel,
             prisms=tube(at.z_bearing_front, z_ring, at.r_bore + 2.0, r_groove),
             process="bought",
             group=Group.OUTPUT,
             note=told("DIN 471 for {} mm, in the carrier's groove before the main bearing", 2.0 * at.r_bore),
         ),
-        bought_bearing("main_bearing", at.bearing, at.z_bearing_front, Group.OUTPUT, "thin-section"),
-        bought_bearing("end_bearing", at.end_bearing, 0.0, Group.OUTPUT, "carries the sun's end in the carrier"),
+        bought_bearing(
+            "main_bearing", materials.bearing_steel, at.bearing, at.z_bearing_front, Group.OUTPUT, "thin-section"
+        ),
+        bought_bearing(
+            "end_bearing",
+            materials.bearing_steel,
+            at.end_bearing,
+            0.0,
+            Group.OUTPUT,
+            "carries the sun's end in the carrier",
+        ),
     )

@@ -6,17 +6,12 @@ from pareto_monoped.actuator.common import (
     GEAR_NOTE,
     M3_CLEARANCE_MM,
     M3_THREAD_MM,
-    MOTOR_ROTOR,
-    MOTOR_STATOR,
     RING_GROOVE_MM,
-    aluminium,
     carrier_parts,
     case_holes,
     gear_parts,
-    gear_steel,
     slab,
     spigot,
-    steel,
     told,
     tube,
     vents,
@@ -53,12 +48,11 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
     The motor's base is screwed to the backplate, its turning face carries the coupling with the sun's shaft; the casing
     is the bridge around the motor from the backplate to the ring housing, which carries ring and main bearing.
     """
-    data = settings.parts
+    data, materials = settings.parts, settings.materials
     case, coupling = data.case, data.coupling
     frame = motor.framed
     assert frame is not None
     assert motor.output_holes is not None
-    alu = aluminium(data)
 
     z_coupling = at.z_secondary_back - case.motor_carrier_clearance_mm
     z_motor = z_coupling - coupling.thickness_mm
@@ -108,7 +102,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="sun",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
-            material=gear_steel(data),
+            material=materials.gear_steel,
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
             group=Group.ROTOR,
@@ -119,7 +113,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="sun_shaft",
             role=Role.SHAFT,
             visibility=Visibility.INSIDE,
-            material=steel(data),
+            material=materials.steel,
             prisms=slab(z_motor, -_END_PLAY_MM, shaft),
             process="machined",
             group=Group.ROTOR,
@@ -130,7 +124,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="coupling",
             role=Role.COUPLING,
             visibility=Visibility.INSIDE,
-            material=alu,
+            material=materials.aluminium,
             prisms=slab(z_motor, z_coupling, r_coupling, shaft, rotor_screws, *windows),
             process="machined",
             group=Group.ROTOR,
@@ -139,7 +133,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="ring_housing",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount),
                 *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
@@ -162,7 +156,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="bore_retaining_ring",
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
-            material=steel(data),
+            material=materials.steel,
             prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
             process="bought",
             group=Group.HOUSING,
@@ -171,7 +165,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="casing",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *tube(at.z_gear_back, z_flange, r_web, at.r_ring, threads),
                 *tube(z_web, at.z_gear_back, r_web, at.r_ring - case.ring_lip_mm, threads),
@@ -185,7 +179,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="backplate",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *slab(z_end, z_plate, at.r_plate, 8.0, back, back_holes(motor, 0.5), *back_vents),
                 *spigot(z_plate, at, settings),
@@ -202,7 +196,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=case.flange_mm,
             room_mm=case.flange_mm,
             direction=-1.0,
-            material=steel(data),
+            material=materials.steel,
             count=count,
             pitch_radius_mm=bolts,
             group=Group.HOUSING,
@@ -216,7 +210,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=case.plate_mm,
             room_mm=case.flange_mm,
             direction=1.0,
-            material=steel(data),
+            material=materials.steel,
             count=count,
             pitch_radius_mm=at.r_bolts,
             group=Group.HOUSING,
@@ -230,7 +224,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=coupling.thickness_mm,
             room_mm=base,
             direction=-1.0,
-            material=steel(data),
+            material=materials.steel,
             count=output.count,
             pitch_radius_mm=0.5 * output.pitch_circle_mm,
             group=Group.ROTOR,
@@ -244,7 +238,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=case.plate_mm,
             room_mm=MOTOR_THREAD_MM,
             direction=1.0,
-            material=steel(data),
+            material=materials.steel,
             count=mount_holes.count,
             pitch_radius_mm=0.5 * mount_holes.pitch_circle_mm,
             group=Group.HOUSING,
@@ -255,7 +249,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="motor_stator",
             role=Role.MOTOR_STATOR,
             visibility=Visibility.INSIDE,
-            material=MOTOR_STATOR,
+            material=materials.motor_stator,
             prisms=(
                 *slab(z_plate, z_plate + base, at.r_stator_out, back_holes(motor, -0.8)),
                 *tube(z_plate + base, z_motor - base - case.rotor_clearance_mm, at.r_stator_out, at.r_stator_in),
@@ -268,7 +262,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="motor_rotor",
             role=Role.MOTOR_ROTOR,
-            material=MOTOR_ROTOR,
+            material=materials.motor_rotor,
             prisms=(
                 *slab(z_motor - base, z_motor, at.r_motor, rotor_threads),
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),

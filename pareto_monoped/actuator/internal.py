@@ -6,17 +6,12 @@ from pareto_monoped.actuator.common import (
     GEAR_NOTE,
     M3_CLEARANCE_MM,
     M3_THREAD_MM,
-    MOTOR_ROTOR,
-    MOTOR_STATOR,
-    aluminium,
     bought_bearing,
     carrier_parts,
     case_holes,
     gear_parts,
-    gear_steel,
     slab,
     spigot,
-    steel,
     told,
     tube,
     vents,
@@ -48,12 +43,11 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
     stator, takes the stator's torque and its heat. Where the gears need more depth than the stator has, the stator
     sits further back on it and the case grows.
     """
-    data = settings.parts
+    data, materials = settings.parts, settings.materials
     case, coupling = data.case, data.coupling
     kit = motor.frameless
     assert kit is not None
     assert kit.stator_height_mm is not None
-    alu = aluminium(data)
     height, bell = kit.stator_height_mm, kit.bell_thickness_mm
 
     # Where the main bearing is too large for the stator's bore, its seat stands in front of the stator.
@@ -107,7 +101,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="sun",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
-            material=gear_steel(data),
+            material=materials.gear_steel,
             prisms=(
                 *slab(z_neck, -_END_PLAY_MM, journal),
                 *slab(at.z_gear_front, z_neck, neck),
@@ -125,7 +119,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="coupling",
             role=Role.COUPLING,
             visibility=Visibility.INSIDE,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
                 *tube(z_seat, z_coupling - coupling.thickness_mm, shaft + _HUB_WALL_MM, shaft),
@@ -137,7 +131,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="casing",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws, *front_vents),
                 *tube(at.z_bearing_front, -case.plate_mm, at.r_seat, at.r_open),
@@ -152,7 +146,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="ring_housing",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *tube(z_flange, -case.plate_mm, r_flange, at.r_seat, flange_threads),
                 *tube(at.z_bearing_back, z_flange, r_seat_out, at.r_seat),
@@ -178,7 +172,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="backplate",
             role=Role.HOUSING,
-            material=alu,
+            material=materials.aluminium,
             prisms=(
                 *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_threads, *back_vents),
                 *tube(z_plate, z_end + BACK_THREAD_MM, r_mount + 0.5, r_pad, back_threads),
@@ -197,7 +191,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=case.plate_mm,
             room_mm=case.flange_mm,
             direction=-1.0,
-            material=steel(data),
+            material=materials.steel,
             count=count,
             pitch_radius_mm=flange_bolts,
             group=Group.HOUSING,
@@ -211,7 +205,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=case.wall_mm,
             room_mm=case.flange_mm,
             direction=1.0,
-            material=steel(data),
+            material=materials.steel,
             count=count,
             pitch_radius_mm=at.r_bolts,
             group=Group.HOUSING,
@@ -225,7 +219,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             grip_mm=bell,
             room_mm=coupling.thickness_mm,
             direction=-1.0,
-            material=steel(data),
+            material=materials.steel,
             count=coupling.bolt_count,
             pitch_radius_mm=bell_circle,
             group=Group.ROTOR,
@@ -233,6 +227,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         ),
         bought_bearing(
             "rear_bearing",
+            materials.bearing_steel,
             at.rear_bearing,
             z_seat,
             Group.HOUSING,
@@ -243,7 +238,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             name="motor_stator",
             role=Role.MOTOR_STATOR,
             visibility=Visibility.INSIDE,
-            material=MOTOR_STATOR,
+            material=materials.motor_stator,
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
             process="bought",
             group=Group.HOUSING,
@@ -254,7 +249,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="motor_rotor",
             role=Role.MOTOR_ROTOR,
-            material=MOTOR_ROTOR,
+            material=materials.motor_rotor,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
                 *slab(z_coupling, z_bell, at.r_motor, shaft + 1.0, bell_screws),

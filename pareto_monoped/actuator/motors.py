@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import MotorError
+from pareto_monoped.materials import MATERIALS
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 # The search tries all tooth numbers that fit; beyond this size it takes many seconds, and no leg is built for it.
@@ -27,12 +28,8 @@ BELL_THICKNESS_MM = 2.0
 _STATOR_OUTER_SHARE = 0.90
 _STATOR_INNER_SHARE = 0.67
 
-# For the estimate of the rotor's inertia. Magnetic air gap of small outrunners, 0.5 mm a side. Rotor ring: back iron
-# (7.85) and NdFeB magnets (7.5 g/cm3) with small gaps between them. Stator: laminations and copper with slot openings,
-# insulation and air, about 60 percent steel by volume. Estimates; only their proportion matters, see rotor_share().
 AIR_GAP_MM = 0.5
-_ROTOR_DENSITY = 7.5
-_STATOR_DENSITY = 0.6 * 7.8
+"""Magnetic air gap of small outrunners, per side; an estimate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,8 +192,12 @@ class Motor:
     def rotor_share(self) -> float:
         """Estimated share of the rotor in the motor's active mass, from the cross-sections of rotor ring and stator."""
         inner, outer = self.stator_diameters_mm
-        rotor = _ROTOR_DENSITY * (self.outer_diameter_mm**2 - (outer + 2.0 * AIR_GAP_MM) ** 2)
-        stator = _STATOR_DENSITY * (outer**2 - inner**2)
+        # In g/cm3; the share does not depend on the unit.
+        rotor_density, stator_density = (
+            1e-3 * material.density_kg_per_m3 for material in (MATERIALS.motor_rotor, MATERIALS.motor_stator)
+        )
+        rotor = rotor_density * (self.outer_diameter_mm**2 - (outer + 2.0 * AIR_GAP_MM) ** 2)
+        stator = stator_density * (outer**2 - inner**2)
         return rotor / (rotor + stator)
 
     def estimated_rotor_inertia_kg_m2(self) -> float:

@@ -64,7 +64,7 @@ def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64])
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
     """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
     gears = candidates(radial_room_mm(motor, family, settings), settings)
-    width = np.asarray(face_width_mm(gears, motor, settings.parts.gears))
+    width = np.asarray(face_width_mm(gears, motor, settings))
     at = layout(motor, family, gears, width, settings)
     names, broken = violations(
         Case(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=settings)

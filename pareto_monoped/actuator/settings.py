@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import InputError
+from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
@@ -20,16 +21,12 @@ ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearData:
-    """Material, strength and fixed proportions of the gears; sources in ``data/actuator_parts.toml``."""
+    """Strength and fixed proportions of the gears; sources in ``data/actuator_parts.toml``."""
 
     __pydantic_config__ = _STRICT
 
-    pressure_angle_deg: Positive
-    density_kg_per_m3: Positive
-    allowable_stress_mpa: Positive
     factor_of_safety: Positive
     service_factor: Positive
-    mesh_friction_coefficient: Positive
     backlash_mm: Annotated[float, Field(ge=0.0)]
     ring_width_internal_mm: Positive
     ring_width_external_mm: Positive
@@ -111,17 +108,6 @@ class InterfaceData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Densities:
-    """Of everything but the gears."""
-
-    __pydantic_config__ = _STRICT
-
-    aluminium_kg_per_m3: Positive
-    steel_kg_per_m3: Positive
-    bush_kg_per_m3: Positive
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class PartData:
     """Everything in ``data/actuator_parts.toml``."""
 
@@ -132,7 +118,6 @@ class PartData:
     case: CaseData
     coupling: CouplingData
     interface: InterfaceData
-    density: Densities
 
 
 @lru_cache(maxsize=1)
@@ -156,7 +141,8 @@ class ActuatorSettings:
         contact_ratio_min: of either mesh (Shigley, section 13-6).
         constraints_off: names of constraints not to apply, see ``rules.CONSTRAINTS``.
         bearings: mass of the main bearing from the catalogue, or from the paper's regression over its bore.
-        parts: dimensions, materials, strength.
+        parts: dimensions and safety factors.
+        materials: what the parts are made of.
     """
 
     modules_mm: tuple[float, ...] = tuple(sorted(ISO_54_SERIES_1_MM + ISO_54_SERIES_2_MM))
@@ -169,6 +155,7 @@ class ActuatorSettings:
     constraints_off: frozenset[str] = frozenset()
     bearings: Literal["catalogue", "regression"] = "catalogue"
     parts: PartData = field(default_factory=default_parts)
+    materials: Materials = MATERIALS
 
     def __post_init__(self) -> None:
         from pareto_monoped.actuator.rules import CONSTRAINTS  # here, because rules look at settings

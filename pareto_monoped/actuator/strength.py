@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.settings import GearData
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.shapes import Numbers
 
 # Lewis form factor Y of 20 degree full-depth teeth over the number of teeth: Shigley, table 14-2.
@@ -31,7 +31,7 @@ def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
     return (6.1 + speed_m_per_s) / 6.1
 
 
-def face_width_mm(gears: GearSet, motor: Motor, data: GearData) -> Numbers:
+def face_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
     """Least face width at which the sun's teeth carry the motor's peak torque.
 
     Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all sets have ratios
@@ -39,9 +39,9 @@ def face_width_mm(gears: GearSet, motor: Motor, data: GearData) -> Numbers:
     teeth strike each other, at the motor's no-load speed: the fastest it can turn, an upper bound.
     """
     radius_m = 0.5e-3 * gears.module_mm * gears.sun_teeth
-    force_n = data.service_factor * motor.peak_torque_n_m / (radius_m * gears.planets)
+    force_n = settings.parts.gears.service_factor * motor.peak_torque_n_m / (radius_m * gears.planets)
     speed = motor.no_load_speed_rad_per_s * (1.0 - 1.0 / gears.ratio) * radius_m
-    stress_mpa = data.allowable_stress_mpa / data.factor_of_safety
+    stress_mpa = settings.materials.gear_steel.allowable_stress_mpa / settings.parts.gears.factor_of_safety
     weakest = np.minimum(gears.sun_teeth, gears.planet_teeth)
     strong = velocity_factor(speed) * force_n / (stress_mpa * gears.module_mm * lewis_form_factor(weakest))
     return np.maximum(strong, LEAST_WIDTH_MODULES * gears.module_mm)

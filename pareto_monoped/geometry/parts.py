@@ -15,15 +15,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Material:
-    """A material: density and how it looks in CAD and report (red, green, blue from 0 to 1)."""
-
-    name: str
-    density_kg_per_m3: float
-    colour: tuple[float, float, float]
+from pareto_monoped.materials import Material
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,9 +6,10 @@ from typing import Literal
 import numpy as np
 
 from pareto_monoped.errors import DesignError
-from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Numbers
+from pareto_monoped.materials import Material
 
 Head = Literal["cap", "countersunk", "hexagon"]
 

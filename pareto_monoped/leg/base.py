@@ -7,7 +7,8 @@ from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, hull
 from pareto_monoped.leg.common import Place, holes_at, motor_screw
-from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions
+from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm: the rods stand above the hip, outside the reach of the thigh's round hip end and, up to the end
 # of the hip's range, of its bar.
@@ -63,7 +64,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         Part(
             name="base_near_cheek",
             role=Role.PLATE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="laser cut",
             prisms=(
                 Prism(
@@ -94,7 +95,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             grip_mm=d.cheek_mm,
             room_mm=d.mount_thread_mm,
             direction=-1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.mount_holes,
             pitch_radius_mm=d.mount_pitch_radius_mm,
             grade="10.9",
@@ -103,7 +104,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         Part(
             name="base_far_cheek",
             role=Role.PLATE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(outline=cheek(26.0), z0_mm=far0, z1_mm=seat1, holes=(outer_race, window, *rods)),
@@ -119,7 +120,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         Part(
             name="base_bearing",
             role=Role.BEARING,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="bought",
             prisms=(
                 Prism(
@@ -135,7 +136,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
         Part(
             name="base_rod",
             role=Role.ROD,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near1, z1_mm=far0, holes=(thread,)),),
             places_mm=places,
@@ -150,7 +151,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             grip_mm=d.cheek_mm,
             room_mm=_ROD_THREAD,
             direction=1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             places_mm=places,
         ),
         screw_part(
@@ -162,7 +163,7 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions = DEFAULT) -> t
             grip_mm=d.far_cheek_mm,
             room_mm=_ROD_THREAD,
             direction=-1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             places_mm=places,
         ),
     )
@@ -189,7 +190,7 @@ def journal_parts(
         Part(
             name="journal",
             role=Role.SHAFT,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -211,7 +212,7 @@ def journal_parts(
             grip_mm=_JOURNAL_FLANGE + back_clearance_mm,
             room_mm=_BACK_THREAD,
             direction=-1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.back_holes,
             pitch_radius_mm=d.back_pitch_radius_mm,
             note="into the knee motor's own mounting pattern",

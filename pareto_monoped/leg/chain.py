@@ -7,8 +7,9 @@ import numpy as np
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
-from pareto_monoped.leg.dimensions import ALUMINIUM, STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm
+from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm along the strand. The knee turns by 150 degrees to either side and so moves each strand by 68 mm:
 # 0.2 m between the axes is the least at which no turnbuckle reaches a sprocket.
@@ -62,7 +63,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             Part(
                 name=f"chain_{end}",
                 role=Role.CHAIN,
-                material=STEEL,
+                material=MATERIALS.steel,
                 process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
                 catalogue_mass_kg=d.chain_kg_per_m * metres,
@@ -77,7 +78,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="turnbuckle_barrel",
             role=Role.TURNBUCKLE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=_barrel(),
             places_mm=places,
@@ -87,7 +88,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="turnbuckle_end",
             role=Role.TURNBUCKLE,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="machined",
             prisms=_end(d),
             count=2,

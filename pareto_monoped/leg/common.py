@@ -6,8 +6,9 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_for, screw_length_mm
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
-from pareto_monoped.leg.dimensions import STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.outlines import rounded, sprocket
+from pareto_monoped.materials import MATERIALS
 
 Place = tuple[Numbers, Numbers, Numbers]
 
@@ -36,7 +37,7 @@ def sleeve_bolt(name: str, screw: Screw, half_stack_mm: float, places_mm: tuple[
     return Part(
         name=name,
         role=Role.BOLT,
-        material=STEEL,
+        material=MATERIALS.steel,
         process="bought",
         prisms=(
             cylinder(screw.shank + _SLEEVE_WALL, -half_stack_mm, sleeve - half_stack_mm),

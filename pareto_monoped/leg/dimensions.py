@@ -1,4 +1,4 @@
-"""Dimensions and materials of the links, the foot and the base frame.
+"""Dimensions of the links, the foot and the base frame.
 
 The lateral layout, along the joint axes with z = 0 in the middle of the leg (z grows to the robot's right):
 
@@ -12,14 +12,6 @@ knee, one to one. The far cheek carries the knee actuator's free end in a bearin
 
 import math
 from dataclasses import dataclass, replace
-
-from pareto_monoped.geometry.parts import Material
-
-# Densities as in the authors' published part data; rubber: natural rubber of 60 Shore A, engineering handbooks.
-ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2710.0, colour=(0.78, 0.80, 0.83))
-PLASTIC = Material(name="printed plastic", density_kg_per_m3=1430.0, colour=(0.92, 0.50, 0.13))
-STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.45, 0.46, 0.48))
-RUBBER = Material(name="rubber", density_kg_per_m3=1150.0, colour=(0.22, 0.23, 0.25))
 
 CHAIN_SAFETY = 2.0  # our own choice: breaking load over the pull of the largest knee torque of the motor
 

@@ -7,7 +7,8 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.leg.common import sprocket_prisms
-from pareto_monoped.leg.dimensions import ALUMINIUM, STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.materials import MATERIALS
 
 _RADIUS = 15.0  # of the couplings, 3 mm of metal outside their screws
 _COVER = 6.75  # radius of the couplings' bore: covers the outer ring of the bearing in the output flange, 15 mm wide
@@ -34,7 +35,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="hip_coupling",
             role=Role.COUPLING,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=_RADIUS), z0_mm=coupler_face, z1_mm=-face, holes=coupling_holes),),
             note="between hip output and inner plate; friction joint, dry",
@@ -47,7 +48,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=-half_gap - coupler_face,
             room_mm=d.coupler_thread_mm,
             direction=-1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             grade="12.9",
@@ -61,7 +62,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=d.plate_mm,
             room_mm=d.mount_thread_mm,
             direction=1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.mount_holes,
             pitch_radius_mm=d.mount_pitch_radius_mm,
             grade="12.9",
@@ -70,7 +71,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="drive_sprocket",
             role=Role.SPROCKET,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="machined",
             prisms=sprocket_prisms(d),
             group=Group.KNEE_DRIVE,
@@ -79,7 +80,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="drive_coupling",
             role=Role.COUPLING,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -100,7 +101,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=drive_face + half_tooth - d.sprocket_recess_mm,
             room_mm=d.coupler_thread_mm,
             direction=1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             group=Group.KNEE_DRIVE,

@@ -16,8 +16,9 @@ from pareto_monoped.leg.common import (
     sprocket_prisms,
     windows_between,
 )
-from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, RUBBER, STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions
 from pareto_monoped.leg.outlines import rounded
+from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm.
 _AXLE_BOLT_PITCH = 5.5
@@ -49,7 +50,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         Part(
             name="shank_plate",
             role=Role.PLATE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="laser cut",
             prisms=(
                 Prism(
@@ -80,7 +81,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         Part(
             name="shank_core",
             role=Role.CORE,
-            material=PLASTIC,
+            material=MATERIALS.printed_plastic,
             process="3D printed",
             prisms=(
                 Prism(
@@ -101,7 +102,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Pa
         Part(
             name="foot_block",
             role=Role.BRACKET,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -124,7 +125,7 @@ def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part
     return Part(
         name="foot",
         role=Role.FOOT,
-        material=RUBBER,
+        material=MATERIALS.rubber,
         process="moulded",
         prisms=(),
         balls=(
@@ -168,7 +169,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_axle",
             role=Role.SHAFT,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 disc(_NECK, -half_tooth, half_tooth),
@@ -181,7 +182,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_axle_cap",
             role=Role.SHAFT,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
@@ -192,7 +193,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_spacer",
             role=Role.SPACER,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -208,7 +209,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_sprocket",
             role=Role.SPROCKET,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="machined",
             prisms=sprocket_prisms(d),
             note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
@@ -221,7 +222,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=2.0 * half_tooth - d.sprocket_recess_mm,
             room_mm=flange - half_tooth,
             direction=1.0,
-            material=STEEL,
+            material=MATERIALS.steel,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             grade="10.9",
@@ -230,7 +231,7 @@ def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_bolt",
             role=Role.BOLT,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="bought",
             prisms=(
                 cylinder(M4.head, -face - M4.head_height, -face),

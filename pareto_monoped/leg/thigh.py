@@ -8,9 +8,10 @@ from pareto_monoped.geometry.screws import M3, M25, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.common import BRIDGE, bolts_at, holes_at, sleeve_bolt, sleeve_hole, windows_between
-from pareto_monoped.leg.dimensions import ALUMINIUM, DEFAULT, PLASTIC, STEEL, LegDimensions
+from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions
 from pareto_monoped.leg.drive import hip_joints
 from pareto_monoped.leg.outlines import waisted
+from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm along the thigh.
 _KNEE_END = 32.0  # core above the knee axis, clear of the sprocket's teeth
@@ -74,7 +75,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="thigh_plate_inner",
             role=Role.PLATE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="laser cut",
             prisms=(
                 Prism(
@@ -89,7 +90,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="thigh_plate_outer",
             role=Role.PLATE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="laser cut",
             prisms=(
                 Prism(
@@ -109,7 +110,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="thigh_core",
             role=Role.CORE,
-            material=PLASTIC,
+            material=MATERIALS.printed_plastic,
             process="3D printed",
             prisms=(
                 Prism(
@@ -128,7 +129,7 @@ def _sandwich(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="thigh_standoff",
             role=Role.SPACER,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -155,7 +156,7 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             name="knee_bearing_cup",
             role=Role.HOUSING,
             visibility=Visibility.INSIDE,
-            material=ALUMINIUM,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=(
                 Prism(
@@ -181,7 +182,7 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 grip_mm=d.plate_mm,
                 room_mm=_CUP_THREAD,
                 direction=direction,
-                material=STEEL,
+                material=MATERIALS.steel,
                 count=4,
                 pitch_radius_mm=pitch,
                 phase_rad=np.pi / 4,
@@ -193,7 +194,7 @@ def _knee_seats(length: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_bearing",
             role=Role.BEARING,
-            material=STEEL,
+            material=MATERIALS.steel,
             process="bought",
             prisms=(
                 Prism(

@@ -16,7 +16,7 @@ MOTOR = load_motor("VT8020")
 def broken(family, sun, planet, module, planets, settings=None):
     settings = settings or ActuatorSettings()
     gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
-    width = face_width_mm(gears, MOTOR, settings.parts.gears)
+    width = face_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, family, gears, width, settings)
     names, flags = violations(
         Case(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family=family, settings=settings)
@@ -86,7 +86,7 @@ def test_arrays_and_single_sets_agree():
     sun, planet = np.array([18, 30, 19, 23]), np.array([36, 30, 38, 23])
     module, planets = np.array([0.5, 0.5, 0.5, 0.5]), np.array([3, 5, 3, 4])
     gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
-    width = face_width_mm(gears, MOTOR, settings.parts.gears)
+    width = face_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, "ISSPG", gears, width, settings)
     names, flags = violations(
         Case(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family="ISSPG", settings=settings)

@@ -29,5 +29,5 @@ def test_impossible_settings_are_refused(changes, words):
 
 def test_part_data_is_complete_and_checked():
     parts = default_parts()
-    assert parts.gears.allowable_stress_mpa == 400.0
-    assert parts.density.aluminium_kg_per_m3 == 2710.0
+    assert parts.gears.factor_of_safety == 1.2
+    assert parts.carrier.pin_diameter_mm == 6.0

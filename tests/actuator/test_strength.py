@@ -4,11 +4,11 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.settings import default_parts
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm, lewis_form_factor, velocity_factor
 
 MOTOR = load_motor("VT8020")
-DATA = default_parts().gears
+SETTINGS = ActuatorSettings()
 
 
 def gears(sun=18, planet=36, module=0.5, planets=3):
@@ -18,7 +18,7 @@ def gears(sun=18, planet=36, module=0.5, planets=3):
 def test_nominal_width_by_hand():
     # 11 N m on 9 mm through three planets: 814.8 N. Pitch point against the carrier: 502.65 rad/s x 5/6 x 4.5 mm =
     # 1.885 m/s, Barth 1.309. Stress 400 / 1.2 = 333.3 MPa, Y(18) = 0.309: 20.71 mm.
-    assert face_width_mm(gears(), MOTOR, DATA) == pytest.approx(20.71, abs=0.01)
+    assert face_width_mm(gears(), MOTOR, SETTINGS) == pytest.approx(20.71, abs=0.01)
 
 
 def test_form_factor_is_the_table_and_between():
@@ -39,8 +39,8 @@ module = st.sampled_from([0.5, 0.6, 0.8, 1.0])
 
 @given(sun=sun, planet=planet, module=module, planets=st.integers(2, 6))
 def test_more_planets_never_need_wider_gears(sun, planet, module, planets):
-    few = face_width_mm(gears(sun, planet, module, planets), MOTOR, DATA)
-    more = face_width_mm(gears(sun, planet, module, planets + 1), MOTOR, DATA)
+    few = face_width_mm(gears(sun, planet, module, planets), MOTOR, SETTINGS)
+    more = face_width_mm(gears(sun, planet, module, planets + 1), MOTOR, SETTINGS)
     assert more <= few
     assert more >= 6.0 * module
 
@@ -49,13 +49,13 @@ def test_more_planets_never_need_wider_gears(sun, planet, module, planets):
 def test_lewis_stress_at_that_width_is_the_allowable(sun, planet, module, planets):
     """Checked backwards: the stress of the returned width, from force, speed and form factor."""
     one = gears(sun, planet, module, planets)
-    width = float(face_width_mm(one, MOTOR, DATA))
+    width = float(face_width_mm(one, MOTOR, SETTINGS))
     radius = 0.5e-3 * module * sun
-    force = DATA.service_factor * MOTOR.peak_torque_n_m / radius / planets
+    force = SETTINGS.parts.gears.service_factor * MOTOR.peak_torque_n_m / radius / planets
     carrier = MOTOR.no_load_speed_rad_per_s / one.ratio
     speed = (MOTOR.no_load_speed_rad_per_s - carrier) * radius
     stress = force * (1.0 + speed / 6.1) / (width * module * lewis_form_factor(sun))
-    limit = DATA.allowable_stress_mpa / DATA.factor_of_safety
+    limit = SETTINGS.materials.gear_steel.allowable_stress_mpa / SETTINGS.parts.gears.factor_of_safety
     assert stress <= limit * (1.0 + 1e-12)
     if width > 6.0 * module * (1.0 + 1e-9):
         assert stress == pytest.approx(limit, rel=1e-9)

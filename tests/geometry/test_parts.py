@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.geometry.parts import MassProperties, Material, Part, Prism, total
+from pareto_monoped.geometry.parts import MassProperties, Part, Prism, total
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern, rectangle
+from pareto_monoped.materials import Material
 
 ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2710.0, colour=(0.8, 0.8, 0.8))
 sizes = st.floats(min_value=1.0, max_value=60.0)

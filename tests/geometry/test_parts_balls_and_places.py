@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.geometry.parts import Ball, Material, Part, Prism, total
+from pareto_monoped.geometry.parts import Ball, Part, Prism, total
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
+from pareto_monoped.materials import Material
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 

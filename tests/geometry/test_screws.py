@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DesignError
-from pareto_monoped.geometry.parts import Material
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M5, M25, screw_for, screw_length_mm, screw_part
+from pareto_monoped.materials import Material
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 

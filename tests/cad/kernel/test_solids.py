@@ -10,10 +10,11 @@ import trimesh
 from pareto_monoped.cad.kernel.solids import solid_of, solids_in
 from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.cad.shape.stacks import regrouped
-from pareto_monoped.geometry.parts import Material, Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
 from pareto_monoped.leg.links import foot_part
+from pareto_monoped.materials import Material
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 
