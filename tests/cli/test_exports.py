@@ -6,15 +6,11 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.cli import exports, main
-from pareto_monoped.errors import DatabaseError
-from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.cli import main
 
 
 def run(capsys, *words):
@@ -102,17 +98,3 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     assert again.stdout == f"{expected - len(made)} made, {len(made)} there already\n"
     assert len(list(folder.iterdir())) == expected
     assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
-
-
-def test_motor_and_calibration_come_from_the_study_not_from_its_files():
-    motor, calibration = load_motor("U8"), load_calibration("ideal")
-    stored = json.loads(json.dumps({"motor": asdict(motor), "calibration": asdict(calibration)}))
-    assert exports._contents(stored, Path("x.db")) == (motor, calibration)
-    for damaged in (
-        {},
-        {"motor": 3},
-        {**stored, "calibration": {"name": "x"}},
-        {**stored, "motor": {"kv_rpm_per_v": 0}},
-    ):
-        with pytest.raises(DatabaseError, match=r"^study database 'x\.db': "):
-            exports._contents(damaged, Path("x.db"))
