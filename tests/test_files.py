@@ -1,7 +1,9 @@
+import os
+
 import pytest
 
 from pareto_monoped.errors import OutputError
-from pareto_monoped.files import replacing, write_bytes, write_text
+from pareto_monoped.files import current_umask, replacing, write_bytes, write_text
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -41,3 +43,12 @@ def test_a_folder_in_the_way_is_one_clear_line_and_leaves_nothing(tmp_path):
     with pytest.raises(OutputError, match="name of a file"):
         write_text(tmp_path / "a.txt", "")
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_the_permissions_withheld_are_read_without_changing_them():
+    before = os.umask(0o027)
+    try:
+        assert current_umask() == 0o027
+        assert current_umask() == 0o027
+    finally:
+        os.umask(before)

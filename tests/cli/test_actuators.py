@@ -105,3 +105,57 @@ def test_wrong_input_is_one_line_and_code_2(capsys, arguments, words):
     assert output.err.count("\n") == 1
     for word in words:
         assert word in output.err
+
+
+def test_units_and_rounding_of_the_printed_map(capsys):
+    """One line against the values of JSON: mass in kg to the gram, efficiency in percent, module and face in mm."""
+    row = next(row for row in json.loads(run(capsys, "--json")[1].out) if row["ratio_low"] == 6.0)
+    (line,) = [line for line in run(capsys)[1].out.splitlines() if line.split()[:1] == ["6.0"]]
+    assert line.split() == [
+        "6.0",
+        f"{row['ratio']:.3f}",
+        "ISSPG",
+        "18/36/90",
+        f"{row['module_mm']:g}",
+        "3",
+        f"{row['face_width_mm']:.1f}",
+        f"{row['mass_kg']:.3f}",
+        f"{row['peak_torque_n_m']:.1f}",
+        f"{100 * row['efficiency']:.1f}",
+    ]
+
+
+def test_units_and_rounding_of_the_printed_parts(capsys):
+    """Masses in grams, shares of the actuator in percent, inertias in kg mm2."""
+    known = json.loads(run(capsys, "--ratio", "6.0", "--json")[1].out)
+    printed = run(capsys, "--ratio", "6.0")[1].out
+    part = known["parts"][0]
+    (line,) = [line for line in printed.splitlines() if line.split()[:1] == [part["name"]]]
+    assert line.split()[-4:] == [
+        f"{part['count']}",
+        f"{part['mass_kg'] * 1e3:.1f}",
+        f"{part['mass_kg'] / known['mass_kg'] * 100:.1f}",
+        f"{part['axial_inertia_kg_m2'] * 1e6:.2f}",
+    ]
+    assert f"{known['peak_torque_n_m']:.2f} N m" in printed
+    assert f"{known['reflected_inertia_kg_m2']:.5f} kg m2" in printed
+    assert f"{known['contact_ratio_sun']:.2f} sun, {known['contact_ratio_ring']:.2f} ring" in printed
+    assert f"Runner-up: {known['runner_up']['type']} {known['runner_up']['gears']}" in printed
+    (other,) = (family for family in known["families"] if family != known["type"])
+    assert f"Best {other}: {known['families'][other]['gears']}" in printed
+    for name in known["binding"]:
+        assert f"  {name}: " in printed
+
+
+def test_one_ratio_as_csv_is_one_row(capsys, tmp_path):
+    path = tmp_path / "one.csv"
+    run(capsys, "--ratio", "6.0", "--csv", str(path))
+    with path.open(newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    assert (row["ratio_low"], row["sun_teeth"], row["planet_teeth"]) == ("6.0", "18", "36")
+
+
+def test_bearings_by_regression_change_masses(capsys):
+    listed = json.loads(run(capsys, "--json")[1].out)
+    regressed = json.loads(run(capsys, "--json", "--bearings", "regression")[1].out)
+    assert any(a["mass_kg"] != b["mass_kg"] for a, b in zip(listed, regressed, strict=False))

@@ -7,6 +7,7 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.design import NAMES
+from pareto_monoped.study.reader import StudyData
 from tests.study.support import made_database
 
 
@@ -81,3 +82,42 @@ def test_a_bad_selector_gets_one_line(db, capsys, selector, word):
     assert said.out == ""
     assert said.err.count("\n") == 1
     assert word in said.err
+
+
+def test_the_printed_front_has_named_units_and_fixed_decimals(db, capsys):
+    assert cli(["front", db, "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)[0]
+    assert cli(["front", db]) == 0
+    heading, line, *_ = capsys.readouterr().out.splitlines()
+    assert heading.split() == ["trial", "height", "m", "energy", "J", "l1", "l2", "g_k", "g_h", "K", "C", "T"]
+    assert line.split() == ["4", "0.7000", "8.000", *(f"{first[name]:.3f}" for name in NAMES)]
+
+
+def test_the_printed_pick_has_six_digits(db, capsys):
+    assert cli(["pick", db, "--trial", "4", "--json"]) == 0
+    picked = json.loads(capsys.readouterr().out)
+    assert cli(["pick", db, "--trial", "4"]) == 0
+    why, *lines = capsys.readouterr().out.splitlines()
+    assert why == picked["why"]
+    assert [line.split() for line in lines] == [
+        [name, f"{picked[name]:.6g}"] for name in ("height_m", "energy_j", *NAMES)
+    ]
+
+
+def test_weights_are_height_then_energy(db, capsys):
+    assert cli(["pick", db, "--weights", "0,1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["trial"] == 4
+
+
+def test_all_keeps_designs_that_failed_their_audit(db, capsys, monkeypatch):
+    asked = []
+    front = StudyData.front
+    monkeypatch.setattr(
+        StudyData,
+        "front",
+        lambda data, include_ill_conditioned=False: asked.append(include_ill_conditioned) or front(data),
+    )
+    assert cli(["front", db]) == 0
+    assert cli(["front", db, "--all"]) == 0
+    assert cli(["pick", db, "--knee"]) == 0
+    assert asked == [False, True, False]

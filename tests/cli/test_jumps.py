@@ -1,12 +1,14 @@
 import csv
 import json
+import math
 
 import mujoco
 import numpy as np
 import pytest
 
-from pareto_monoped.cli import main
+from pareto_monoped.cli import jumps, main
 from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.jump.table1 import Result, Row, Spread
 
 
 def run(capsys, *arguments):
@@ -118,3 +120,56 @@ def test_tables_fit_eighty_columns(capsys):
         _, out, _ = run(capsys, *arguments)
         assert max(len(line) for line in out.splitlines()) <= 80
         assert np.all([name in out for name in NAMES]) or arguments == ("table1",)
+
+
+@pytest.mark.parametrize("text", ["thigh_length_m=0.3", "thigh_length_m=0.5", "damping_n_s_per_m=0"])
+def test_a_value_on_a_bound_is_within_it(capsys, text):
+    assert run(capsys, "simulate", "--set", text)[2] == ""
+
+
+def test_the_named_motor_and_calibration_are_used(capsys):
+    default, other = (
+        json.loads(run(capsys, "simulate", "--json", *more)[1])
+        for more in ((), ("--motor", "U8", "--calibration", "ideal"))
+    )
+    assert (default["motor"], default["calibration"]) == ("VT8020", "reference-1")
+    assert (other["motor"], other["calibration"]) == ("U8", "ideal-1")
+    assert other["height_m"] != default["height_m"]
+
+
+def test_measures_are_printed_with_six_digits(capsys):
+    report = json.loads(run(capsys, "simulate", "--case", "C", "--json")[1])
+    words = [line.split() for line in run(capsys, "simulate", "--case", "C")[1].splitlines()]
+    printed = dict(pair for pair in words if len(pair) == 2)
+    assert printed["height_m"] == f"{report['height_m']:.6g}"
+    assert printed["joule_heat_j"] == f"{report['joule_heat_j']:.6g}"
+    assert printed["thigh_length_m"] == "0.49"
+
+
+def test_an_infinite_change_in_an_audit_is_null_in_json():
+    assert (jumps._plain(math.inf), jumps._plain(math.nan), jumps._plain(0.25)) == (None, None, 0.25)
+
+
+def test_the_printed_table1_has_heights_above_energies_and_says_which_copies_jump(capsys):
+    spread = Spread(
+        height_m=0.8164,
+        energy_j=31.456,
+        height_p05_m=0.7111,
+        height_p95_m=0.9222,
+        energy_p05_j=30.111,
+        energy_p95_j=32.222,
+        jumped_share=0.95,
+    )
+    row = Row(
+        case="A",
+        published=Result(height_m=0.887, energy_j=31.44),
+        paper=spread,
+        reference=Result(height_m=1.0771, energy_j=54.314),
+    )
+    jumps._print_table1((row,))
+    out = capsys.readouterr().out
+    lines = [line for line in out.splitlines() if line.startswith("│")]
+    heights, energies = ([cell.strip() for cell in line.split("│")[1:-1]] for line in lines)
+    assert heights == ["A", "0.887", "0.816 (0.711 to 0.922)", "1.077"]
+    assert energies == ["", "31.44", "31.46 (30.11 to 32.22)", "54.31"]
+    assert out.splitlines()[-1] == "A: 95% of its perturbed copies jump under `paper`"

@@ -61,3 +61,29 @@ def test_a_closed_pipe_is_no_error():
     )
     assert result.stderr == ""
     assert result.stdout.startswith("Usage: pareto-monoped")
+
+
+def test_commands_are_listed_in_the_order_of_use(capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["--help"])
+    assert caught.value.code == 0
+    listed = [line.split()[0] for line in capsys.readouterr().out.split("Commands:\n")[1].splitlines()]
+    assert listed == list(cli._COMMANDS)
+    assert listed[0] == "pareto"
+
+
+@pytest.mark.parametrize("command", sorted(cli._COMMANDS))
+def test_help_fits_80_columns(capsys, monkeypatch, command):
+    monkeypatch.setenv("COLUMNS", "120")
+    with pytest.raises(SystemExit) as caught:
+        cli.main([command, "--help"])
+    assert caught.value.code == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+
+
+def test_a_usage_error_points_to_the_help_of_its_command(capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["pick", "x.db", "--nonsense"])
+    assert caught.value.code == 2
+    assert "(see 'pareto-monoped pick --help')" in capsys.readouterr().err

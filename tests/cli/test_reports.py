@@ -19,3 +19,10 @@ def test_report_writes_one_page_and_figures(db, tmp_path):  # noqa: F811
 def test_report_without_a_database_or_an_output_is_a_usage_error(arguments):
     result = CliRunner().invoke(report, arguments)
     assert result.exit_code == 2
+
+
+def test_figures_alone_write_no_page(db, tmp_path):  # noqa: F811
+    result = CliRunner().invoke(report, [str(db), "--figures", str(tmp_path / "figures")])
+    assert result.exit_code == 0, result.output
+    assert "front.svg" in result.stderr
+    assert list(tmp_path.glob("*.html")) == []

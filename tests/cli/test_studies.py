@@ -1,10 +1,15 @@
 """``run``, ``resume`` and ``status`` as a user types them."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from pareto_monoped.cli import _run as cli
+from pareto_monoped.cli.studies import _described
+from pareto_monoped.study.loop import Progress
+from pareto_monoped.study.run import RunSummary
 
 STUDY = 'name = "s"\nevaluations = 40\naudit = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
 
@@ -97,3 +102,90 @@ def test_on_a_terminal_progress_is_a_bar(study, monkeypatch):
     os.close(ours)
     assert "40/40" in shown
     assert "━" in shown
+
+
+FACTS = {
+    "name": "s",
+    "motor": "VT8020",
+    "calibration": "reference-1",
+    "algorithm": "nsga2",
+    "seed": 3,
+    "free": ["knee_ratio", "hip_ratio"],
+    "state": "finished",
+    "process": None,
+    "stop_reason": "plateau",
+    "evaluations": 30,
+    "budget": 40,
+    "feasible": 20,
+    "infeasible": 7,
+    "failed": 3,
+    "wall_time_s": 12.34,
+    "evaluations_per_second": 2.43,
+    "front": 9,
+    "ill_conditioned": 1,
+    "hypervolume": 12.34567,
+    "reference_point": {"height_m": 0.55, "energy_j": 100.0},
+    "least_energy_at_0_8_m_j": 23.456,
+    "hash": "0123456789abcdef0123",
+    "settings": {"variables": dict.fromkeys("abcdefg"), "constraints": {"min_height_m": 0.6}},
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, ("state", "finished (the hypervolume has stopped growing)")),
+        ({"state": "running", "process": 77}, ("state", "running (process 77)")),
+        ({"state": "unfinished", "stop_reason": "interrupted"}, ("state", "unfinished")),
+        ({}, ("free variables", "2 of 7")),
+        ({}, ("least height", "0.6 m")),
+        ({}, ("evaluations", "30 of 40")),
+        ({}, ("feasible", "20 (7 infeasible, 3 failed)")),
+        ({}, ("front", "9 designs (1 ill-conditioned left out)")),
+        ({}, ("hypervolume", "12.3457 m J above (0.55 m, 100 J)")),
+        ({}, ("least energy at 0.8 m", "23.46 J")),
+        ({"least_energy_at_0_8_m_j": None}, ("least energy at 0.8 m", "not reached")),
+        ({}, ("time", "12.3 s, 2 designs/s")),
+        ({"evaluations_per_second": None}, ("time", "12.3 s")),
+        ({}, ("hash", "0123456789abcdef")),
+    ],
+)
+def test_status_prints_each_fact_with_its_unit(monkeypatch, capsys, changes, words):
+    monkeypatch.setattr("pareto_monoped.study.status.status", lambda db: FACTS | changes)
+    assert cli(["status", "s.db"]) == 0
+    lines = [(line[:22].strip(), line[23:]) for line in capsys.readouterr().out.splitlines()]
+    assert words in lines
+
+
+SUMMARY = RunSummary(
+    db=Path("s.db"),
+    evaluations=40,
+    new_evaluations=20,
+    front_size=9,
+    ill_conditioned=0,
+    hypervolume=12.34567,
+    seconds=3.21,
+    stop_reason="budget",
+)
+
+
+@pytest.mark.parametrize("command", [["run", "{study}"], ["resume", "s.db"]])
+def test_an_interrupted_run_ends_with_code_130_and_says_how_to_continue(study, monkeypatch, capsys, command):
+    summary = replace(SUMMARY, stop_reason="interrupted", ill_conditioned=2)
+    given = {}
+    name = f"pareto_monoped.study.run.{command[0]}"
+    monkeypatch.setattr(name, lambda *_, **options: given.update(options) or summary)
+    words = [word.format(study=study) for word in command]
+    assert cli([*words, "--evaluations", "40", "--workers", "3"]) == 130
+    assert (given["evaluations"], given["workers"]) == (40, 3)
+    said = capsys.readouterr()
+    assert said.out == "front: 9 designs, hypervolume 12.3457 m J, 2 ill-conditioned left out\n"
+    assert said.err == "s.db: 40 evaluations (20 new, 3.2 s), interrupted; continue it with 'resume'\n"
+
+
+def test_progress_gives_the_time_left_in_minutes_and_seconds():
+    progress = Progress(
+        evaluations=20, budget=40, per_second=12.6, seconds_left=125.4, hypervolume=1.234, least_energy_j=None
+    )
+    assert _described(progress) == "20/40, 13/s, 2:05 left, hypervolume 1.23, 0.8 m not reached"
+    assert _described(replace(progress, least_energy_j=9.876)).endswith("9.88 J at 0.8 m")
