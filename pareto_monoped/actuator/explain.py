@@ -7,6 +7,7 @@ from typing import Any
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry
 from pareto_monoped.actuator.rules import CONSTRAINTS
+from pareto_monoped.actuator.settings import ConstraintName
 from pareto_monoped.geometry.parts import Part
 
 
@@ -21,7 +22,7 @@ class Gap:
 
     ratio_low: float
     ratio_high: float
-    in_the_way: Mapping[Family, tuple[str, ...]]
+    in_the_way: Mapping[Family, tuple[ConstraintName, ...]]
 
 
 def summary(entry: MapEntry) -> dict[str, Any]:

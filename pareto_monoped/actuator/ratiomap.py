@@ -10,7 +10,7 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.errors import DesignError
 
 RATIO_LOW = 4
@@ -41,7 +41,7 @@ class FamilyResult:
 
     best: Candidate | None
     runner_up: Candidate | None
-    in_the_way: tuple[str, ...]
+    in_the_way: tuple[ConstraintName, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,12 +66,12 @@ class MapEntry:
         return self.ratio_low + RATIO_STEP
 
     @property
-    def binding(self) -> tuple[str, ...]:
+    def binding(self) -> tuple[ConstraintName, ...]:
         """The constraints that alone keep out a lighter set of the chosen family."""
         return () if self.actuator is None else self.families[self.actuator.family].in_the_way
 
     @property
-    def forbidden_by(self) -> Mapping[Family, tuple[str, ...]]:
+    def forbidden_by(self) -> Mapping[Family, tuple[ConstraintName, ...]]:
         """For each family without a gearbox here, the constraints in the way."""
         return {name: found.in_the_way for name, found in self.families.items() if found.best is None}
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.shapes import Numbers
 
@@ -97,7 +97,7 @@ def _bearing_room(case: Case) -> Numbers:
     return case.at.r_ring - case.settings.parts.case.ring_lip_mm - case.at.r_seat
 
 
-CONSTRAINTS: Mapping[str, Constraint] = {
+CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "meshing": Constraint(
         says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh",
         source="paper, III (eq. 3)",
@@ -172,7 +172,7 @@ CONSTRAINTS: Mapping[str, Constraint] = {
 ranges of module and planets in V, which are enumerated."""
 
 
-def violations(case: Case) -> tuple[tuple[str, ...], NDArray[np.bool_]]:
+def violations(case: Case) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
     """Which of the constraints that are on each gear set breaks.
 
     Returns:

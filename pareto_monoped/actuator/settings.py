@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib import resources
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
@@ -13,6 +13,24 @@ from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
+
+ConstraintName = Literal[
+    "meshing",
+    "no_interference",
+    "teeth_min",
+    "gearbox_diameter",
+    "ring_root",
+    "sun_rim",
+    "planet_rim",
+    "ring_rim",
+    "ring_interference",
+    "contact_ratio",
+    "within_stator",
+    "bearing",
+    "bearing_room",
+]
+"""Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings."""
+CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)
 
 ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
 ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
@@ -158,12 +176,10 @@ class ActuatorSettings:
     materials: Materials = MATERIALS
 
     def __post_init__(self) -> None:
-        from pareto_monoped.actuator.rules import CONSTRAINTS  # here, because rules look at settings
-
         for name in sorted(self.constraints_off):
-            if name not in CONSTRAINTS:
+            if name not in CONSTRAINT_NAMES:
                 raise InputError(
-                    f"constraints_off = {name!r}: must be one of {', '.join(CONSTRAINTS)}; correct the name"
+                    f"constraints_off = {name!r}: must be one of {', '.join(CONSTRAINT_NAMES)}; correct the name"
                 )
         if not self.modules_mm or min(self.modules_mm) <= 0.0:
             raise InputError(f"modules_mm = {self.modules_mm!r}: must be one or more positive numbers; correct it")

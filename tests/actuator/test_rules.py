@@ -7,7 +7,7 @@ from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import layout
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.rules import CONSTRAINTS, Case, violations
-from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.settings import CONSTRAINT_NAMES, ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 
 MOTOR = load_motor("VT8020")
@@ -94,3 +94,7 @@ def test_arrays_and_single_sets_agree():
     for k in range(4):
         single = broken("ISSPG", int(sun[k]), int(planet[k]), float(module[k]), int(planets[k]))
         assert {name for name, flag in zip(names, flags[:, k], strict=True) if flag} == single
+
+
+def test_every_constraint_has_its_rule_and_no_rule_is_without_a_name():
+    assert tuple(CONSTRAINTS) == CONSTRAINT_NAMES
