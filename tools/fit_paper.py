@@ -1,7 +1,7 @@
 """Fit the calibration ``paper`` to Table I and write its file.
 
-Three numbers are fitted; all else in the calibration is data, or the paper's own words. The error is taken on medians
-over perturbations of 1e-6, since single jumps of the literal model are decided by rounding.
+Three numbers are fitted; everything else in the calibration is data or follows the paper's text. Errors are those of
+medians over perturbations of 1e-6, because single jumps of the literal model are decided by rounding.
 
     python tools/fit_paper.py [--evaluations N] [--write]
 """
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import pareto_monoped
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import PAPER_CASES, PAPER_MOTOR
 from pareto_monoped.files import write_text
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.table1 import Spread, paper_spreads
@@ -33,17 +33,19 @@ FITTED: dict[str, tuple[float, float, int]] = {
     "foot_mass_kg": (0.02, 0.6, 3),
 }
 PUBLISHED: Floats = np.array([[case.height_m, case.energy_j] for case in PAPER_CASES.values()])
+_PARTS = ("mass", "joints", "drive", "controller", "contact")
+"""Parts of a calibration that may hold a fitted number."""
 FIT_PERTURBATIONS = 15
-"""Fewer than the 100 that the result is shown with, and with another seed."""
+"""Copies per case during the fit: fewer than ``table1.PERTURBATIONS``, and drawn with another seed."""
 LINK_SCALES = (0.99, 1.0, 1.01)
-"""Factors on the links' mass that a fit must bear."""
+"""Factors on the mass of the links; a fit counts with the worst of them."""
 
 
 def with_numbers(calibration: Calibration, numbers: Floats) -> Calibration:
-    """``calibration`` with the fitted numbers, rounded to the digits that are kept."""
+    """``calibration`` with the fitted numbers replaced by ``numbers``, rounded to the digits that are kept."""
     values = {key: round(float(x), digits) for x, (key, (_, _, digits)) in zip(numbers, FITTED.items(), strict=True)}
     parts = {}
-    for name in ("mass", "joints", "drive", "controller", "contact"):
+    for name in _PARTS:
         record = getattr(calibration, name)
         chosen = {key: value for key, value in values.items() if hasattr(record, key)}
         parts[name] = replace(record, **chosen)
@@ -51,18 +53,19 @@ def with_numbers(calibration: Calibration, numbers: Floats) -> Calibration:
 
 
 def errors(spreads: tuple[Spread, ...]) -> Floats:
-    """Relative errors of the eight medians, shape (4, 2): height and energy of each case."""
+    """Relative errors of the eight medians, shape (4, 2): height and energy per case; 1 for a case that never jumps."""
     medians = np.array([[spread.height_m, spread.energy_j] for spread in spreads])
     return np.nan_to_num(medians / PUBLISHED - 1.0, nan=1.0)
 
 
 def objective(start: Calibration) -> Callable[[Floats], float]:
-    """The worst of the eight errors, with a fifth of the mean so that the others matter too, and the share of no-jumps.
+    """What the fit minimises, as a function of the fitted numbers.
 
-    It is taken over links a little lighter and heavier, too: the literal model has islands a gram wide where a foot
-    that chatters never leaves the floor, and a fit must not sit on one or beside one.
+    It is the worst of the eight errors, plus a fifth of their mean so that the other errors matter too, plus the share
+    of copies that do not jump. The worst over ``LINK_SCALES`` counts: the literal model has islands a gram wide where a
+    chattering foot never leaves the floor, and a fit must not lie on or beside one.
     """
-    actuators = map_for("VT8020")
+    actuators = map_for(PAPER_MOTOR)
 
     def value(numbers: Floats) -> float:
         found = []
@@ -79,7 +82,7 @@ def objective(start: Calibration) -> Callable[[Floats], float]:
 
 
 def fit(start: Calibration, evaluations: int) -> Floats:
-    """The fitted numbers, by CMA-ES within bounds, from the numbers the file has now."""
+    """The fitted numbers, found by CMA-ES within bounds, starting from the current numbers of the file."""
     lower, upper = (np.array([bounds[k] for bounds in FITTED.values()]) for k in (0, 1))
     now = np.array([_current(start, key) for key in FITTED])
     strategy = cma.CMAEvolutionStrategy(
@@ -96,13 +99,7 @@ def fit(start: Calibration, evaluations: int) -> Floats:
 
 
 def _current(calibration: Calibration, key: str) -> float:
-    for record in (
-        calibration.mass,
-        calibration.joints,
-        calibration.drive,
-        calibration.controller,
-        calibration.contact,
-    ):
+    for record in (getattr(calibration, name) for name in _PARTS):
         if hasattr(record, key):
             value = getattr(record, key)
             return 0.0 if value is None else float(value)
@@ -110,18 +107,18 @@ def _current(calibration: Calibration, key: str) -> float:
 
 
 def write(calibration: Calibration, path: Path) -> None:
-    """Put the fitted numbers into the calibration's file; comments and all else stay."""
+    """Write the fitted numbers into the calibration's file and leave everything else as it is, comments included."""
     text = path.read_text(encoding="utf-8")
     for key in FITTED:
         text, count = re.subn(rf"(?m)^{key} = .*?(\s+#|$)", rf"{key} = {_current(calibration, key)!r}\1", text)
         if count != 1:
-            raise SystemExit(f"{path}: {key} stands there {count} times, must be once")
+            raise SystemExit(f"{path}: {key} is set {count} times; it must be set exactly once")
     write_text(path, text)
 
 
 def show(calibration: Calibration) -> None:
-    """Print fitted numbers, medians, residuals and spread."""
-    spreads = paper_spreads(map_for("VT8020"), calibration)
+    """Print the fitted numbers and, per case, medians, errors and percentiles."""
+    spreads = paper_spreads(map_for(PAPER_MOTOR), calibration)
     for key in FITTED:
         print(f"{key} = {_current(calibration, key)!r}")
     print("| case | height m | paper | off | 5 to 95 % | energy J | paper | off | 5 to 95 % |")
@@ -141,10 +138,10 @@ def show(calibration: Calibration) -> None:
 
 
 def main() -> None:
-    """Fit, show, and with ``--write`` keep."""
+    """Fit and print the result; write it to the file if ``--write`` is given."""
     parser = argparse.ArgumentParser(description="Fit the calibration 'paper' to Table I.")
-    parser.add_argument("--evaluations", type=int, default=400, help="0: only show what the file has now")
-    parser.add_argument("--write", action="store_true", help="put the numbers into data/calibrations/paper.toml")
+    parser.add_argument("--evaluations", type=int, default=400, help="0 only shows the numbers of the file")
+    parser.add_argument("--write", action="store_true", help="write the numbers into data/calibrations/paper.toml")
     arguments = parser.parse_args()
     calibration = load_calibration("paper")
     if arguments.evaluations:

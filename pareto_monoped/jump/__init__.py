@@ -1,1 +1,1 @@
-"""Stage 2, physics: a robot becomes a MuJoCo model, jumps under the paper's controller, and is measured."""
+"""Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured."""

@@ -1,7 +1,7 @@
-"""Calibrations: named, versioned records of everything the jump model leaves open once the robot is given.
+"""Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
-Three ship with the package (``data/calibrations``): ``reference``, well-posed and the default; ``paper``, the literal
-reading of the paper fitted to its Table I; ``ideal``, ``reference`` without losses. A user's own is read from TOML.
+Three are shipped in ``data/calibrations``: ``reference``, well-posed and the default; ``paper``, the paper read
+literally and fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may write their own.
 """
 
 from collections.abc import Mapping
@@ -23,21 +23,22 @@ Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
 _STRICT = ConfigDict(extra="forbid")
 
 DEFAULT = "reference"
-# Hundreds of times the shipped ones'; it only keeps nonsense from running for days.
+# Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndStop:
-    """Range of one joint and the rubber bumper at each end.
+    """The rubber bumpers at both ends of one joint's range.
 
-    A bumper is a spring-damper that hardens with compression, see ``SpringContact``: nothing jumps when it is met.
+    A bumper is a spring-damper that hardens with compression (see ``SpringContact``), so that force sets in smoothly.
+    Fully compressed bumpers leave the joint within the working range that the CAD keeps free (``leg.dimensions``).
 
     Attributes:
-        lower_rad, upper_rad: where the bumpers are met.
-        width_rad: compression at which the stiffness and the damping are reached.
+        lower_rad, upper_rad: angles at which the joint meets the bumpers.
+        width_rad: compression at which stiffness and damping reach their full values.
         stiffness_n_m_per_rad, damping_n_m_s_per_rad: at that compression and beyond.
-        impedance: MuJoCo's d there.
+        impedance: MuJoCo's impedance d at that compression.
     """
 
     __pydantic_config__ = _STRICT
@@ -50,7 +51,7 @@ class EndStop:
     impedance: Impedance
 
     def __post_init__(self) -> None:
-        """Refuse an empty range."""
+        """Reject an empty range."""
         if not self.lower_rad < self.upper_rad:
             raise ValueError(f"lower_rad {self.lower_rad} must be below upper_rad {self.upper_rad}")
 
@@ -61,8 +62,8 @@ class Joints:
 
     Attributes:
         damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint.
-        motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft, felt by its joint times the ratio squared.
-        hip_stop, knee_stop: end stops; None: the joint turns freely.
+        motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft; acts on the joint times the ratio squared.
+        hip_stop, knee_stop: end stops; None for a joint that turns freely.
     """
 
     __pydantic_config__ = _STRICT
@@ -76,13 +77,13 @@ class Joints:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """From motor to joint.
+    """What lies between motor and joint.
 
     Attributes:
-        mesh_losses: whether the gearbox's efficiency is applied.
+        mesh_losses: whether the efficiency of the gear meshes is applied.
         chain_efficiency: of the chain that drives the knee.
-        loss_speed_rad_per_s: speed over which load-dependent losses change their sign with the joint's.
-        voltage_limit: whether torque follows the voltage-speed line down to zero at the no-load speed.
+        loss_speed_rad_per_s: joint speed over which the load-dependent losses change sign; smooths the change.
+        voltage_limit: whether the torque limit falls along the voltage-speed line to zero at the no-load speed.
         peak_torque_scale: factor on the motors' peak torque.
     """
 
@@ -97,17 +98,17 @@ class Drive:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpringContact:
-    """The foot as a rubber spring-damper on the floor that hardens with compression.
+    """The contact of a rubber foot with the floor: a spring-damper that hardens with compression.
 
-    MuJoCo's impedance rises linearly with the compression r up to ``impedance`` d at ``width_m`` w. With u = r / w the
-    normal force of a slow compression is k w u^3 (1 - d) / (1 - d u) up to w, so that force and damping set in smoothly
-    (as in the model of Hunt and Crossley, 1975); that smoothness is what makes the jump well-posed. While it touches,
-    the constraint adds a virtual mass d u / (1 - d u) / A, with A the inverse mass of the foot's body.
+    MuJoCo's impedance rises linearly with the compression r, up to d = ``impedance`` at w = ``width_m``. With u = r / w
+    the normal force of a slow compression is k w u^3 (1 - d) / (1 - d u) up to w. Force and damping set in smoothly, as
+    in the model of Hunt and Crossley (1975), which makes the jump well-posed. While the foot touches, the constraint
+    adds a virtual mass d u / (1 - d u) / A, where A is the inverse mass of the foot's body.
 
     Attributes:
         stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond.
-        width_m: that compression.
-        impedance: MuJoCo's d there.
+        width_m: compression at which stiffness and damping reach their full values.
+        impedance: MuJoCo's impedance d at that compression.
         friction: Coulomb coefficient.
         slip_ratio: tangential over normal damping (MuJoCo's ``impratio``).
     """
@@ -125,7 +126,7 @@ class SpringContact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MujocoContact:
-    """The contact by MuJoCo's own parameters (its documentation, "Solver parameters")."""
+    """The contact of the foot, given by MuJoCo's own parameters (its documentation, "Solver parameters")."""
 
     __pydantic_config__ = _STRICT
 
@@ -140,11 +141,11 @@ class MujocoContact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGate:
-    """Torque whenever the foot touches the floor, decided at every step: the paper's words.
+    """Torque whenever the foot touches the floor, decided at every step, as the paper words it.
 
     Attributes:
-        lags: whether the contact is that of the state before the last step, as MuJoCo's contact list has it after a
-            step, or that of the current state.
+        lags: True takes the contact of the state before the last step, which is what MuJoCo's contact list holds after
+            a step; False takes the contact of the current state.
     """
 
     __pydantic_config__ = _STRICT
@@ -155,13 +156,13 @@ class ContactGate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FadeGate:
-    """Torque fades to zero as the foot rises.
+    """Torque that fades to zero as the foot rises.
 
-    With foot clearance c the torque is multiplied by 1 - s(c / length_m), s(u) = 3 u^2 - 2 u^3 between 0 and 1.
+    At a foot clearance c the torque is multiplied by 1 - s(c / length_m), with s(u) = 3 u^2 - 2 u^3 for u from 0 to 1.
 
     Attributes:
         length_m: clearance at which no torque is left.
-        latch: whether the controller stays off once the foot has risen that far.
+        latch: whether the controller stays off after the foot has risen that far.
     """
 
     __pydantic_config__ = _STRICT
@@ -173,11 +174,11 @@ class FadeGate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Controller:
-    """The open numbers of the paper's controller (section II-B).
+    """Numbers of the virtual controller that the paper's final text leaves open (section II-B).
 
     Attributes:
-        rest_length_m: l0, rest length of the virtual spring (10 m in a passage that the paper's final text lost).
-        gravity_feed_forward: factor on the term m g of F_z, with m the simulated robot's mass; 1 as in the paper.
+        rest_length_m: l0, rest length of the virtual spring; 10 m in a passage missing from the final text.
+        gravity_feed_forward: factor on the term m g of F_z, with m the simulated robot's mass; 1 in the paper.
     """
 
     __pydantic_config__ = _STRICT
@@ -188,15 +189,15 @@ class Controller:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulation:
-    """How it is integrated.
+    """Integration of the equations of motion.
 
     Attributes:
         integrator: MuJoCo's integrator.
-        timestep_s: step, and period of the controller.
+        timestep_s: step of the integrator and period of the controller.
         time_limit_s: a jump that is not over by then has failed.
         base_slides: whether the base may move in x; otherwise a vertical guide holds it.
-        work_speed: the speed that a step's work is booked with: the ``mean`` of its ends, which is what MuJoCo's step
-            turns into kinetic energy, or that at its ``start``, as the paper's sum is written.
+        work_speed: speed used for the work of a step. ``mean`` of both ends is what MuJoCo's step turns into kinetic
+            energy; ``start`` is how the paper's sum is written.
     """
 
     __pydantic_config__ = _STRICT
@@ -210,7 +211,7 @@ class Simulation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """Everything that turns a robot into a jump; a result always names the calibration it was made with."""
+    """Everything that a jump depends on besides the robot; every result names its calibration."""
 
     __pydantic_config__ = _STRICT
 
@@ -227,12 +228,12 @@ class Calibration:
 
     @property
     def label(self) -> str:
-        """Name and version, as results quote it."""
+        """Name and version, as quoted in results."""
         return f"{self.name}-{self.version}"
 
 
 def calibration_names() -> tuple[str, ...]:
-    """The calibrations that ship with the package, the default first."""
+    """Names of the calibrations shipped with the package, the default first."""
     folder = resources.files("pareto_monoped") / "data" / "calibrations"
     names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
     return (DEFAULT, *(name for name in names if name != DEFAULT))

@@ -1,6 +1,6 @@
-"""Functions compiled by numba, kept on disk where there is a place to write to.
+"""Functions compiled by numba, cached on disk where numba may write.
 
-Importing this module imports numba, so it is imported where numbers are crunched.
+Importing this module imports numba, so import it only where compiled functions are defined or called.
 """
 
 from collections.abc import Callable
@@ -12,19 +12,19 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(function: Function) -> Function:
-    """Compile for the processor's own code; other threads run on meanwhile, and a division by zero gives infinity."""
+    """Compile to machine code that releases Python's lock and in which a division by zero gives infinity."""
     return cast(Function, _kept(numba.njit, function, nogil=True))
 
 
 def c_function(signature: Any, function: Callable[..., object]) -> Any:
     """Compile a callback for C.
 
-    What is kept on disk is thrown away when the file that holds ``function`` changes, or a value that it closes over;
-    a change in another file, of a function that it calls or of a number that it reads, goes unseen.
+    The code cached on disk is used until the file of ``function`` or a value that it closes over changes. Numba does
+    not notice a change in another file, of a function that it calls or of a constant that it reads.
 
     Args:
-        signature: numba's, of result and arguments.
-        function: returns nothing and raises nothing.
+        signature: numba's signature of result and arguments.
+        function: must not return or raise anything.
     """
     return _kept(lambda **options: numba.cfunc(signature, **options), function).ctypes
 
@@ -32,5 +32,5 @@ def c_function(signature: Any, function: Callable[..., object]) -> Any:
 def _kept(compiler: Callable[..., Any], function: Callable[..., object], **options: Any) -> Any:
     try:
         return compiler(cache=True, error_model="numpy", **options)(function)
-    except RuntimeError:  # numba has no folder that it may write its cache to
+    except RuntimeError:  # numba finds no folder where it may write its cache
         return compiler(error_model="numpy", **options)(function)

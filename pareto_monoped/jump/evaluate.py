@@ -1,4 +1,4 @@
-"""Designs in, evaluations out, in order: the one door to the jump for search, report and command line."""
+"""Designs in, evaluations out, in the same order: search, report and command line jump through this module only."""
 
 from dataclasses import dataclass, fields
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2, NAMES, columns
+from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
@@ -18,13 +18,13 @@ from pareto_monoped.robot.population import RobotArrays, robot_arrays
 Floats = NDArray[np.float64]
 
 STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
-"""How a jump can end; every status but ``ok`` comes with a reason and without height and energy."""
-# A length below this has no room for the actuators' output couplings; it only keeps nonsense from the part models.
+"""How a jump can end. Every status but ``ok`` comes with a reason, and without height and energy."""
+# A shorter link has no room for the actuators' output couplings; the limit keeps nonsense out of the part models.
 _SHORTEST_LINK_M = 0.05
-_LEAST = np.array([_SHORTEST_LINK_M if name.endswith("length_m") else 0.0 for name in NAMES])
-# Of any variable; beyond, numbers overflow.
+_LEAST = np.array([_SHORTEST_LINK_M if name in LENGTHS else 0.0 for name in NAMES])
+# Beyond this value of any variable, numbers overflow.
 _MOST = 1e9
-# Jumps that are stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
+# Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
 
@@ -83,7 +83,8 @@ MEASURES: tuple[str, ...] = MEASURE_NAMES
 class Evaluator:
     """Evaluates designs with the actuators of one motor under one calibration.
 
-    Results do not depend, to the last bit, on what else is in the batch, on its order or on the number of workers.
+    To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
+    workers.
 
     Attributes:
         actuator_map: ratio -> lightest actuator.
@@ -100,7 +101,7 @@ class Evaluator:
         """Jump with each design.
 
         Args:
-            designs: shape (n, 7), in the order of ``design.NAMES``.
+            designs: shape (n, number of variables), in the order of ``design.NAMES``.
         """
         values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
         table, reasons = _Table(len(values)), _nonsense(values)
@@ -128,7 +129,7 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
 
 
 def _nonsense(values: Floats) -> dict[int, str]:
-    """Which rows are no design, and why; the paper's bounds do not matter. ``values`` has shape (n, 7)."""
+    """The rows of ``values`` that are not designs, each with the reason; the paper's bounds play no part."""
     with np.errstate(invalid="ignore"):
         wrong = ~((values >= _LEAST) & (values <= _MOST))
     reasons: dict[int, str] = {}
@@ -145,7 +146,7 @@ def _nonsense(values: Floats) -> dict[int, str]:
 
 
 class _Table:
-    """Rows of ``Evaluations`` as they come in."""
+    """Collects the rows of ``Evaluations``; every row is ``ok`` with NaN measures until it is written."""
 
     def __init__(self, n: int) -> None:
         self.status = np.full(n, "ok", dtype="<U12")
@@ -163,7 +164,7 @@ class _Table:
 def _jump(
     robots: RobotArrays, control: Floats, calibration: Calibration, workers: int, table: _Table, rows: NDArray[np.intp]
 ) -> None:
-    """Fill ``rows`` of the table with the jumps of ``robots``."""
+    """Let ``robots`` jump and fill ``rows`` of the table, one row per robot."""
     built = np.array([not reason for reason in robots.reason], dtype=bool)
     for i in np.flatnonzero(~built):
         table.fail(rows[i], "no_gearbox", robots.reason[i])

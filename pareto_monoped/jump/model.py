@@ -1,6 +1,6 @@
-"""Robot -> MuJoCo: the MJCF of one robot, and the same numbers as model fields for a batch.
+"""Robot -> MuJoCo: the MJCF document of one robot, and the same numbers as model fields for a batch.
 
-World frame: x forward, z up, the floor at z = 0. Joints turn about +y; at zero both links hang straight down, a
+World frame: x forward, z up, floor at z = 0. The joints turn about +y. At zero both links hang straight down; a
 negative hip angle swings the thigh forward, and a positive knee angle is flexion. The base slides and does not pitch.
 """
 
@@ -24,31 +24,31 @@ _LINEAR, _SIGMOID = (0.5, 1.0), (0.5, 2.0)
 
 
 def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comment: str = "") -> str:
-    """The MJCF document of robot ``index``: exactly what a batch simulates for it.
+    """The MJCF document of robot ``index``, which is exactly what a batch simulates for that robot.
 
     Args:
         robots: robots that can be built and can stand.
-        calibration: names, losses, contact, integrator.
+        calibration: the jump model.
         index: which of the robots.
-        comment: text for the head of the document, such as the design.
+        comment: text at the head of the document, such as the design.
     """
     import mujoco
 
     fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
     pose = start_pose(robots, calibration)
     start = start_qpos(calibration, pose.hip_rad, pose.knee_rad)[index]
-    # MuJoCo scales springs by inverse masses that only its compiler knows: compile, then give the springs in N/m.
+    # Springs in N/m need inverse masses that only MuJoCo's compiler computes, so compile a draft without them first.
     draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, None, comment))
     springs = spring_fields(calibration, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
     return _document(fields, start, calibration, {name: values[0] for name, values in springs.items()}, comment)
 
 
 def template_mjcf(calibration: Calibration, user_data: int) -> str:
-    """The MJCF document of a robot with round numbers, whose fields a batch overwrites.
+    """The MJCF document of a robot with round numbers; a batch overwrites the fields of each robot.
 
     Args:
-        calibration: names, losses, contact, integrator.
-        user_data: numbers that every simulation carries along.
+        calibration: the jump model.
+        user_data: length of the user data of every simulation.
     """
     fields = {
         "body_mass": np.ones(4),
@@ -67,12 +67,12 @@ def template_mjcf(calibration: Calibration, user_data: int) -> str:
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
-    """Model fields that differ from robot to robot, by MuJoCo's names, each of shape (n, ...)."""
+    """The model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
     n, slides = len(robots), calibration.simulation.base_slides
     mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
     mass[:, 1:] = robots.body_mass_kg
     com[:, 1:] = robots.body_com_m
-    # All rotation is about y, so that only the yy moment acts; products of inertia load guides that are not modelled.
+    # All rotation is about y, so only the yy moment acts; products of inertia would load guides that are not modelled.
     inertia[:, 1:] = np.diagonal(robots.body_inertia_kg_m2, axis1=-2, axis2=-1)
     position = np.zeros((n, 4, 3))
     position[:, SHANK, 2] = -robots.thigh_length_m
@@ -101,12 +101,21 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
 
 
 def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweight0: Floats) -> dict[str, Floats]:
-    """``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2).
+    """MuJoCo's parameters for springs and dampers given in SI units.
 
     MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a), with impedance d (D at full compression),
     a fixed inverse mass A, k' = -solref[0] d / D^2 and b' = -solref[1] / D (its documentation, "Computation: constraint
-    model" and "Solver parameters"). For k newtons a metre at full compression therefore solref[0] = -k A (1 - D), and
-    likewise for the damper.
+    model" and "Solver parameters"). A stiffness k in N/m at full compression therefore needs solref[0] = -k A (1 - D),
+    and a damping c in N s/m needs solref[1] = -c A (1 - D).
+
+    Args:
+        calibration: contact and end stops.
+        body_invweight0: MuJoCo's inverse masses of the bodies, shape (n, 4, 2).
+        dof_invweight0: MuJoCo's inverse masses of the joints, shape (n, nv).
+
+    Returns:
+        ``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2). A key is missing
+        if the calibration has no such springs.
     """
     result = {}
     contact = calibration.contact
@@ -124,7 +133,7 @@ def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweig
 
 
 def start_qpos(calibration: Calibration, hip_rad: Floats, knee_rad: Floats) -> Floats:
-    """Joint positions at rest, shape (n, 4), or (n, 3) on a vertical guide."""
+    """Joint positions at rest: x (unless the base is on a vertical guide), z, hip, knee; shape (n, 4) or (n, 3)."""
     columns = [np.full(len(hip_rad), BASE_START_HEIGHT_M), hip_rad, knee_rad]
     if calibration.simulation.base_slides:
         columns.insert(0, np.zeros(len(hip_rad)))
@@ -134,7 +143,7 @@ def start_qpos(calibration: Calibration, hip_rad: Floats, knee_rad: Floats) -> F
 def _document(
     fields: dict[str, Any], start: Floats, calibration: Calibration, springs: dict[str, Any] | None, comment: str
 ) -> str:
-    """The XML text; numbers are written so that reading them gives the same bits."""
+    """The XML text of one robot; reading its numbers gives the same bits."""
     simulation, joints = calibration.simulation, calibration.joints
     friction_loss = f' frictionloss="{_n(joints.friction_n_m)}"' if joints.friction_n_m else ""
     contact = calibration.contact
@@ -208,5 +217,5 @@ friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solim
 
 
 def _n(*values: float) -> str:
-    """Numbers as the shortest text that reads back to the same bits."""
+    """Numbers, each as the shortest text that reads back to the same bits."""
     return " ".join(repr(float(value)) for value in values)

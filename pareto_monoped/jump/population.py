@@ -1,4 +1,4 @@
-"""Many jumps at once on MuJoCo's public batch interface: one model, per-jump fields, one compiled controller."""
+"""Many jumps at once, on MuJoCo's public batch interface: one model, fields per robot, one compiled controller."""
 
 import functools
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ _STAGES = {"RK4": 4}
 
 @dataclass(slots=True, kw_only=True)
 class Population:
-    """The jumps of n robots under way.
+    """The jumps of n robots in progress.
 
     Attributes:
         batch: their simulations.
@@ -77,14 +77,14 @@ class Population:
 def prepare(
     robots: RobotArrays, control: Floats, pose: StartPose, calibration: Calibration, threads: int = 1
 ) -> Population:
-    """A population at rest.
+    """A population at rest in its start pose.
 
     Args:
         robots: n robots that can stand.
         control: K, C and T of each, shape (n, 3).
         pose: their start pose.
-        calibration: the model.
-        threads: that step the simulations.
+        calibration: the jump model.
+        threads: number of threads that step the simulations.
     """
     import mujoco
     from mujoco.batch import Batch
@@ -137,7 +137,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     Args:
         robots: n robots.
         control: K, C and T of each, shape (n, 3).
-        calibration: the model.
+        calibration: the jump model.
     """
     from pareto_monoped.jump import controller
 

@@ -1,4 +1,4 @@
-"""The pose at rest: base 0.5 m above the floor, foot directly below it (paper, section IV-B), by inverse kinematics."""
+"""Inverse kinematics of the start pose: base at its start height, foot directly below it (paper, section IV-B)."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,16 @@ from pareto_monoped.jump.calibration import Calibration, SpringContact
 from pareto_monoped.robot.population import RobotArrays
 
 LEAST_IMPEDANCE = 0.0001
-"""MuJoCo's smallest impedance (mjMINIMP): a spring that hardens has this one at first touch."""
+"""MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartPose:
-    """Joint angles at rest of n robots, and why a robot cannot stand.
+    """Joint angles of n robots at rest.
 
     Attributes:
-        hip_rad, knee_rad: shape (n,), NaN where the robot cannot stand.
-        reason: empty where it can.
+        hip_rad, knee_rad: shape (n,); NaN where the robot cannot stand.
+        reason: why the robot cannot stand, n strings; empty where it can.
     """
 
     hip_rad: NDArray[np.float64]
@@ -28,14 +28,19 @@ class StartPose:
 
 
 _NEWTON_STEPS = 14
-"""From the full width down to a thousandth of its force: each step takes a third off, the last few all that is left."""
+"""Enough from the full width down to a thousandth of its force: converges linearly (factor 2/3) at first, as the force
+is nearly cubic, then quadratically."""
 
 
 def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
-    """Joint angles for a foot directly below the base.
+    """Joint angles that place the foot directly below the base.
 
-    A spring contact starts compressed by the robot's weight, so that nothing moves before the motors do; a contact by
-    MuJoCo's parameters starts just touching.
+    With a spring contact the foot starts compressed by the robot's weight, so that nothing moves before the motors do.
+    With a contact given by MuJoCo's parameters it starts just touching.
+
+    Args:
+        robots: n robots.
+        calibration: the contact, and the end stops that the pose must respect.
     """
     radius = robots.foot_radius_m
     sunk = np.zeros(len(robots))
@@ -44,7 +49,7 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
     length = BASE_START_HEIGHT_M - radius + sunk
     thigh, shank = robots.thigh_length_m, robots.shank_length_m
     with np.errstate(invalid="ignore", divide="ignore"):
-        # Law of cosines; the knee's flexion is positive and lies between 0 and pi.
+        # Law of cosines. Of both solutions, take the one with the knee in front: positive flexion, from 0 to pi.
         knee = np.arccos((length**2 - thigh**2 - shank**2) / (2.0 * thigh * shank))
         hip = -np.arctan2(shank * np.sin(knee), thigh + shank * np.cos(knee))
     reason = [""] * len(robots)
@@ -72,11 +77,15 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
 
 
 def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far the foot's rubber gives under a steady force, shape (n,), by Newton's method.
+    """Compression of the foot's rubber under a steady force, shape (n,), by Newton's method.
 
-    The force is that of MuJoCo's constraint without velocity and acceleration, see ``model.spring_fields``:
-    k (1 - D) d^2 / (D^2 (1 - d)) r. It is convex up to the full width, so that Newton's steps from there come down to
-    the answer and never pass it; beyond the width it is k r.
+    Without velocity and acceleration, the force of MuJoCo's constraint (see ``model.spring_fields``) is
+    k (1 - D) d^2 / (D^2 (1 - d)) r up to the full width, and k r beyond. It is convex up to the full width, so that
+    Newton's method converges from there monotonically.
+
+    Args:
+        contact: the spring.
+        force_n: shape (n,).
     """
     full, least, width = contact.impedance, LEAST_IMPEDANCE, contact.width_m
     slope = (full - least) / width

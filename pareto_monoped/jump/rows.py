@@ -10,7 +10,12 @@ T = TypeVar("T")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
-    """The chosen rows of every array or tuple of a frozen dataclass that holds a row an item."""
+    """A copy of a frozen dataclass whose fields are arrays or tuples with one row per item, with only some rows.
+
+    Args:
+        record: the dataclass; every field has n rows.
+        rows: indices of the rows to keep, in this order.
+    """
     kept: dict[str, Any] = {}
     for field in fields(record):  # type: ignore[arg-type]
         values = getattr(record, field.name)

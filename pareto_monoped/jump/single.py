@@ -1,7 +1,7 @@
-"""One jump, step by step: traces and the energy balance that a batch does not record.
+"""One jump, step by step: the trace and the energy balance, which a batch does not record.
 
-The loop runs plain ``mj_step`` on the exported MJCF and takes its torques from the population's controller, so that it
-makes the same jump as the batch, to the last bit.
+The loop runs plain ``mj_step`` on the exported MJCF with the torques of the compiled controller. It makes the same jump
+as the batch, to the last bit.
 """
 
 from collections.abc import Iterator
@@ -27,8 +27,8 @@ TRACE_COLUMNS = (
     "hip_motor_torque_n_m", "knee_motor_torque_n_m", "hip_torque_n_m", "knee_torque_n_m",
     "contact_x_n", "contact_z_n", "kinetic_j", "potential_j",
 )  # fmt: skip
-"""One row a step: the state, the torques held during the step that starts there (motor torque at the joint before and
-after losses), the floor's force on the foot, and the robot's energy."""
+"""Columns of a trace, one row per step: the state at the start of the step; the torques held during the step, at the
+joint before and after losses; the floor's force on the foot; the robot's energy."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,11 +36,11 @@ class JumpResult:
     """One jump.
 
     Attributes:
-        design: what jumped.
+        design: the design that jumped.
         calibration: name and version of the calibration.
         status, reason: as in ``Evaluations``.
-        measures: numeric columns of ``Evaluations`` by name; NaN where the status has none.
-        trace: ``TRACE_COLUMNS`` to values, shape (steps,); empty if it was not asked for or nothing moved.
+        measures: name to value of every measure of ``Evaluations``.
+        trace: ``TRACE_COLUMNS`` to values, shape (steps,); empty if not asked for or if the robot could not start.
     """
 
     design: Design
@@ -56,10 +56,10 @@ class EnergyBalance:
     """Where the work of one jump went, in joules, from the start to the apex.
 
     Attributes:
-        actuator_work_j: of the torques that reach the joints.
+        actuator_work_j: work of the torques that reach the joints.
         kinetic_j, potential_j: change of the robot's energy.
-        damping_j, friction_j: lost in the joints' viscous and Coulomb friction.
-        stops_j: taken by the end stops (less what they still hold).
+        damping_j, friction_j: lost to viscous and Coulomb friction of the joints.
+        stops_j: absorbed by the end stops, including what they still store.
         contact_j: lost at the foot, in its rubber and by slip.
     """
 
@@ -73,7 +73,7 @@ class EnergyBalance:
 
     @property
     def residual_j(self) -> float:
-        """What the other terms leave unexplained."""
+        """The actuator work that the other terms do not explain."""
         spent = self.kinetic_j + self.potential_j + self.damping_j + self.friction_j + self.stops_j + self.contact_j
         return self.actuator_work_j - spent
 
@@ -87,7 +87,7 @@ def simulate(design: Design, actuator_map: ActuatorMap, calibration: Calibration
     """Jump once.
 
     Args:
-        design: what jumps.
+        design: the design.
         actuator_map: the gearboxes.
         calibration: the jump model.
         trace: whether to record every step.
@@ -117,9 +117,15 @@ def result_of(
 
 @dataclass(slots=True, kw_only=True)
 class _Moment:
-    """One state of the loop, with MuJoCo's derived quantities of that state and the torques held from there on.
+    """One state of the loop and the step that starts there.
 
-    ``after`` holds the state after the step.
+    Attributes:
+        model: MuJoCo's model.
+        data: MuJoCo's derived quantities of the state, and the torques held during the step.
+        after: MuJoCo's data after the step.
+        qpos, qvel: the state.
+        record: the controller's record at that state.
+        last: whether the jump ends here, without a step.
     """
 
     model: Any
@@ -134,9 +140,8 @@ class _Moment:
 def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[_Moment]:
     """Step the first robot to the end of its jump.
 
-    At each moment ``data`` holds the derived quantities of the state ``qpos, qvel``: MuJoCo computes them at the start
-    of a step, but a Runge-Kutta step leaves those of its last stage, so that they are made apart. The last moment has
-    no step.
+    MuJoCo computes the derived quantities of a state at the start of the step, and most integrators leave them in its
+    data. A Runge-Kutta step leaves those of its last stage, so for it they are computed in a second ``MjData``.
     """
     import mujoco
 
@@ -208,9 +213,9 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
 def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
     """Where the work of the first robot's jump went.
 
-    A force's work in a step is force times the mean of the speeds before and after it, which for a constant inertia
-    is exactly the change of kinetic energy that it causes in MuJoCo's semi-implicit step. In a Runge-Kutta step only
-    the actuators' force is constant; the others count with the mean of their values at its two ends.
+    The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
+    inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
+    Runge-Kutta step only the actuators' force is constant; the others count with the mean of their values at both ends.
     """
     import mujoco
 
@@ -233,7 +238,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         moved = moment.after.qpos - moment.qpos if by_stages else 0.5 * (moment.qvel + after) * step
         work["actuator"] += float(data.qfrc_actuator @ moved)
         mean = 0.5 * (before + moved) if by_stages else moved
-        # MuJoCo's Euler step takes joint damping at the speed after the step.
+        # MuJoCo's Euler step evaluates joint damping at the speed after the step.
         damped = {"Euler": after, "RK4": moment.qvel}.get(
             calibration.simulation.integrator, 0.5 * (moment.qvel + after)
         )
@@ -254,7 +259,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
 
 
 def _contact_force(data: Any) -> Floats:
-    """The contacts' generalised force, shape (nv,); its slide entries are the floor's force on the foot."""
+    """The generalised force of all contacts, shape (nv,); its slide entries are the floor's force on the foot."""
     import mujoco
 
     kinds = mujoco.mjtConstraint
@@ -262,7 +267,7 @@ def _contact_force(data: Any) -> Floats:
 
 
 def _force(data: Any, kinds: tuple[Any, ...]) -> Floats:
-    """The generalised force of the constraints of some kinds, shape (nv,)."""
+    """The generalised force of all constraints of the given kinds, shape (nv,)."""
     chosen = np.isin(data.efc_type, [int(kind) for kind in kinds])
     jacobian = data.efc_J.reshape(-1, len(data.qvel))
     return np.asarray(jacobian[chosen].T @ data.efc_force[chosen], dtype=np.float64)

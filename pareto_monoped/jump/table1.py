@@ -1,4 +1,4 @@
-"""The paper's Table I beside what is simulated here."""
+"""The paper's Table I beside the same designs simulated here."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -12,6 +12,7 @@ from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
 PERTURBATIONS = 100
+"""Copies per case, the design itself among them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,10 +25,14 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread(Result):
-    """Medians over perturbations of 1e-6, with the 5th and 95th percentile, over those that jump.
+    """Medians over perturbed copies of a design, with the 5th and 95th percentiles, over the copies that jump.
+
+    Single jumps of the literal model are decided by rounding, so only their distribution means anything.
 
     Attributes:
-        jumped_share: of the perturbed copies.
+        height_m, energy_j: medians; NaN if no copy jumps, as the percentiles.
+        height_p05_m, height_p95_m, energy_p05_j, energy_p95_j: percentiles.
+        jumped_share: share of the copies that jump.
     """
 
     height_p05_m: float
@@ -39,7 +44,7 @@ class Spread(Result):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """One case of Table I: as published, under ``paper`` and under ``reference``."""
+    """One case of Table I: as published, and simulated under the calibrations ``paper`` and ``reference``."""
 
     case: str
     published: Result
@@ -47,12 +52,12 @@ class Row:
     reference: Result
 
     def as_dict(self) -> dict[str, Any]:
-        """Nested plain values."""
+        """The row as nested dicts of plain values."""
         return asdict(self)
 
 
 def table1(actuator_map: ActuatorMap, *, workers: int = 1, seed: int = 0) -> tuple[Row, ...]:
-    """All four cases.
+    """The four cases of Table I.
 
     Args:
         actuator_map: the gearboxes of the paper's motor.
@@ -81,7 +86,15 @@ def paper_spreads(
     workers: int = 1,
     seed: int = 0,
 ) -> tuple[Spread, ...]:
-    """Medians and spread of the four cases under ``calibration``; the first of the copies is the design itself."""
+    """Medians and percentiles of the four cases under one calibration.
+
+    Args:
+        actuator_map: the gearboxes of the paper's motor.
+        calibration: the jump model.
+        perturbations: copies per case, changed by up to 1e-6; the first is the design itself.
+        workers: threads.
+        seed: of the perturbations.
+    """
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
     copies = perturbed(designs, perturbations, np.random.default_rng(seed))
     copies[::perturbations] = designs

@@ -1,4 +1,4 @@
-"""The script that fits the literal model: no more than four numbers, and these are the ones marked in the file."""
+"""The script that fits the literal model changes at most four numbers, which its file marks as fitted."""
 
 import importlib.util
 import re
@@ -30,7 +30,7 @@ def test_at_most_four_numbers_are_fitted_and_the_file_marks_them(script):
 
 
 def test_the_rest_is_not_touched(script):
-    """New numbers change the fitted entries of the record and of the file, and nothing else."""
+    """New numbers change the fitted fields of the calibration and nothing else."""
     start = load_calibration("paper")
     numbers = np.array([0.0123456789, 0.0312345678, 0.2543219876])
     changed = script.with_numbers(start, numbers)
@@ -49,7 +49,7 @@ def test_written_numbers_are_read_back(script, tmp_path):
 
 
 def test_an_island_beside_the_fit_counts(script):
-    """The objective bears links a percent lighter and heavier: it is the worst of them."""
+    """The objective is the worst over links a percent lighter and heavier."""
     assert min(script.LINK_SCALES) < 1.0 < max(script.LINK_SCALES)
     start = load_calibration("paper")
     numbers = np.array([script._current(start, key) for key in script.FITTED])
