@@ -25,8 +25,8 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot.build import Robot, build_robot, leg_dimensions
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.robot.build import Robot, build_robot
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 LENGTH_STEP_M = 1e-4
@@ -160,11 +160,11 @@ def _require_fit(robot: Robot, leg: LegDimensions) -> None:
                     f"motor's leg is drilled; choose ratios of one family, or give {actuator.motor.name} a frame as "
                     "wide as its frameless kit"
                 )
-    torque, allowed = robot.knee.peak_torque_n_m, leg.chain_torque_limit_n_m
+    torque, allowed = robot.knee.peak_torque_n_m, leg.chain.torque_limit_n_m
     if torque > allowed:
         raise DesignError(
             f"peak torque of the knee actuator = {torque:.1f} N m: must be at most {allowed:.1f} N m, half of what "
-            f"breaks the thigh's chain ({leg.chain_name}); choose a lower knee_ratio"
+            f"breaks the thigh's chain ({leg.chain.name}); choose a lower knee_ratio"
         )
 
 

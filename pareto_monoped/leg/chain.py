@@ -8,28 +8,29 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.outlines import sprocket_pitch_radius_mm
 from pareto_monoped.materials import MATERIALS
 
-# Our own layout, mm along the strand. The knee turns by 150 degrees to either side and so moves each strand by 68 mm:
-# 0.2 m between the axes is the least at which no turnbuckle reaches a sprocket.
-TURNBUCKLE = 48.0  # between its pins, in the middle of its travel
-_BARREL, _BARREL_WIDTH = 28.0, 7.0
+# Our own layout, mm along the strand. From one end of the knee's range to its middle each strand moves by 68 mm: 0.2 m
+# between the axes is the least at which no turnbuckle reaches a sprocket.
+TURNBUCKLE = 48.0  # between its pins, in the middle of its travel: room for studs and forks at either end
+_BARREL, _BARREL_WIDTH = 28.0, 7.0  # a square bar with 1.5 mm of wall around its M4 threads
 _STUD = 3.2  # side of a square of the area of an M4 thread (ISO 724: 9.8 mm2 at the pitch diameter)
-_STUD_DEPTH = 10.0  # in the barrel, in the middle of the travel
-_ROOT = (4.0, 7.0)  # from the pin to the bottom of the fork and to the stud
-_PIN_PLAY = 0.05
-_GAP = 0.45  # between fork and chain
+_STUD_DEPTH = 10.0  # in the barrel, in the middle of the travel; 1.25 diameters are left at its long end
+_FORK_BOTTOM, _FORK_ROOT = 4.0, 7.0  # from the pin to the bottom of the fork's slot and to the stud
+_SLOT_PLAY = 0.1  # of the chain's link in the fork, to either side
+_PIN_PLAY = 0.05  # radial, of the turnbuckle's pin in the chain
+_GAP = 0.45  # between the fork and the next link's plates
+_SPARE_TRAVEL = 1.0  # beyond half a pitch, to either side, for tightening
 
 
 def links_of(length_mm: float, d: LegDimensions) -> tuple[int, int, float]:
-    """Whole links of the pieces at hip and knee, and the length to which both turnbuckles are set, between pins.
+    """Numbers of links of the pieces at hip and knee, and the length in mm to which both turnbuckles are set.
 
-    A piece begins and ends with an inner link, so that it has an odd number of links; both together have an even one,
-    and the turnbuckles take up less than a pitch each.
+    A piece begins and ends with an inner link, so that its number of links is odd. That of both together is even, and
+    each turnbuckle, measured between its pins, takes up at most half a pitch more or less than ``TURNBUCKLE``.
     """
-    pitch = d.chain_pitch_mm
-    around = 2.0 * length_mm + d.sprocket_teeth * pitch
+    pitch = d.chain.pitch_mm
+    around = 2.0 * length_mm + d.chain.teeth * pitch
     both = 2 * math.floor((around - 2.0 * (TURNBUCKLE - 0.5 * pitch)) / (2.0 * pitch) + 1e-9)
     half = both // 2
     first = half if half % 2 else half + 1
@@ -39,25 +40,26 @@ def links_of(length_mm: float, d: LegDimensions) -> tuple[int, int, float]:
 def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Both pieces of the chain and the turnbuckles.
 
-    They are drawn and weighed with the turnbuckles in the middle of the strands and of their travel, so that mass is a
-    smooth function of length; with whole links a turnbuckle stands up to 6 mm beside the middle, is set up to half a
-    pitch shorter or longer, and both pieces together weigh up to 1.5 g (05B-1) more or less.
+    The parts are drawn and weighed with the turnbuckles in the middle of the strands and of their travel, so that mass
+    is a smooth function of length. A real chain has whole links: a turnbuckle then stands up to 6 mm beside the middle
+    and is set up to half a pitch shorter or longer, and both pieces together weigh up to 1.5 g (05B-1) more or less.
 
     Args:
         length_mm: between the axes, float or shape (n,).
         d: dimensions.
     """
-    radius = sprocket_pitch_radius_mm(teeth=d.sprocket_teeth, pitch_mm=d.chain_pitch_mm)
-    metres = 1e-3 * (length_mm + 0.5 * d.sprocket_teeth * d.chain_pitch_mm - TURNBUCKLE)
+    radius = d.chain.pitch_radius_mm
+    metres = 1e-3 * (length_mm + 0.5 * d.chain.teeth * d.chain.pitch_mm - TURNBUCKLE)
     places = tuple((side * radius, -0.5 * length_mm, 0.0) for side in (-1.0, 1.0))
     if np.ndim(length_mm) == 0:
         at_hip, at_knee, pins = links_of(float(length_mm), d)
         count = {"hip": f"{at_hip} links", "knee": f"{at_knee} links"}
         setting = f"set to {pins:.1f} mm between pins"
-    else:  # a population, whose notes nobody reads
+    else:  # many lengths at once: notes are used only for single robots
         count, setting = {"hip": "cut", "knee": "cut"}, "set"
     reach = 0.5 * (length_mm - TURNBUCKLE)
-    travel = f"{TURNBUCKLE - 0.5 * d.chain_pitch_mm - 1.0:g} to {TURNBUCKLE + 0.5 * d.chain_pitch_mm + 1.0:g} mm"
+    half_travel = 0.5 * d.chain.pitch_mm + _SPARE_TRAVEL
+    travel = f"{TURNBUCKLE - half_travel:g} to {TURNBUCKLE + half_travel:g} mm"
     return (
         *(
             Part(
@@ -66,9 +68,9 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 material=MATERIALS.steel,
                 process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
-                catalogue_mass_kg=d.chain_kg_per_m * metres,
+                catalogue_mass_kg=d.chain.kg_per_m * metres,
                 joint=Joint(kind=JointKind.ENGAGED, how="around the teeth of", partner=sprocket),
-                note=f"{d.chain_name} (ISO 606), {count[end]} of {d.chain_pitch_mm:g} mm, an inner link at both ends",
+                note=f"{d.chain.name} (ISO 606), {count[end]} of {d.chain.pitch_mm:g} mm, an inner link at both ends",
             )
             for end, y_mm, sign, sprocket in (
                 ("hip", 0.0, 1.0, "drive_sprocket"),
@@ -110,16 +112,16 @@ def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: L
         radius_mm: on which the pins run.
         d: dimensions.
     """
-    half_inner, half_pin, half_plate = 0.5 * d.chain_inner_width_mm, 0.5 * d.chain_pin_mm, 0.5 * d.chain_plate_mm
+    half_inner, half_pin, half_plate = 0.5 * d.chain.inner_width_mm, 0.5 * d.chain.pin_mm, 0.5 * d.chain.plate_mm
     end = reach_mm - half_plate - _GAP
     rows = _around(y_mm, sign, end, radius_mm - half_plate, radius_mm + half_plate)
-    pin = 0.5 * d.chain_pin_diameter_mm + _PIN_PLAY
+    pin = 0.5 * d.chain.pin_diameter_mm + _PIN_PLAY
 
     def bars(first_mm: Numbers, last_mm: Numbers, half_mm: float, *, pinned: bool) -> tuple[Prism, ...]:
         return tuple(
             Prism(
                 outline=rectangle(
-                    width_mm=d.chain_roller_mm,
+                    width_mm=d.chain.roller_mm,
                     height_mm=last_mm - first_mm,
                     x_mm=x,
                     y_mm=y_mm - sign * 0.5 * (first_mm + last_mm),
@@ -134,8 +136,8 @@ def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: L
     return (
         Prism(outline=rows, z0_mm=-half_pin, z1_mm=-half_inner),
         # From where on no tooth reaches the strand, whatever the sprocket's angle; then the last link in its fork.
-        *bars(2.0 * d.chain_pitch_mm, end, half_inner, pinned=False),
-        *bars(end, reach_mm + 0.5 * d.chain_roller_mm, 0.5 * d.chain_inner_link_mm, pinned=True),
+        *bars(2.0 * d.chain.pitch_mm, end, half_inner, pinned=False),
+        *bars(end, reach_mm + 0.5 * d.chain.roller_mm, 0.5 * d.chain.inner_link_mm, pinned=True),
         Prism(outline=rows, z0_mm=half_inner, z1_mm=half_pin),
     )
 
@@ -180,14 +182,14 @@ def _barrel() -> tuple[Prism, ...]:
 
 def _end(d: LegDimensions) -> tuple[Prism, ...]:
     """A fork around the chain's last link, around its pin; the turnbuckle's middle lies on the -x side."""
-    half_pin, half_plate, stud = 0.5 * d.chain_pin_mm, 0.5 * d.chain_plate_mm, 0.5 * _STUD
-    half_slot = 0.5 * d.chain_inner_link_mm + 0.1
-    bottom, root = _ROOT
+    half_pin, half_plate, stud = 0.5 * d.chain.pin_mm, 0.5 * d.chain.plate_mm, 0.5 * _STUD
+    half_slot = 0.5 * d.chain.inner_link_mm + _SLOT_PLAY
+    bottom, root = _FORK_BOTTOM, _FORK_ROOT
     tip = 0.5 * TURNBUCKLE - 0.5 * _BARREL + _STUD_DEPTH
     cheek = rectangle(width_mm=bottom + half_plate, height_mm=2.0 * half_plate, x_mm=0.5 * (half_plate - bottom))
     return (
         Prism(outline=cheek, z0_mm=-half_pin, z1_mm=-half_slot),
-        Prism(outline=Circle(radius_mm=0.5 * d.chain_pin_diameter_mm), z0_mm=-half_slot, z1_mm=half_slot),
+        Prism(outline=Circle(radius_mm=0.5 * d.chain.pin_diameter_mm), z0_mm=-half_slot, z1_mm=half_slot),
         Prism(outline=cheek, z0_mm=half_slot, z1_mm=half_pin),
         Prism(
             outline=rectangle(width_mm=root - bottom, height_mm=2.0 * half_plate, x_mm=-0.5 * (root + bottom)),

@@ -1,126 +1,143 @@
-"""The shank as a list of parts: a fork of two plates around the thigh's knee end, the knee axle, and the foot."""
-
-import numpy as np
+"""The shank: a fork of two plates around the thigh's knee end, with the knee's axle, a core and the foot."""
 
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
-from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, cylinder, screw_part
-from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, hull, rectangle
-from pareto_monoped.leg.common import (
+from pareto_monoped.geometry.screws import M3, M4
+from pareto_monoped.geometry.shapes import Circle, Numbers, hull, rectangle
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.knee import axle_holes, axle_parts
+from pareto_monoped.leg.outlines import rounded
+from pareto_monoped.leg.sandwich import (
     BRIDGE,
     WINDOW_CORNER,
+    Place,
     bolts_at,
     holes_at,
     sleeve_bolt,
     sleeve_hole,
-    sprocket_prisms,
     windows_between,
 )
-from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions
-from pareto_monoped.leg.outlines import rounded
 from pareto_monoped.materials import MATERIALS
 
-# Our own layout, mm.
-_AXLE_BOLT_PITCH = 5.5
-_NECK = 9.0  # radius of the axle inside the sprocket
-_SHOULDER = 11.8  # radius that touches the bearing's inner ring only
-_FOOT_BLOCK = 34.0  # height of the foot's block above the ball's flat
-_NUT_HEIGHT, _NUT_SPARE = 3.2, 0.7  # M4 (ISO 4032), and a pitch that stands out of it
-_NUT_RADIUS = 3.68  # of a disc with the nut's area, 7 mm across flats
-_TONGUE = 15.0  # how deep the foot's tongue reaches into the ball
+# Our own layout of the fork, mm below the knee axis.
+_FORK_WINDOW_TOP = 28.0  # below the round end of the plates
+_FORK_WINDOW_END = 4.0  # from the window to the core: metal above the first bridge
+# Our own layout of the foot, mm.
+_FOOT_GAP = 1.0  # from the foot's flat to the plates, and from the foot's block to the core
+_BLOCK_WIDTH, _BLOCK_HEIGHT = 24.0, 34.0  # of the block between the plates, above the foot's flat
+_BLOCK_HOLE_RADIUS = 7.5  # lightens the block; 0.4 mm of metal are left to the holes of its bolts
+_BLOCK_BOLT = 6.5  # from the ends of the block to its bolts: 3.9 mm of metal
+_TONGUE_WIDTH, _TONGUE_DEPTH, _TONGUE_HALF_THICKNESS = 16.0, 15.0, 5.0  # of the block's tongue in the foot
 
 
-def shank_parts(shank_length_m: Numbers, d: LegDimensions = DEFAULT) -> tuple[Part, ...]:
+def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """The shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block, fasteners.
 
     Args:
         shank_length_m: knee axis to the centre of the foot, float or shape (n,).
         d: dimensions.
     """
-    length = 1000.0 * shank_length_m
-    half_gap = 0.5 * d.shank_gap_mm
-    face = half_gap + d.shank_plate_mm
-    flat = d.foot_flat_mm - length
-    block_top = flat + _FOOT_BLOCK
-    bridges = (-d.fork_mm - BRIDGE, block_top + 1.0 + BRIDGE)
-    bolts = holes_at(bolts_at(bridges), sleeve_hole(M3))
-    foot_bolts = tuple((0.0, flat + up, 0.0) for up in (6.5, _FOOT_BLOCK - 6.5))
-    foot_holes = holes_at(foot_bolts, sleeve_hole(M4))
+    flat = d.foot_flat_mm - 1000.0 * shank_length_m
+    core_end = flat + _BLOCK_HEIGHT + _FOOT_GAP
+    face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
+    bridges = (-d.fork_mm - BRIDGE, core_end + BRIDGE)
+    foot_bolts = tuple((0.0, flat + up, 0.0) for up in (_BLOCK_BOLT, _BLOCK_HEIGHT - _BLOCK_BOLT))
     return (
-        Part(
-            name="shank_plate",
-            role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="laser cut",
-            prisms=(
-                Prism(
-                    outline=hull(
-                        top_radius_mm=d.shank_top_radius_mm,
-                        bottom_radius_mm=d.shank_bottom_radius_mm,
-                        length_mm=-flat - 1.0 - d.shank_bottom_radius_mm,
-                    ),
-                    z0_mm=0.0,
-                    z1_mm=d.shank_plate_mm,
-                    holes=(
-                        _axle_holes(),
-                        rounded(
-                            half_width_mm=d.shank_window_half_width_mm,
-                            high_mm=-28.0,
-                            low_mm=-d.fork_mm + 4.0,
-                            corner_mm=WINDOW_CORNER,
-                        ),
-                        *windows_between(bridges, d.shank_window_half_width_mm),
-                        *bolts,
-                        *foot_holes,
-                    ),
-                ),
-            ),
-            places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -face)),
-            note="3 mm sheet EN AW-6082 T6; countersink the bolt holes outside",
-        ),
-        Part(
-            name="shank_core",
-            role=Role.CORE,
-            material=MATERIALS.printed_plastic,
-            process="3D printed",
-            prisms=(
-                Prism(
-                    outline=rectangle(
-                        width_mm=2.0 * d.shank_core_half_width_mm,
-                        height_mm=-d.fork_mm - (block_top + 1.0),
-                        y_mm=0.5 * (block_top + 1.0 - d.fork_mm),
-                    ),
-                    z0_mm=-half_gap,
-                    z1_mm=half_gap,
-                    holes=(*windows_between(bridges, d.shank_core_window_half_width_mm), *bolts),
-                ),
-            ),
-            note="print lying on a plate side, solid",
-        ),
+        _plate(flat, bridges, foot_bolts, d),
+        _core(core_end, bridges, d),
         sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges)),
-        *_axle_parts(d),
-        Part(
-            name="foot_block",
-            role=Role.BRACKET,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=rectangle(width_mm=24.0, height_mm=_FOOT_BLOCK, y_mm=flat + 0.5 * _FOOT_BLOCK),
-                    z0_mm=-half_gap,
-                    z1_mm=half_gap,
-                    holes=(*foot_holes, Circle(radius_mm=7.5, y_mm=flat + 0.5 * _FOOT_BLOCK)),
-                ),
-                _tongue(flat),
-            ),
-            note="holds the foot between the shank plates",
-        ),
+        *axle_parts(d),
+        _foot_block(flat, foot_bolts, d),
         sleeve_bolt("foot_bolt", M4, face, foot_bolts),
     )
 
 
-def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part:
-    """The rubber foot in the shank's frame; without a length around its own centre."""
+def _plate(flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Place, ...], d: LegDimensions) -> Part:
+    """Both plates, from the knee to the foot's flat."""
+    half_gap = 0.5 * d.shank_gap_mm
+    fork_window = rounded(
+        half_width_mm=d.shank_window_half_width_mm,
+        high_mm=-_FORK_WINDOW_TOP,
+        low_mm=-d.fork_mm + _FORK_WINDOW_END,
+        corner_mm=WINDOW_CORNER,
+    )
+    return Part(
+        name="shank_plate",
+        role=Role.PLATE,
+        material=MATERIALS.aluminium,
+        process="laser cut",
+        prisms=(
+            Prism(
+                outline=hull(
+                    top_radius_mm=d.shank_top_radius_mm,
+                    bottom_radius_mm=d.shank_bottom_radius_mm,
+                    length_mm=-flat_mm - _FOOT_GAP - d.shank_bottom_radius_mm,
+                ),
+                z0_mm=0.0,
+                z1_mm=d.shank_plate_mm,
+                holes=(
+                    axle_holes(),
+                    fork_window,
+                    *windows_between(bridges, d.shank_window_half_width_mm),
+                    *holes_at(bolts_at(bridges), sleeve_hole(M3)),
+                    *holes_at(foot_bolts, sleeve_hole(M4)),
+                ),
+            ),
+        ),
+        places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -half_gap - d.shank_plate_mm)),
+        note=f"{d.shank_plate_mm:g} mm sheet EN AW-6082 T6; countersink the bolt holes outside",
+    )
+
+
+def _core(end_mm: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Part:
+    """The printed core between the plates, from the fork to the foot's block."""
+    return Part(
+        name="shank_core",
+        role=Role.CORE,
+        material=MATERIALS.printed_plastic,
+        process="3D printed",
+        prisms=(
+            Prism(
+                outline=rectangle(
+                    width_mm=2.0 * d.shank_core_half_width_mm,
+                    height_mm=-d.fork_mm - end_mm,
+                    y_mm=0.5 * (end_mm - d.fork_mm),
+                ),
+                z0_mm=-0.5 * d.shank_gap_mm,
+                z1_mm=0.5 * d.shank_gap_mm,
+                holes=(
+                    *windows_between(bridges, d.shank_core_window_half_width_mm),
+                    *holes_at(bolts_at(bridges), sleeve_hole(M3)),
+                ),
+            ),
+        ),
+        note="print lying on a plate side, solid",
+    )
+
+
+def _foot_block(flat_mm: Numbers, foot_bolts: tuple[Place, ...], d: LegDimensions) -> Part:
+    """The block between the plates, on whose tongue the foot is moulded."""
+    middle = flat_mm + 0.5 * _BLOCK_HEIGHT
+    return Part(
+        name="foot_block",
+        role=Role.BRACKET,
+        material=MATERIALS.aluminium,
+        process="machined",
+        prisms=(
+            Prism(
+                outline=rectangle(width_mm=_BLOCK_WIDTH, height_mm=_BLOCK_HEIGHT, y_mm=middle),
+                z0_mm=-0.5 * d.shank_gap_mm,
+                z1_mm=0.5 * d.shank_gap_mm,
+                holes=(*holes_at(foot_bolts, sleeve_hole(M4)), Circle(radius_mm=_BLOCK_HOLE_RADIUS, y_mm=middle)),
+            ),
+            _tongue(flat_mm),
+        ),
+        note="holds the foot between the shank plates",
+    )
+
+
+def foot_part(shank_length_m: Numbers, d: LegDimensions) -> Part:
+    """The rubber foot in the shank's frame, for lengths as in ``shank_parts``."""
     y_mm = -1000.0 * shank_length_m
     return Part(
         name="foot",
@@ -142,106 +159,9 @@ def foot_part(shank_length_m: Numbers = 0.0, d: LegDimensions = DEFAULT) -> Part
 
 
 def _tongue(flat_mm: Numbers) -> Prism:
+    """The tongue of the foot's block, which fills the pocket of the foot, below the foot's flat."""
     return Prism(
-        outline=rectangle(width_mm=16.0, height_mm=_TONGUE, y_mm=flat_mm - 0.5 * _TONGUE), z0_mm=-5.0, z1_mm=5.0
-    )
-
-
-def _axle_holes() -> Pattern:
-    return Pattern(radius_mm=M4.hole, pitch_radius_mm=_AXLE_BOLT_PITCH, count=4, phase_rad=np.pi / 4)
-
-
-def _axle_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns in the thigh's knee bearings: two half axles with the sprocket between them, clamped by four bolts."""
-    half_gap, half_thigh_gap = 0.5 * d.shank_gap_mm, 0.5 * d.gap_mm
-    face = half_gap + d.shank_plate_mm
-    half_tooth = 0.5 * d.sprocket_width_mm
-    shoulder = half_thigh_gap - d.bearing_width_mm
-    flange = shoulder - 0.4  # clear of the bearing's outer ring; leaves 3.2 mm of thread for the sprocket's screws
-    bolts = _axle_holes()
-    bolt_mm = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
-    threads = Pattern(radius_mm=M3.core, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
-
-    def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
-        return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=z0_mm, z1_mm=z1_mm, holes=(bolts, *holes))
-
-    return (
-        Part(
-            name="knee_axle",
-            role=Role.SHAFT,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                disc(_NECK, -half_tooth, half_tooth),
-                disc(d.coupler_radius_mm - 1.0, half_tooth, flange, threads),
-                disc(_SHOULDER, flange, shoulder),
-                disc(d.bearing_bore_radius_mm, shoulder, half_gap),
-            ),
-            note="EN AW-7075; seat 20 h6; threads M3",
-        ),
-        Part(
-            name="knee_axle_cap",
-            role=Role.SHAFT,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
-                disc(_SHOULDER, -shoulder, -half_tooth),
-            ),
-            note="EN AW-7075; seat 20 h6",
-        ),
-        Part(
-            name="knee_spacer",
-            role=Role.SPACER,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=_SHOULDER),
-                    z0_mm=0.0,
-                    z1_mm=half_gap - half_thigh_gap,
-                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
-                ),
-            ),
-            places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
-            note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
-        ),
-        Part(
-            name="knee_sprocket",
-            role=Role.SPROCKET,
-            material=MATERIALS.steel,
-            process="machined",
-            prisms=sprocket_prisms(d),
-            note=f"{d.chain_name}, {d.sprocket_teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
-        ),
-        screw_part(
-            "knee_sprocket_screw",
-            M3,
-            head="countersunk",
-            seat_mm=d.sprocket_recess_mm - half_tooth,
-            grip_mm=2.0 * half_tooth - d.sprocket_recess_mm,
-            room_mm=flange - half_tooth,
-            direction=1.0,
-            material=MATERIALS.steel,
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
-            grade="10.9",
-            note="flush, into the axle; the four long bolts clamp the sprocket as well",
-        ),
-        Part(
-            name="knee_bolt",
-            role=Role.BOLT,
-            material=MATERIALS.steel,
-            process="bought",
-            prisms=(
-                cylinder(M4.head, -face - M4.head_height, -face),
-                cylinder(M4.shank, -face, face),
-                cylinder(_NUT_RADIUS, face, face + _NUT_HEIGHT),
-                cylinder(M4.core, face + _NUT_HEIGHT, bolt_mm - face),
-            ),
-            count=4,
-            pitch_radius_mm=_AXLE_BOLT_PITCH,
-            phase_rad=np.pi / 4,
-            note=f"M4 x {bolt_mm:g} cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
-        ),
+        outline=rectangle(width_mm=_TONGUE_WIDTH, height_mm=_TONGUE_DEPTH, y_mm=flat_mm - 0.5 * _TONGUE_DEPTH),
+        z0_mm=-_TONGUE_HALF_THICKNESS,
+        z1_mm=_TONGUE_HALF_THICKNESS,
     )

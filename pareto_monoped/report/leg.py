@@ -4,8 +4,10 @@ import numpy as np
 
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Arc, Path
+from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.links import base_parts, shank_parts, thigh_parts
+from pareto_monoped.leg.shank import shank_parts
+from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.report.columns import column
 from pareto_monoped.report.records import LegTable
 

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES
-from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.links import foot_part
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.report.leg import leg_table
 from pareto_monoped.report.records import ActuatorTable, Case, Gearbox, Jump, MapPoint, Number
-from pareto_monoped.robot.build import leg_dimensions
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:

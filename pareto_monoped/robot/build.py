@@ -6,18 +6,15 @@ interval of 0.1 (stage 1), so the robot has the real ratio of that gearbox.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
-from pareto_monoped.leg.dimensions import DEFAULT, LegDimensions, with_chain_for
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import BODIES, Floats, in_body
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
-
-_THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,37 +65,11 @@ class Robot:
         return float(sum(unit.mass_properties().mass_kg for unit in self.units))
 
 
-@lru_cache(maxsize=16)
-def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
-    """The leg that fits a motor: its plates are drilled for its actuators, its chain carries their largest torque.
-
-    A map's actuators have one output; where its two families have different mounts, the leg has the first one's.
-    """
-    actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
-    if not actuators:
-        return DEFAULT
-    mount, output = actuators[0].mount, actuators[0].output
-    bare = LegDimensions(
-        mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
-        mount_holes=mount.bolts.count,
-        housing_radius_mm=mount.housing_radius_mm,
-        mount_thread_mm=mount.thread_depth_mm - _THREAD_SPARE_MM,
-        output_pitch_radius_mm=0.5 * output.bolts.pitch_circle_mm,
-        output_holes=output.bolts.count,
-        coupler_radius_mm=output.flange_radius_mm,
-        coupler_thread_mm=output.thread_depth_mm - _THREAD_SPARE_MM,
-        back_pitch_radius_mm=0.5 * mount.back_bolts.pitch_circle_mm,
-        back_holes=mount.back_bolts.count,
-        back_screw_mm=mount.back_bolts.diameter_mm,
-    )
-    return with_chain_for(bare, max(actuator.peak_torque_n_m for actuator in actuators))
-
-
 def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
-    """The robot of a design, part by part.
+    """Make the robot of a design, part by part.
 
     Raises:
-        DesignError: a link without length, or a gear ratio that no gearbox of this motor has.
+        DesignError: a link has no length, or no gearbox of this motor has the gear ratio.
     """
     for name in ("thigh_length_m", "shank_length_m"):
         value = getattr(design, name)

@@ -13,8 +13,7 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES
 from pareto_monoped.geometry.parts import MassProperties
-from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot.build import leg_dimensions
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
 from pareto_monoped.robot.tables import ActuatorTable, actuator_table, weighed
 from pareto_monoped.robot.units import UNITS, ActuatorSized

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.tabulated import Tabulated, tabulate
-from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot.build import leg_dimensions
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import Floats
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 

@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.geometry.parts import MassProperties, Part
 from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.links import base_parts, foot_part, journal_parts, shank_parts, thigh_parts
+from pareto_monoped.leg.journal import journal_parts
+from pareto_monoped.leg.shank import foot_part, shank_parts
+from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.robot.frames import OVER, UPRIGHT, Floats, in_body
 
 

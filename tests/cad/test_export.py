@@ -11,7 +11,8 @@ from pareto_monoped.cad.export import as_built, export_design
 from pareto_monoped.cad.write.folder import safe
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
-from pareto_monoped.robot.build import build_robot, leg_dimensions
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.robot.build import build_robot
 
 DESIGN = PAPER_CASES["nominal"].design
 LIGHT = ("dxf", "3mf")
@@ -100,13 +101,14 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
 
 def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
     robot, leg = build_robot(DESIGN, actuator_map), leg_dimensions(actuator_map)
+    weak = dataclasses.replace(leg.chain, breaking_n=1000.0)
     export._require_fit(robot, leg)
     with pytest.raises(DesignError, match=r"^bolt circle of the hip actuator = 98\.0 mm: must be 100\.0 mm.*drilled"):
         export._require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
     with pytest.raises(DesignError, match=r"^back's bolt circle of the hip actuator = 51\.0 mm: must be 50\.0 mm"):
         export._require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
     with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 12\.8 N m.*05B-1.*lower knee_ratio"):
-        export._require_fit(robot, dataclasses.replace(leg, chain_breaking_n=1000.0))
+        export._require_fit(robot, dataclasses.replace(leg, chain=weak))
 
 
 def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):

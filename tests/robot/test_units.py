@@ -8,7 +8,8 @@ import pytest
 
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.shapes import Circle
-from pareto_monoped.robot.build import build_robot, leg_dimensions
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.units import UNITS, ActuatorSized
 

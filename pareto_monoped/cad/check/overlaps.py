@@ -14,7 +14,7 @@ from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle
-from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
+from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
 
 ALLOWED_DEPTH_MM = 0.02
 """Mean depth below which an overlap is the facets of two fitting cylinders, which lie within 0.01 mm of the circle."""

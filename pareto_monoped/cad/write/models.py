@@ -11,7 +11,7 @@ from pareto_monoped.cad.assembly import unit_frame
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh, joined, mesh_of, placed
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.leg.dimensions import HIP_RANGE_RAD, KNEE_RANGE_RAD
+from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
 

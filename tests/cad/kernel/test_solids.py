@@ -13,7 +13,8 @@ from pareto_monoped.cad.shape.stacks import regrouped
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, rectangle
-from pareto_monoped.leg.links import foot_part
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.materials import Material
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
@@ -85,8 +86,8 @@ def test_separate_bodies_become_a_compound():
     assert len(mesh_of(part).body.decompose()) == 2
 
 
-def test_the_foot_is_a_cut_ball_with_a_pocket():
-    foot = foot_part(0.3)
+def test_the_foot_is_a_cut_ball_with_a_pocket(actuator_map):
+    foot = foot_part(0.3, leg_dimensions(actuator_map))
     solid = bd.Shape.cast(solid_of(foot))
     assert solid.volume == pytest.approx(float(foot.volume_mm3()), rel=1e-6)
     centre = solid.center()

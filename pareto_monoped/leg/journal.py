@@ -1,0 +1,86 @@
+"""The journal on the knee actuator's back, by which the base's far cheek carries the actuator's free end."""
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.screws import Screw, screw_for, screw_part
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
+from pareto_monoped.leg.bearing import SHOULDER_RADIUS
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.materials import MATERIALS
+
+# Our own layout, mm.
+_FLANGE = 4.0  # thickness, the grip of the screws
+_FLANGE_RIM = 5.0  # of metal outside the circle of the screws, whose heads stay within it
+_HEAD_ROOM = 6.5  # between flange and far cheek: heads of M5 are 5 mm high
+_WALL = 3.0  # between the bearing's seat and the bore for cables
+_THREAD = 6.0  # M5 x 10 in the backplate of an ISSPG, M5 x 12 through that of an ESSPG, 5 mm into its motor
+
+
+def far_cheek_z_mm(knee_actuator_length_m: Numbers, d: LegDimensions) -> Numbers:
+    """Height z of the far cheek's inner face, where the journal's seat begins."""
+    return _flange_z_mm(knee_actuator_length_m, d) + _HEAD_ROOM
+
+
+def _flange_z_mm(knee_actuator_length_m: Numbers, d: LegDimensions) -> Numbers:
+    """Height z of the flange's outer face, the seat of the screws."""
+    return d.knee_mount_mm + 1000.0 * knee_actuator_length_m + _FLANGE
+
+
+def journal_parts(
+    knee_actuator_length_m: Numbers, d: LegDimensions, *, back_clearance_mm: Numbers = 0.0
+) -> tuple[Part, ...]:
+    """The journal and its screws, in the frame of the thigh, to which the journal belongs.
+
+    Args:
+        knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
+        d: dimensions.
+        back_clearance_mm: how much of the knee actuator's back the screws pass through before their threads begin,
+            float or shape (n,).
+    """
+    back = d.knee_mount_mm + 1000.0 * knee_actuator_length_m
+    flange, seat = _flange_z_mm(knee_actuator_length_m, d), far_cheek_z_mm(knee_actuator_length_m, d)
+    bore = Circle(radius_mm=d.bearing_bore_radius_mm - _WALL)
+    screw = _motor_screw(d.back_screw_mm)
+    holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
+    return (
+        Part(
+            name="journal",
+            role=Role.SHAFT,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.back_pitch_radius_mm + _FLANGE_RIM),
+                    z0_mm=back,
+                    z1_mm=flange,
+                    holes=(bore, holes),
+                ),
+                Prism(outline=Circle(radius_mm=SHOULDER_RADIUS), z0_mm=flange, z1_mm=seat, holes=(bore,)),
+                Prism(
+                    outline=Circle(radius_mm=d.bearing_bore_radius_mm),
+                    z0_mm=seat,
+                    z1_mm=seat + d.bearing_width_mm,
+                    holes=(bore,),
+                ),
+            ),
+            note="EN AW-7075; seat 20 h6; the bore takes the knee actuator's cables",
+        ),
+        screw_part(
+            "journal_screw",
+            screw,
+            head="cap",
+            seat_mm=flange,
+            grip_mm=_FLANGE + back_clearance_mm,
+            room_mm=_THREAD,
+            direction=-1.0,
+            material=MATERIALS.steel,
+            count=d.back_holes,
+            pitch_radius_mm=d.back_pitch_radius_mm,
+            note="into the knee motor's own mounting pattern",
+        ),
+    )
+
+
+def _motor_screw(diameter_mm: float) -> Screw:
+    """The cap screw for holes of a motor; its core fits the threads that the actuator draws, 0.8 mm below nominal."""
+    return screw_for(diameter_mm, 0.5 * diameter_mm - 0.4)

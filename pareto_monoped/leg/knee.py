@@ -1,0 +1,211 @@
+"""The knee joint: bearings in cups at the end of the thigh, and the axle of the shank that turns in them."""
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role, Visibility
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, cylinder, screw_part
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
+from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.sprocket import BORE_RADIUS, sprocket_prisms
+from pareto_monoped.materials import MATERIALS
+
+# Our own layout of the cups, mm.
+_CUP_WALL = 5.0  # around the bearing
+_CUP_SCREWS = 4  # M2.5, in the middle of that wall
+_CUP_THREAD = 6.0  # usable depth in a cup, which is as deep as the bearing is wide
+# Our own layout of the axle, mm.
+_BOLTS, _BOLT_PITCH_RADIUS = 4, 5.5  # M4: 2.35 mm of metal between their holes and the bearing's seat
+_FLANGE_RIM = 1.0  # less than the output flange's radius: 2.25 mm of metal outside the sprocket's threads
+_FLANGE_PLAY = 0.4  # to the bearing's outer ring; leaves 3.2 mm of thread for the sprocket's screws
+# The nut of an axle bolt, M4 (ISO 4032), mm.
+_NUT_HEIGHT = 3.2
+_NUT_RADIUS = 3.68  # of a disc with the nut's area, 7 mm across flats
+_NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread
+
+
+def cup_holes(y_mm: Numbers, radius_mm: float, d: LegDimensions) -> Pattern:
+    """Holes for the screws of a bearing cup around a knee axis at height ``y_mm``."""
+    return Pattern(
+        radius_mm=radius_mm,
+        pitch_radius_mm=_cup_pitch_radius_mm(d),
+        count=_CUP_SCREWS,
+        phase_rad=np.pi / 4,
+        y_mm=y_mm,
+    )
+
+
+def _cup_pitch_radius_mm(d: LegDimensions) -> float:
+    return d.bearing_outer_radius_mm + 0.5 * _CUP_WALL
+
+
+def knee_seats(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
+    """The bearings of the knee and their cups, which are screwed to the insides of the thigh's plates."""
+    half_gap = 0.5 * d.gap_mm
+    y_mm = -thigh_length_mm
+    places = ((0.0, y_mm, half_gap - d.bearing_width_mm), (0.0, y_mm, -half_gap))
+    return (
+        Part(
+            name="knee_bearing_cup",
+            role=Role.HOUSING,
+            visibility=Visibility.INSIDE,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=d.bearing_outer_radius_mm + _CUP_WALL),
+                    z0_mm=0.0,
+                    z1_mm=d.bearing_width_mm,
+                    holes=(Circle(radius_mm=d.bearing_outer_radius_mm), cup_holes(0.0, M25.core, d)),
+                ),
+            ),
+            places_mm=places,
+            note="seat 32 J7, threads M2.5; the plate's lip holds the bearing outwards",
+        ),
+        *(
+            screw_part(
+                f"knee_cup_screw_{side}",
+                M25,
+                visibility=Visibility.OUTSIDE,
+                head="countersunk",
+                seat_mm=-direction * d.thigh_face_mm,
+                grip_mm=d.plate_mm,
+                room_mm=_CUP_THREAD,
+                direction=direction,
+                material=MATERIALS.steel,
+                count=_CUP_SCREWS,
+                pitch_radius_mm=_cup_pitch_radius_mm(d),
+                phase_rad=np.pi / 4,
+                places_mm=((0.0, y_mm, 0.0),),
+                note="flush, from outside",
+            )
+            for side, direction in (("near", 1.0), ("far", -1.0))
+        ),
+        bearing_part("knee_bearing", d, places_mm=places),
+    )
+
+
+def axle_holes() -> Pattern:
+    """The holes of the bolts that clamp the whole knee."""
+    return Pattern(radius_mm=M4.hole, pitch_radius_mm=_BOLT_PITCH_RADIUS, count=_BOLTS, phase_rad=np.pi / 4)
+
+
+def axle_parts(d: LegDimensions) -> tuple[Part, ...]:
+    """What turns in the thigh's knee bearings: two half axles with the sprocket between them, clamped by four bolts."""
+    return (*_half_axles(d), *_sprocket(d), _axle_bolt(d))
+
+
+def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
+    """Both halves of the axle, and the spacers that clamp the bearings' inner rings between axle and shank."""
+    half_gap, half_thigh_gap = 0.5 * d.shank_gap_mm, 0.5 * d.gap_mm
+    half_tooth, shoulder, flange = 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d), _flange_z_mm(d)
+    bolts = axle_holes()
+    threads = Pattern(radius_mm=M3.core, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+
+    def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
+        return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=z0_mm, z1_mm=z1_mm, holes=(bolts, *holes))
+
+    return (
+        Part(
+            name="knee_axle",
+            role=Role.SHAFT,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                disc(BORE_RADIUS, -half_tooth, half_tooth),
+                disc(d.coupler_radius_mm - _FLANGE_RIM, half_tooth, flange, threads),
+                disc(SHOULDER_RADIUS, flange, shoulder),
+                disc(d.bearing_bore_radius_mm, shoulder, half_gap),
+            ),
+            note="EN AW-7075; seat 20 h6; threads M3",
+        ),
+        Part(
+            name="knee_axle_cap",
+            role=Role.SHAFT,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
+                disc(SHOULDER_RADIUS, -shoulder, -half_tooth),
+            ),
+            note="EN AW-7075; seat 20 h6",
+        ),
+        Part(
+            name="knee_spacer",
+            role=Role.SPACER,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=Circle(radius_mm=SHOULDER_RADIUS),
+                    z0_mm=0.0,
+                    z1_mm=half_gap - half_thigh_gap,
+                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
+                ),
+            ),
+            places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
+            note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
+        ),
+    )
+
+
+def _shoulder_z_mm(d: LegDimensions) -> float:
+    """Height z of the axle's shoulder, on which the bearing's inner ring sits."""
+    return 0.5 * d.gap_mm - d.bearing_width_mm
+
+
+def _flange_z_mm(d: LegDimensions) -> float:
+    """Height z of the end of the axle's flange, which carries the sprocket."""
+    return _shoulder_z_mm(d) - _FLANGE_PLAY
+
+
+def _sprocket(d: LegDimensions) -> tuple[Part, ...]:
+    """The sprocket and the screws that hold it on the axle's flange."""
+    half_tooth = 0.5 * d.chain.sprocket_width_mm
+    return (
+        Part(
+            name="knee_sprocket",
+            role=Role.SPROCKET,
+            material=MATERIALS.steel,
+            process="machined",
+            prisms=sprocket_prisms(d),
+            note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
+        ),
+        screw_part(
+            "knee_sprocket_screw",
+            M3,
+            head="countersunk",
+            seat_mm=d.sprocket_recess_mm - half_tooth,
+            grip_mm=2.0 * half_tooth - d.sprocket_recess_mm,
+            room_mm=_flange_z_mm(d) - half_tooth,
+            direction=1.0,
+            material=MATERIALS.steel,
+            count=d.output_holes,
+            pitch_radius_mm=d.output_pitch_radius_mm,
+            grade="10.9",
+            note="flush, into the axle; the four long bolts clamp the sprocket as well",
+        ),
+    )
+
+
+def _axle_bolt(d: LegDimensions) -> Part:
+    """The bolts through shank plates, spacers, axle and sprocket."""
+    face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
+    length = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
+    return Part(
+        name="knee_bolt",
+        role=Role.BOLT,
+        material=MATERIALS.steel,
+        process="bought",
+        prisms=(
+            cylinder(M4.head, -face - M4.head_height, -face),
+            cylinder(M4.shank, -face, face),
+            cylinder(_NUT_RADIUS, face, face + _NUT_HEIGHT),
+            cylinder(M4.core, face + _NUT_HEIGHT, length - face),
+        ),
+        count=_BOLTS,
+        pitch_radius_mm=_BOLT_PITCH_RADIUS,
+        phase_rad=np.pi / 4,
+        note=f"M4 x {length:g} cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
+    )

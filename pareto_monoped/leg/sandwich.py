@@ -1,0 +1,66 @@
+"""The sandwich that both links are made of: two plates on a core, with windows and bolted bridges between them."""
+
+from itertools import pairwise
+
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.screws import Screw, cylinder, screw_length_mm
+from pareto_monoped.geometry.shapes import Circle, Numbers, Shape
+from pareto_monoped.leg.outlines import rounded
+from pareto_monoped.materials import MATERIALS
+
+Place = tuple[Numbers, Numbers, Numbers]
+
+
+# A screw in a sleeve nut, both countersunk, as sold for furniture and cases, mm.
+_SLEEVE_WALL = 0.5
+_SLEEVE_PLAY = 0.1  # around the sleeve, in its hole
+_OVERLAP = (6.0, 8.0)  # least and greatest length of thread
+# Our own layout, mm.
+BRIDGE = 5.5  # half height of a bridge: 3.4 mm of metal around a sleeve for M3
+BRIDGE_BOLT_X = 12.0  # of a bridge's two bolts: 2.9 mm of core outside their sleeves in the shank, the narrower link
+WINDOW_CORNER = 6.0  # radius of a window's corners, against peaks of stress
+
+
+def sleeve_hole(screw: Screw) -> float:
+    """Radius of the hole for a sleeve nut."""
+    return screw.shank + _SLEEVE_WALL + _SLEEVE_PLAY
+
+
+def sleeve_bolt(name: str, screw: Screw, half_stack_mm: float, places_mm: tuple[Place, ...]) -> Part:
+    """A countersunk screw in a countersunk sleeve nut, flush on both sides of a stack centred on z = 0."""
+    stack = 2.0 * half_stack_mm
+    sleeve = float(screw_length_mm(stack, -_OVERLAP[0]))
+    long = float(screw_length_mm(stack - sleeve, _OVERLAP[1]))
+    return Part(
+        name=name,
+        role=Role.BOLT,
+        material=MATERIALS.steel,
+        process="bought",
+        prisms=(
+            cylinder(screw.shank + _SLEEVE_WALL, -half_stack_mm, sleeve - half_stack_mm),
+            cylinder(screw.shank, sleeve - half_stack_mm, half_stack_mm),
+        ),
+        places_mm=places_mm,
+        countersunk_mm=(-half_stack_mm, half_stack_mm),
+        note=f"{screw.name} x {long:g} countersunk (ISO 10642) 8.8 in a countersunk sleeve nut {screw.name} x "
+        f"{sleeve:g}, flush, {stack:g} mm together",
+    )
+
+
+def bolts_at(heights: tuple[Numbers, ...]) -> tuple[Place, ...]:
+    """Two bolts side by side on every bridge."""
+    return tuple((side * BRIDGE_BOLT_X, y, 0.0) for y in heights for side in (-1.0, 1.0))
+
+
+def holes_at(places: tuple[Place, ...], radius_mm: float) -> tuple[Shape, ...]:
+    """A hole at every place."""
+    return tuple(Circle(radius_mm=radius_mm, x_mm=x, y_mm=y) for x, y, _ in places)
+
+
+def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple[Shape, ...]:
+    """A window between every two neighbouring bridges."""
+    return tuple(
+        rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=WINDOW_CORNER)
+        for high, low in pairwise(heights)
+    )

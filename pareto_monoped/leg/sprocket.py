@@ -1,0 +1,80 @@
+"""The sprocket of hip and knee: its teeth (ISO 606), bore, screw holes and lightening holes."""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.geometry.parts import Prism
+from pareto_monoped.geometry.screws import M3
+from pareto_monoped.geometry.shapes import Arc, Circle, Line, Path, Pattern
+from pareto_monoped.leg.chain_drives import ChainDrive
+from pareto_monoped.leg.dimensions import LegDimensions
+
+# Our own layout, mm.
+BORE_RADIUS = 9.0  # takes the neck of the knee's axle, which is 1 mm smaller in radius than the bearing's seat
+_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS, _RELIEF_COUNT = 3.0, 18.3, 15  # between screws and teeth: 1.4 mm to the roots
+_HEAD_PLAY = 0.15  # around a sunk screw head
+
+
+@lru_cache(maxsize=8)
+def sprocket_outline(drive: ChainDrive) -> Path:
+    """A chain sprocket around the origin, with the middle of a tooth gap on the +x axis.
+
+    Seats and tip after ISO 606: pitch diameter p / sin(180 deg / z), least seat radius 0.505 d1, tip diameter half way
+    between its limits d + p (1 - 1.6 / z) - d1 and d + 1.25 p - d1. The seat spans 140 degrees, the greatest of ISO 606
+    being 140 - 90 / z and the least 120 - 90 / z; the curved flanks are replaced by their tangents.
+    """
+    teeth, pitch_mm, pitch_radius = drive.teeth, drive.pitch_mm, drive.pitch_radius_mm
+    seat = 0.505 * drive.roller_mm
+    tip = pitch_radius + 0.25 * (pitch_mm * (1.0 - 1.6 / teeth) + 1.25 * pitch_mm) - 0.5 * drive.roller_mm
+    half_seat = np.radians(0.5 * (140.0 - 90.0 / teeth))
+    # One gap, with u outward along its middle and v across: the seat ends at (u, v), its tangent runs on to the tip.
+    end = np.array([pitch_radius - seat * np.cos(half_seat), seat * np.sin(half_seat)])
+    along = np.array([np.sin(half_seat), np.cos(half_seat)])
+    reach = -end @ along + np.sqrt((end @ along) ** 2 + tip**2 - end @ end)
+    rim = end + reach * along
+    rim_angle = float(np.arctan2(rim[1], rim[0]))
+    pieces: list[Line | Arc] = []
+    for tooth in range(teeth):
+        angle = 2.0 * np.pi * tooth / teeth
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+        def line(start: NDArray[np.float64], stop: NDArray[np.float64], turn: NDArray[np.float64] = turn) -> Line:
+            a, b = turn @ start, turn @ stop
+            return Line(float(a[0]), float(a[1]), float(b[0]), float(b[1]))
+
+        x, y = turn @ np.array([pitch_radius, 0.0])
+        mirror = np.array([1.0, -1.0])
+        pieces += [
+            line(rim * mirror, end * mirror),
+            # The seat turns clockwise, its material lies outside: from the lower flank through the bottom to the upper.
+            Arc(float(x), float(y), seat, angle + np.pi + half_seat, angle + np.pi - half_seat),
+            line(end, rim),
+            Arc(0.0, 0.0, tip, angle + rim_angle, angle + 2.0 * np.pi / teeth - rim_angle),
+        ]
+    return Path(tuple(pieces))
+
+
+def sprocket_prisms(d: LegDimensions) -> tuple[Prism, ...]:
+    """The sprocket, with clearance holes for its screws.
+
+    A wide one is counterbored at -z, so that screws of the same length suit any width.
+    """
+    half, recess = 0.5 * d.chain.sprocket_width_mm, d.sprocket_recess_mm
+
+    def layer(z0_mm: float, z1_mm: float, screw_radius_mm: float) -> Prism:
+        return Prism(
+            outline=sprocket_outline(d.chain),
+            z0_mm=z0_mm,
+            z1_mm=z1_mm,
+            holes=(
+                Circle(radius_mm=BORE_RADIUS),
+                Pattern(radius_mm=screw_radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+                Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=_RELIEF_COUNT),
+            ),
+        )
+
+    seat = recess - half
+    whole = layer(seat, half, M3.hole)
+    return (whole,) if recess == 0.0 else (layer(-half, seat, M3.head + _HEAD_PLAY), whole)

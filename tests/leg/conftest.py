@@ -1,0 +1,17 @@
+import dataclasses
+
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
+from pareto_monoped.leg.dimensions import leg_dimensions
+
+
+@pytest.fixture(scope="session")
+def leg():
+    return leg_dimensions(map_for("VT8020"))
+
+
+@pytest.fixture(scope="session", params=CHAIN_DRIVES, ids=lambda drive: drive.name)
+def leg_of_each_chain(request, leg):
+    return dataclasses.replace(leg, chain=request.param)

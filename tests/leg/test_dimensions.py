@@ -1,0 +1,64 @@
+"""A leg fits its motor: holes, threads, chain and bearings come from the actuator map, and an empty map is refused."""
+
+import dataclasses
+import re
+
+import pytest
+
+from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.errors import DesignError
+from pareto_monoped.leg.dimensions import leg_dimensions
+
+
+@pytest.mark.parametrize("motor", motor_names())
+def test_a_leg_is_drilled_for_all_actuators_of_its_motor(motor):
+    actuators = [entry.actuator for entry in map_for(motor).entries if entry.actuator is not None]
+    leg = leg_dimensions(map_for(motor))
+    for actuator in actuators:
+        assert 2.0 * leg.mount_pitch_radius_mm == pytest.approx(actuator.mount.bolts.pitch_circle_mm)
+        assert leg.mount_holes == actuator.mount.bolts.count
+        assert leg.mount_thread_mm == actuator.mount.thread_depth_mm - 0.5
+        assert leg.housing_radius_mm == actuator.mount.housing_radius_mm
+        assert 2.0 * leg.back_pitch_radius_mm == pytest.approx(actuator.mount.back_bolts.pitch_circle_mm)
+        assert (leg.back_holes, leg.back_screw_mm) == (
+            actuator.mount.back_bolts.count,
+            actuator.mount.back_bolts.diameter_mm,
+        )
+        assert 2.0 * leg.output_pitch_radius_mm == actuator.output.bolts.pitch_circle_mm
+        assert leg.output_holes == actuator.output.bolts.count
+        assert leg.output_thread_mm == actuator.output.thread_depth_mm - 0.5
+        assert leg.coupler_radius_mm == actuator.output.flange_radius_mm
+
+
+@pytest.mark.parametrize("motor", motor_names())
+def test_a_leg_s_chain_holds_twice_the_largest_torque_of_its_motor(motor):
+    found = map_for(motor)
+    chain = leg_dimensions(found).chain
+    torque = max(entry.actuator.peak_torque_n_m for entry in found.entries if entry.actuator is not None)
+    assert 1e-3 * chain.breaking_n * chain.pitch_radius_mm >= 2.0 * torque
+
+
+def test_the_vt8020_s_leg_has_the_documented_dimensions(leg):
+    """Golden values of the default motor's leg: plates, chain and bearings of the example in the docs."""
+    assert (leg.mount_pitch_radius_mm, leg.housing_radius_mm, leg.back_pitch_radius_mm) == (49.0, 51.5, 25.5)
+    assert (leg.back_holes, leg.back_screw_mm, leg.chain.name) == (4, 5.0, "05B-1")
+    bearing = (leg.bearing_bore_radius_mm, leg.bearing_outer_radius_mm, leg.bearing_width_mm, leg.bearing_kg)
+    assert bearing == (10.0, 16.0, 7.0, 0.017)  # 6804
+    # Derived, from z = 0 in the middle of the leg outwards.
+    assert (leg.thigh_face_mm, leg.knee_mount_mm, leg.hip_mount_mm, leg.shank_gap_mm) == (14.5, 14.5, -23.5, 33.0)
+    assert (leg.rim_radius_mm, leg.first_bridge_mm, leg.rod_circle_mm) == (55.0, 60.0, 68.0)
+
+
+def test_the_u12_s_leg_is_larger():
+    """Once the report weighed and drew every leg with the dimensions of the VT8020's."""
+    leg = leg_dimensions(map_for("U12"))
+    assert (leg.housing_radius_mm, leg.chain.name) == (60.4, "06B-1")
+
+
+def test_a_map_without_actuators_has_no_leg():
+    found = map_for("VT8020")
+    none = tuple(dataclasses.replace(entry, actuator=None) for entry in found.entries)
+    message = "actuators of VT8020 = 0: a leg needs at least one to be drilled for; choose another motor"
+    with pytest.raises(DesignError, match="^" + re.escape(message)):
+        leg_dimensions(dataclasses.replace(found, entries=none))
