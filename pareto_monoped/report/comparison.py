@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.report.records import Comparison, Number
+from pareto_monoped.report.schema import Comparison, Number
 from pareto_monoped.study.reader import StudyData
 
 Floats = NDArray[np.float64]

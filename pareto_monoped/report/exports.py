@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.records import Model3D
+from pareto_monoped.report.schema import Model3D
 from pareto_monoped.study.reader import StudyData
 
 Floats = NDArray[np.float64]

@@ -12,15 +12,17 @@ from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import OutputError
 from pareto_monoped.files import replacing
 from pareto_monoped.report.quantities import QUANTITIES
-from pareto_monoped.report.records import Column, Jump, Payload, StudyCard
+from pareto_monoped.report.schema import Column, Jump, Payload, StudyCard
 
 # Okabe and Ito's colours, with a marker each, so that colour is never all that tells two studies apart.
 _STYLES = (("#0072b2", "o"), ("#d55e00", "s"), ("#009e73", "D"), ("#b0548a", "^"), ("#b87d00", "v"), ("#2f9bd8", "p"))
 _WIDTH_IN, _HEIGHT_IN = 3.5, 2.6  # one column of an IEEE paper is 3.5 in wide
 _DPI = 300
 _FORMATS = ("svg", "png")
+Mark = tuple[float, float, str]
+"""Energy in J, height in m, and name of a design."""
 _FIXED = {"svg": {"Date": None}, "png": {"Software": None}}
-"""File information that would change from one run to the next."""
+"""File information that would change from one run to the next, left out."""
 
 
 def write_figures(payload: Payload, folder: Path) -> list[Path]:
@@ -89,51 +91,62 @@ def _objectives(card: StudyCard, rows: Sequence[int]) -> tuple[NDArray[np.float6
 
 def _front(payload: Payload, figure: Any) -> bool:
     axes = figure.add_subplot()
-    low, high = BASE_START_HEIGHT_M, max(case["height_m"] for case in payload.published)
-    right = max(case["energy_j"] for case in payload.published)
-    for i, card in enumerate(payload.studies):
-        tint, symbol = _STYLES[i % len(_STYLES)]
-        on_front = set(card.front)
-        others = [r for r, letter in enumerate(card.trials.state) if letter == "f" and r not in on_front]
-        cloud = axes.scatter(*_objectives(card, others), s=1.5, color="#bbbbbb" if i == 0 else tint, alpha=0.35, lw=0)
-        cloud.set_rasterized(True)
-        energy, height = _objectives(card, card.front)
-        axes.plot(energy, height, drawstyle="steps-pre", marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
-        made = [
-            (c.energy_j, c.height_m, c.name) for c in card.cases if c.energy_j is not None and c.height_m is not None
-        ]
-        if i == 0 and made:
-            axes.plot([m[0] for m in made], [m[1] for m in made], "kD", ms=4, ls="", label="paper, simulated here")
-            _name(axes, made)
-        right = max([right, *energy.tolist(), *(m[0] for m in made)])
-        high = max([high, *height.tolist(), *(m[1] for m in made)])
     published = [(case["energy_j"], case["height_m"], case["name"]) for case in payload.published]
-    axes.plot(
-        [p[0] for p in published],
-        [p[1] for p in published],
-        "D",
-        mfc="white",
-        mec="black",
-        ms=4,
-        label="paper, published",
-    )
-    _name(axes, published)
-    masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
-    if masses:
-        ends = np.array([0.0, 1.1 * right])
-        axes.plot(
-            ends, low + ends / (min(masses) * GRAVITY_M_PER_S2), ":", color="black", lw=0.8, label="m g (H - 0.5 m)"
-        )
-    axes.set(xlim=(0.0, 1.06 * right), ylim=(low, high + 0.06), xlabel="energy (J)", ylabel="height (m)")
+    for i, card in enumerate(payload.studies):
+        _cloud_and_front(axes, card, i)
+        if i == 0:
+            _diamonds(axes, _simulated(card), "black", "paper, simulated here")
+    _diamonds(axes, published, "white", "paper, published")
+    marks = [*published, *(mark for card in payload.studies for mark in (*_simulated(card), *_designs(card)))]
+    right, high = max(mark[0] for mark in marks), max(mark[1] for mark in marks)
+    _floor(axes, payload, 1.1 * right)
+    axes.set(xlim=(0.0, 1.06 * right), ylim=(BASE_START_HEIGHT_M, high + 0.06))
+    axes.set(xlabel="energy (J)", ylabel="height (m)")
     axes.legend(loc="lower right")
     return True
 
 
-def _name(axes: Any, cases: Sequence[tuple[float, float, str]]) -> None:
-    """Names beside the paper's designs, to sides on which they do not cover each other."""
-    places = {"A": (3, -8), "C": (-9, 1)}
-    for energy, height, name in cases:
-        axes.annotate(name, (energy, height), xytext=places.get(name, (4, -3)), textcoords="offset points", fontsize=6)
+def _designs(card: StudyCard) -> list[Mark]:
+    """The designs on the front, unnamed."""
+    energy, height = _objectives(card, card.front)
+    return [(e, h, "") for e, h in zip(energy.tolist(), height.tolist(), strict=True)]
+
+
+def _simulated(card: StudyCard) -> list[Mark]:
+    """The paper's designs as simulated for a study, without those that do not jump."""
+    return [(c.energy_j, c.height_m, c.name) for c in card.cases if c.energy_j is not None and c.height_m is not None]
+
+
+def _cloud_and_front(axes: Any, card: StudyCard, number: int) -> None:
+    """A study's dominated designs as faint dots, and its front as a line of steps."""
+    tint, symbol = _STYLES[number % len(_STYLES)]
+    on_front = set(card.front)
+    others = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in on_front]
+    cloud = axes.scatter(*_objectives(card, others), s=1.5, color=tint if number else "#bbbbbb", alpha=0.35, lw=0)
+    cloud.set_rasterized(True)
+    energy, height = _objectives(card, card.front)
+    axes.plot(energy, height, drawstyle="steps-pre", marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
+
+
+def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
+    """Designs of the paper, with their names on sides where they do not cover each other."""
+    if not marks:
+        return
+    energy, height, _ = zip(*marks, strict=True)
+    axes.plot(energy, height, "D", mfc=fill, mec="black", ms=4, label=label)
+    offsets = {"A": (3, -8), "C": (-9, 1)}
+    for x, y, name in marks:
+        axes.annotate(name, (x, y), xytext=offsets.get(name, (4, -3)), textcoords="offset points", fontsize=6)
+
+
+def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
+    """The energy that it takes to raise the lightest robot, up to an energy."""
+    masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
+    if not masses:
+        return
+    ends = np.array([0.0, energy_j])
+    heights = BASE_START_HEIGHT_M + ends / (min(masses) * GRAVITY_M_PER_S2)
+    axes.plot(ends, heights, ":", color="black", lw=0.8, label=f"m g (H - {BASE_START_HEIGHT_M:g} m)")
 
 
 def _convergence(payload: Payload, figure: Any) -> bool:

@@ -14,11 +14,12 @@ from typing import Any
 
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
+from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import read_models
-from pareto_monoped.report.payload import Source, build
-from pareto_monoped.report.physics import simulate_extras
-from pareto_monoped.report.records import Payload
-from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, safe
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.report.schema import Payload
+from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
 from pareto_monoped.study.reader import read_study
 
 SCRIPTS = (
@@ -47,12 +48,13 @@ def payload_of(dbs: Sequence[Path], *, exports: Path | None = None) -> Payload:
     """Read the studies and simulate what the page shows beyond them."""
     if not dbs:
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
-    # All are read before anything is simulated: a wrong name is found at once.
+    # Everything is read before anything is simulated, so that a wrong name is reported at once.
     studies = [read_study(db) for db in dbs]
-    sources = []
-    for db, data in zip(dbs, studies, strict=True):
-        models = read_models(exports, data) if exports is not None else {}
-        sources.append(Source(database=str(db), data=data, extras=simulate_extras(data), models=models))
+    models = [read_models(exports, data) if exports is not None else {} for data in studies]
+    sources = [
+        Source(data=data, resimulation=resimulate(data), models=found)
+        for data, found in zip(studies, models, strict=True)
+    ]
     return build(sources, literal_cases())
 
 
@@ -82,6 +84,7 @@ def page(payload: Payload) -> str:
         style=_asset("style.css"),
         head=head(payload),
         comparison=comparison_tables(payload),
+        published_link=published_link(payload),
         cases=cases_table(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.report.records import Case
+from pareto_monoped.report.schema import Case
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
-    from pareto_monoped.report.physics import Extras
+    from pareto_monoped.report.resimulation import Resimulation
 
 HEADLINE_M = 0.8
 """Height of the paper's Case C."""
@@ -65,7 +65,7 @@ def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
     return [f"{text}; the front gets that high on {energy:.1f} J, {compared}."]
 
 
-def notes(data: StudyData, extras: "Extras") -> list[str]:
+def notes(data: StudyData, again: "Resimulation") -> list[str]:
     """What the reader has to know before trusting the page."""
     lines = []
     done, budget = len(data.trials), data.meta.budget
@@ -80,9 +80,9 @@ def notes(data: StudyData, extras: "Extras") -> list[str]:
             f"{bad} design{' was' if bad == 1 else 's were'} taken off the front by the audit: their height or energy "
             "changes with the smallest change of the design or of the time step."
         )
-    if extras.drift_m > _DRIFT_M:
+    if again.drift_m > _DRIFT_M:
         lines.append(
-            f"Simulated again for this page, heights differ by up to {1000.0 * extras.drift_m:.1f} mm from those "
+            f"Simulated again for this page, heights differ by up to {1000.0 * again.drift_m:.1f} mm from those "
             "stored: code, versions or machine are not those of the study."
         )
     return lines

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from html import escape
 
-from pareto_monoped.report.records import Number, Payload, StudyCard
+from pareto_monoped.report.schema import Number, Payload, StudyCard
 
 
 def safe(value: object) -> str:
@@ -129,6 +129,12 @@ def cases_table(payload: Payload) -> str:
 
 def _case_name(name: str) -> str:
     return name if name == "nominal" else f"Case {name}"
+
+
+def published_link(payload: Payload) -> str:
+    """Mass of the published link over its length in mm."""
+    line = payload.constants
+    return f"{line.published_link_kg:g} kg + {line.published_link_kg_per_m:g} g/mm"
 
 
 def comparison_tables(payload: Payload) -> str:

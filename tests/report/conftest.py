@@ -10,8 +10,9 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.report.payload import Source, build
-from pareto_monoped.report.physics import simulate_extras
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.run import run
@@ -54,7 +55,7 @@ def weighted(folder) -> Path:
 def source_u12(folder) -> Source:
     """A study of another motor than the default."""
     data = read_study(made(folder, name="u12", motor="U12", evaluations=60, seed=5))
-    return Source(database="u12.db", data=data, extras=simulate_extras(data, most_jumps=1), models={})
+    return Source(data=data, resimulation=resimulate(data, most_jumps=1), models={})
 
 
 @pytest.fixture(scope="session")
@@ -63,13 +64,13 @@ def data(db) -> StudyData:
 
 
 @pytest.fixture(scope="session")
-def extras(data):
-    return simulate_extras(data, most_jumps=8)
+def resimulation(data):
+    return resimulate(data, most_jumps=8)
 
 
 @pytest.fixture(scope="session")
-def source(data, extras) -> Source:
-    return Source(database="small.db", data=data, extras=extras, models={})
+def source(data, resimulation) -> Source:
+    return Source(data=data, resimulation=resimulation, models={})
 
 
 @pytest.fixture(scope="session")

@@ -4,15 +4,17 @@ import io
 import re
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from PIL import Image
 
+from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
 from pareto_monoped.report.page import page, write_report
-from pareto_monoped.report.payload import Source, build
+from pareto_monoped.report.payload import build
 from tests.report.conftest import Tab, cut, grown
 
 pytestmark = pytest.mark.browser
@@ -225,10 +227,11 @@ def test_charts_have_words_and_controls_have_names(tab):
     assert unnamed == []
 
 
-def test_a_study_named_like_a_script_does_nothing(data, extras, folder, open_tab):
+def test_a_study_named_like_a_script_does_nothing(data, resimulation, folder, open_tab):
     nasty = "</title><script>alert(1)</script><img src=x onerror=alert(2)>"
     study = replace(data.study, name=nasty, description=nasty)
-    named = Source(database=f"{nasty}.db", data=replace(data, study=study), extras=extras, models={})
+    renamed = replace(data, study=study, db=Path(f"{nasty}.db"))
+    named = Source(data=renamed, resimulation=resimulation, models={})
     file = written(folder, "nasty.html", [named, named])
     tab = open_tab(file)
     tab.scroll_through()
@@ -240,12 +243,12 @@ def test_a_study_named_like_a_script_does_nothing(data, extras, folder, open_tab
 
 
 @pytest.mark.parametrize("kind", ["empty", "one", "none feasible", "unfinished"])
-def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, extras, folder, open_tab, kind):
+def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, resimulation, folder, open_tab, kind):
     feasible = np.flatnonzero(data.trials["state"] == "feasible")
     keep = np.zeros(len(data.trials), dtype=bool)
     keep[{"empty": [], "one": feasible[:1], "none feasible": feasible, "unfinished": np.arange(90)}[kind]] = True
     less = cut(data, keep, state="infeasible" if kind == "none feasible" else None)
-    source = Source(database="x.db", data=less, extras=replace(extras, jumps={}), models={})
+    source = Source(data=less, resimulation=replace(resimulation, jumps={}), models={})
     file = written(folder, f"{kind}.html", [source])
     tab = open_tab(file)
     tab.scroll_through()
@@ -305,9 +308,9 @@ def test_an_exported_design_can_be_turned(source, payload, folder, open_tab):
     tab.quiet(file)
 
 
-def test_twenty_thousand_trials_stay_small_and_quick(data, extras, folder, open_tab):
+def test_twenty_thousand_trials_stay_small_and_quick(data, resimulation, folder, open_tab):
     big = grown(data, 20_000)
-    source = Source(database="big.db", data=big, extras=extras, models={})
+    source = Source(data=big, resimulation=resimulation, models={})
     start = time.perf_counter()
     file = written(folder, "big.html", [source])
     assert time.perf_counter() - start < 8.0

@@ -4,9 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.report.card import Source
 from pareto_monoped.report.comparison import compare, energy_at
-from pareto_monoped.report.payload import Source, build
-from pareto_monoped.report.physics import simulate_extras
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.reader import read_study
 
 numbers = st.floats(0.5, 2.0)
@@ -56,7 +57,7 @@ def test_one_study_is_not_compared(payload):
 
 
 def test_two_studies_share_a_map(source, both):
-    other = Source(database="b.db", data=both[1], extras=simulate_extras(both[1], most_jumps=1), models={})
+    other = Source(data=both[1], resimulation=resimulate(both[1], most_jumps=1), models={})
     payload = build([source, other])
     assert len(payload.maps) == 1
     assert [card.map for card in payload.studies] == [0, 0]

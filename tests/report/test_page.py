@@ -2,11 +2,15 @@ import base64
 import hashlib
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
+from pareto_monoped import report
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.report.page import page, payload_of, write_report
+from pareto_monoped.report.payload import PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M
 from pareto_monoped.report.tables import safe
 
 
@@ -73,3 +77,17 @@ def test_a_folder_that_is_not_there_is_refused(tmp_path, db):
         write_report([db], tmp_path / "none" / "r.html")
     with pytest.raises(OutputError, match="exports folder"):
         payload_of([db], exports=tmp_path / "none")
+
+
+def test_scripts_hold_no_physical_constants():
+    """Gravity, the start height and the published link once stood in the scripts as well as in Python."""
+    facts = [9.80665, GRAVITY_M_PER_S2, BASE_START_HEIGHT_M, PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M]
+    facts += [1e-3 * fact for fact in facts]
+    assets = Path(report.__file__).parent / "assets"
+    for path in [*assets.glob("*.js"), assets / "page.html"]:
+        code = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+        numbers = [float(number) for number in re.findall(r"(?<![\w.])\d*\.?\d+(?![\w.])", code)]
+        found = {number for number in numbers if any(number == pytest.approx(fact) for fact in facts)}
+        # The 3D view computes no physics: its 0.5 is the least zoom.
+        assert found <= ({0.5} if path.name == "viewer.js" else set()), path.name
+        assert not re.search(r"\d m\b", code), f"{path.name}: a height in words"

@@ -1,15 +1,17 @@
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pareto_monoped.design import NAMES, PAPER_CASES
 from pareto_monoped.pareto.pick import Knee, pick
-from pareto_monoped.report import payload as payload_module
-from pareto_monoped.report.columns import column
+from pareto_monoped.report import trials as trials_module
+from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import embedded
-from pareto_monoped.report.payload import Source, build
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.rounding import column
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 from tests.report.conftest import cut, grown
@@ -54,13 +56,13 @@ def test_masses_of_the_bodies_add_up_to_the_simulated_robot(payload):
         assert bodies == pytest.approx(card.trials.columns["mass_kg"][row], abs=3e-4)
 
 
-def test_gearboxes_are_those_of_the_built_robot(payload, data, extras):
+def test_gearboxes_are_those_of_the_built_robot(payload, data):
     from pareto_monoped.design import Design
 
     (card,) = payload.studies
     for row in card.front:
         design = Design.from_array(data.trials.loc[row, list(NAMES)].to_numpy(dtype=float))
-        robot = build_robot(design, extras.actuator_map)
+        robot = build_robot(design, data.actuator_map)
         for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
             gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
             assert (gearbox.sun_teeth, gearbox.ring_teeth) == (actuator.gears.sun_teeth, actuator.gears.ring_teeth)
@@ -76,10 +78,10 @@ def test_cases_come_with_their_jump(payload):
         assert case.jump.height_m == pytest.approx(case.height_m, abs=1e-4)
 
 
-def test_a_page_of_many_trials_keeps_the_front_and_says_what_it_leaves_out(data, extras, monkeypatch):
-    monkeypatch.setattr(payload_module, "MOST_ROWS", 1000)
+def test_a_page_of_many_trials_keeps_the_front_and_says_what_it_leaves_out(data, resimulation, monkeypatch):
+    monkeypatch.setattr(trials_module, "MOST_ROWS", 1000)
     big = grown(data, 3000)
-    (card,) = build([Source(database="big.db", data=big, extras=extras, models={})]).studies
+    (card,) = build([Source(data=big, resimulation=resimulation, models={})]).studies
     assert len(card.trials.trial) == 1000
     assert card.trials.total == card.counts["total"] == 3000
     assert [card.trials.trial[row] for row in card.front] == big.front()["trial"].tolist()
@@ -87,16 +89,16 @@ def test_a_page_of_many_trials_keeps_the_front_and_says_what_it_leaves_out(data,
 
 
 def test_same_names_get_labels_that_differ(source):
-    other = replace(source, database="copy.db")
+    other = replace(source, data=replace(source.data, db=Path("copy.db")))
     labels = [card.label for card in build([source, other, other]).studies]
     assert len(set(labels)) == 3
     assert all("small" in label for label in labels)
 
 
-def test_embedded_json_reads_back_and_holds_no_markup(data, extras):
+def test_embedded_json_reads_back_and_holds_no_markup(data, resimulation):
     nasty = "</script><script>alert(1)</script><!-- \u2028"
     study = replace(data.study, name=nasty)
-    payload = build([Source(database="x.db", data=replace(data, study=study), extras=extras, models={})])
+    payload = build([Source(data=replace(data, study=study), resimulation=resimulation, models={})])
     text = embedded(payload)
     assert "<" not in text
     assert "\u2028" not in text
@@ -104,23 +106,21 @@ def test_embedded_json_reads_back_and_holds_no_markup(data, extras):
 
 
 @pytest.mark.parametrize("count", [0, 1])
-def test_studies_with_nothing_to_choose_from_give_a_payload(data, extras, count):
+def test_studies_with_nothing_to_choose_from_give_a_payload(data, resimulation, count):
     keep = np.zeros(len(data.trials), dtype=bool)
     keep[np.flatnonzero(data.trials["state"] == "feasible")[:count]] = True
-    (card,) = build(
-        [Source(database="x.db", data=cut(data, keep), extras=replace(extras, jumps={}), models={})]
-    ).studies
+    (card,) = build([Source(data=cut(data, keep), resimulation=replace(resimulation, jumps={}), models={})]).studies
     assert len(card.front) == count
     assert len(card.picks) == min(count, 1) or count == 1
     assert card.notes[0].startswith(f"Unfinished: {count} of ")
 
 
 def test_weighted_runs_give_the_trial_of_least_cost(weighted):
-    from pareto_monoped.report.physics import simulate_extras
+    from pareto_monoped.report.resimulation import resimulate
     from pareto_monoped.study.reader import read_study
 
     data = read_study(weighted)
-    source = Source(database="w.db", data=data, extras=simulate_extras(data, most_jumps=1), models={})
+    source = Source(data=data, resimulation=resimulate(data, most_jumps=1), models={})
     (card,) = build([source]).studies
     assert [weight for weight, _ in card.weighted] == [0.2, 0.6]
     scale = data.study.algorithm.height_scale_j
@@ -135,7 +135,7 @@ def test_weighted_runs_give_the_trial_of_least_cost(weighted):
 
 def test_leg_is_weighed_and_drawn_with_the_dimensions_of_the_studys_own_motor(source_u12):
     """The page once weighed and drew the default motor's leg, whatever the motor."""
-    actuator_map = source_u12.extras.actuator_map
+    actuator_map = source_u12.data.actuator_map
     robots = [build_robot(case.design, actuator_map) for case in PAPER_CASES.values()]
     arrays = robot_arrays([case.design.as_array() for case in PAPER_CASES.values()], actuator_map)
     (leg,) = (table.leg for table in build([source_u12]).maps)

@@ -13,8 +13,8 @@ def front_of(data, points):
     return rows
 
 
-def test_the_sentence_gives_the_price_of_the_headline_height(data, extras):
-    case = replace(next(c for c in extras.cases if c.name == "C"), height_m=0.9, energy_j=40.0)
+def test_the_sentence_gives_the_price_of_the_headline_height(data, resimulation):
+    case = replace(next(c for c in resimulation.cases if c.name == "C"), height_m=0.9, energy_j=40.0)
     front = front_of(data, [(0.7, 12.0), (0.85, 20.0), (0.95, 30.0)])
     first, second = sentences(data, front, [case])
     assert first.startswith("0.80 m costs at least 20.0 J; the front of 3 designs runs from 0.70 m on 12.0 J")
@@ -26,22 +26,24 @@ def test_the_sentence_gives_the_price_of_the_headline_height(data, extras):
 @pytest.mark.parametrize(
     ("height", "words"), [(1.2, "higher than this front goes"), (None, "does not jump under this study")]
 )
-def test_the_papers_case_may_be_out_of_reach(data, extras, height, words):
-    case = replace(next(c for c in extras.cases if c.name == "C"), height_m=height, energy_j=40.0, reason="why")
+def test_the_papers_case_may_be_out_of_reach(data, resimulation, height, words):
+    case = replace(next(c for c in resimulation.cases if c.name == "C"), height_m=height, energy_j=40.0, reason="why")
     assert words in sentences(data, front_of(data, [(0.7, 12.0), (0.95, 30.0)]), [case])[1]
 
 
-def test_a_low_front_says_how_high_it_gets(data, extras):
+def test_a_low_front_says_how_high_it_gets(data, resimulation):
     front = front_of(data, [(0.6, 5.0), (0.7, 12.0)])
-    assert sentences(data, front, extras.cases)[0].startswith("No design reaches 0.80 m, the highest jump is 0.700 m")
+    assert sentences(data, front, resimulation.cases)[0].startswith(
+        "No design reaches 0.80 m, the highest jump is 0.700 m"
+    )
 
 
-def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, extras):
-    assert notes(data, extras) == [n for n in notes(data, extras) if "audit" in n]
+def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, resimulation):
+    assert notes(data, resimulation) == [n for n in notes(data, resimulation) if "audit" in n]
     less = cut(data, np.arange(len(data.trials)) < 50)
     audits = data.audits.iloc[:2].copy()
     audits["well_conditioned"] = False
-    lines = notes(replace(less, audits=audits), replace(extras, drift_m=0.02))
+    lines = notes(replace(less, audits=audits), replace(resimulation, drift_m=0.02))
     assert lines[0].startswith("Unfinished: 50 of 200")
     assert lines[1].startswith("2 designs were taken off the front")
     assert "up to 20.0 mm" in lines[2]

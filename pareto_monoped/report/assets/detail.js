@@ -15,8 +15,8 @@ function showSubject(chosen) {
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
   }
   const { height_m: h, energy_j: e, mass_kg: m } = chosen.measures;
-  const share = h && e && m ? m * 9.81 * (h - 0.5) / e : null;
-  byId("headline").append(make("div", { title: "m g (height - 0.5 m) / energy" }, make("b", {}, shown("efficiency", share)), "efficiency"));
+  const share = h && e && m ? m * GRAVITY * (h - START_HEIGHT) / e : null;
+  byId("headline").append(make("div", { title: `m g (height - ${START_HEIGHT} m) / energy` }, make("b", {}, shown("efficiency", share)), "efficiency"));
 }
 
 function showVariables(chosen) {

@@ -2,6 +2,7 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const page = JSON.parse(document.getElementById("payload").textContent);
+const { gravity_m_per_s2: GRAVITY, base_start_height_m: START_HEIGHT } = page.constants;
 const quantity = Object.fromEntries(page.quantities.map((q) => [q.name, q]));
 
 function byId(id) { return document.getElementById(id); }

@@ -8,7 +8,7 @@ const ring = make("div", { class: "ring", "aria-hidden": "true" });
 let points = []; // of each trace, what its points stand for: [study, row] or [study, case name]
 
 function startRange() {
-  let energy = 0, low = Infinity, high = 0.6;
+  let energy = 0, low = Infinity, high = START_HEIGHT + 0.1;
   const see = (e, h) => {
     if (e === null || h === null || e === undefined || h === undefined) return;
     energy = Math.max(energy, e);
@@ -22,8 +22,9 @@ function startRange() {
     if (!study.front.length) study.trials.trial.forEach((_, row) => see(e[row], h[row]));
   }
   for (const made of page.published) see(made.energy_j, made.height_m);
-  const room = 0.06 * (high - Math.min(low, 0.55));
-  return { x: [0, energy * 1.06], y: [Math.min(low, 0.55) - room, high + room] };
+  low = Math.min(low, START_HEIGHT + 0.05);
+  const room = 0.06 * (high - low);
+  return { x: [0, energy * 1.06], y: [low - room, high + room] };
 }
 
 const home = startRange();
@@ -122,7 +123,7 @@ function traces() {
     const masses = each.map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
     if (masses.length) {
       const mass = Math.min(...masses), end = viewRange().x[1] * 4;
-      const line = [0, end].map((e) => ({ x: e, y: 0.5 + e / (mass * 9.81), text: "", stands: null }));
+      const line = [0, end].map((e) => ({ x: e, y: START_HEIGHT + e / (mass * GRAVITY), text: "", stands: null }));
       list.push(trace("floor", line, {}, { mode: "lines", hoverinfo: "skip", hovertemplate: undefined, line: { color: colour("faint"), width: 1.5, dash: "dot" } }));
     }
   }
@@ -310,7 +311,7 @@ const SYMBOLS = {
 function startSwitches() {
   const names = {
     front: "front", cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
-    simulated: "paper, simulated here", picks: "knee", floor: "floor m g (H − 0.5 m)",
+    simulated: "paper, simulated here", picks: "knee", floor: `floor m g (H − ${START_HEIGHT} m)`,
   };
   const box = byId("switches");
   const mass = page.studies.map((s) => s.floor_mass_kg).filter((m) => m !== null);

@@ -2,6 +2,7 @@
 
 const stage = byId("stage");
 const player = { frame: 0, time: 0, playing: false, last: 0, jump: null, request: 0 };
+const PIN_RADIUS_M = 0.012; // of the dot that marks the knee axis
 let parts = null;
 
 // A jump's columns in SI units.
@@ -25,11 +26,11 @@ function buildStage(chosen) {
   const l1 = values.thigh_length_m, l2 = values.shank_length_m;
   const flight = player.jump;
   const foot = chosen.study.foot_radius_m;
-  const highest = flight ? Math.max(...flight.base_z_m) : 0.5;
+  const highest = flight ? Math.max(...flight.base_z_m) : START_HEIGHT;
   const top = Math.max(highest + 0.14, 0.95);
   const wide = 1.05 * top;
   const svg = draw("svg", { viewBox: `${-wide / 2} ${-top} ${wide} ${top + 0.06}`, role: "img", preserveAspectRatio: "xMidYMax meet" });
-  svg.setAttribute("aria-label", `The robot to scale: thigh ${shown("thigh_length_m", l1)}, shank ${shown("shank_length_m", l2)}, jumping from 0.5 m to ${round(highest, 2)} m`);
+  svg.setAttribute("aria-label", `The robot to scale: thigh ${shown("thigh_length_m", l1)}, shank ${shown("shank_length_m", l2)}, jumping from ${START_HEIGHT} m to ${round(highest, 2)} m`);
   const font = `font-size: ${0.03 * top}px`;
   for (const h of ticks(0, top - 0.02, 5)) {
     svg.append(draw("line", { x1: -wide / 2, x2: wide / 2, y1: -h, y2: -h, class: "gridline", "stroke-width": h ? 0.003 : 0.008, ...(h ? {} : { style: "stroke: var(--soft)" }) }));
@@ -50,7 +51,7 @@ function buildStage(chosen) {
     draw("circle", { cx: 0, cy: l2, r: foot, fill: "var(--dark)" }));
   const housing = draw("g", {},
     draw("circle", { r: d.housing_radius_m, fill: "var(--metal)", ...stroke }), draw("circle", { r: d.output_radius_m, fill: "var(--dark)" }));
-  const pin = draw("circle", { r: 0.012, fill: "var(--card)" });
+  const pin = draw("circle", { r: PIN_RADIUS_M, fill: "var(--card)" });
   svg.append(path, base, shank, thigh, housing, pin);
   stage.append(svg);
   parts = { base, thigh, shank, housing, pin, l1, l2 };
@@ -61,13 +62,13 @@ function buildStage(chosen) {
 function setPose() {
   if (!parts) return;
   const { l1, l2 } = parts;
-  let x = 0, z = 0.5, hip, knee;
+  let x = 0, z = START_HEIGHT, hip, knee;
   if (player.jump) {
     const j = player.jump, k = frameAt(player.time);
     const mix = (name) => j[name][k.i] + (j[name][k.i + 1] - j[name][k.i]) * k.f;
     x = mix("base_x_m"); z = mix("base_z_m"); hip = mix("hip_rad"); knee = mix("knee_rad");
   } else {
-    const span = 0.5 - current().foot_radius_m;
+    const span = START_HEIGHT - current().foot_radius_m;
     const cosine = Math.min(Math.max((span * span - l1 * l1 - l2 * l2) / (2 * l1 * l2), -1), 1);
     knee = Math.acos(cosine);
     hip = -Math.atan2(l2 * Math.sin(knee), l1 + l2 * Math.cos(knee));

@@ -63,7 +63,7 @@ function drawMap(node) {
         text: rows.map((p) => {
           const g = best(p) ? page.gearboxes[p.gearbox] : null;
           const teeth = g ? `<br>${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth}, module ${g.module_mm} mm, ${g.planets} planets` : "<br>not the lighter family here";
-          return `<b>${family}</b>, [${round(p.ratio_low, 1)}, ${round(p.ratio_low + 0.1, 1)})<br>${round(p.family_mass_kg[family])} kg${teeth}`;
+          return `<b>${family}</b>, [${round(p.ratio_low, 1)}, ${round(p.ratio_low + map.ratio_step, 1)})<br>${round(p.family_mass_kg[family])} kg${teeth}`;
         }),
         hovertemplate: "%{text}<extra></extra>",
       });
@@ -72,8 +72,8 @@ function drawMap(node) {
   Plotly.react(node, list, layout(axis("gear ratio"), axis("actuator mass with motor, kg"), {
     showlegend: true, legend: { x: 0, y: 1, bgcolor: "rgba(0,0,0,0)" },
   }), CONFIG);
-  describe(node, `Actuator mass over gear ratio; ${page.maps.map((m) => m.points.filter((p) => p.gearbox !== null).length).join(" and ")} intervals of 0.1 have a gearbox`);
-  byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of 0.1${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
+  describe(node, `Actuator mass over gear ratio; ${page.maps.map((m) => m.points.filter((p) => p.gearbox !== null).length).join(" and ")} intervals of ${page.maps[0].ratio_step} have a gearbox`);
+  byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of ${page.maps[0].ratio_step}${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
 }
 
 function drawLinks(node) {
@@ -88,9 +88,10 @@ function drawLinks(node) {
     ];
   });
   const mm = inMm(page.maps[0].leg);
+  const { published_link_kg: base, published_link_kg_per_m: slope } = page.constants;
   const list = [
     ...links,
-    line("published link", mm, mm.map((l) => 0.235 + 0.000828 * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
+    line("published link", mm, page.maps[0].leg.length_m.map((l) => base + slope * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
   ];
   Plotly.react(node, list, layout(axis("link length, mm"), axis("mass, kg", { rangemode: "tozero" }), {
     showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },

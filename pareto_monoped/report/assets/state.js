@@ -47,21 +47,17 @@ function inRanges(study, row) {
   return true;
 }
 
-function gearboxAt(study, ratio) {
-  const point = page.maps[study.map].points.find((p) => Math.round(p.ratio_low * 10) === Math.floor(ratio * 10 + 1e-7));
-  return point && point.gearbox !== null ? page.gearboxes[point.gearbox] : null;
-}
-
 // The selection as one object, a trial or one of the paper's cases.
 function subject() {
   const study = current();
   if (state.caseName !== null) {
-    const made = study.cases.find((c) => c.name === state.caseName);
+    const at = study.cases.findIndex((c) => c.name === state.caseName);
+    const made = study.cases[at];
     const published = page.published.find((c) => c.name === state.caseName);
     const values = published.design;
     return {
       kind: "case", study, name: made.name, values, measures: made, more: {}, jump: made.jump, status: made.status,
-      hip: gearboxAt(study, values.hip_ratio), knee: gearboxAt(study, values.knee_ratio), published,
+      hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
       why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
     };
   }

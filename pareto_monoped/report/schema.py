@@ -80,11 +80,12 @@ class LegTable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ActuatorTable:
-    """The stage 1 map of one motor, and the leg that fits it."""
+class MotorMap:
+    """The stage 1 map of one motor, the width of its intervals, and the leg that fits the motor."""
 
     motor: str
     points: Sequence[MapPoint]
+    ratio_step: float
     leg: LegTable
 
 
@@ -202,6 +203,7 @@ class StudyCard:
     jumps: Mapping[str, Jump]
     models: Mapping[str, Model3D]
     cases: Sequence[Case]
+    case_gearboxes: Mapping[str, Sequence[int]]
     history: Mapping[str, Column]
     weighted: Sequence[Sequence[float]]
     floor_mass_kg: Number
@@ -230,16 +232,32 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Constants:
+    """Physical constants and published numbers that the page's scripts compute with.
+
+    Attributes:
+        gravity_m_per_s2, base_start_height_m: for work against gravity, m g (H - start height).
+        published_link_kg, published_link_kg_per_m: straight line of link mass over link length.
+    """
+
+    gravity_m_per_s2: float
+    base_start_height_m: float
+    published_link_kg: float
+    published_link_kg_per_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Payload:
     """Everything on the page."""
 
     version: str
     title: str
+    constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]
     published: Sequence[Mapping[str, Any]]
     literal: Sequence[Mapping[str, Any]]
     gearboxes: Sequence[Gearbox]
-    maps: Sequence[ActuatorTable]
+    maps: Sequence[MotorMap]
     studies: Sequence[StudyCard]
     comparison: Comparison | None = field(default=None)

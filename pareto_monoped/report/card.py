@@ -1,0 +1,170 @@
+"""One study -> its part of the page: pure functions of the stored study and of what was simulated again for it."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.errors import SelectionError
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.shank import foot_part
+from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
+from pareto_monoped.report.comparison import group_of
+from pareto_monoped.report.motors import gearbox_numbers
+from pareto_monoped.report.provenance import command, provenance
+from pareto_monoped.report.resimulation import Resimulation
+from pareto_monoped.report.schema import Model3D, Picked, StudyCard
+from pareto_monoped.report.summary import notes, sentences
+from pareto_monoped.report.trials import (
+    LETTERS,
+    audit_records,
+    front_columns,
+    history_columns,
+    thinned,
+    trial_columns,
+)
+from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.settings import WeightedSettings
+
+HEADLINES_M = (0.7, 0.8, 0.9)
+"""Heights at which designs are pointed out and studies compared; 0.8 m is that of the paper's Case C."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """A stored study, what was simulated again for it, and its exported models by trial."""
+
+    data: StudyData
+    resimulation: Resimulation
+    models: Mapping[int, Model3D]
+
+
+def study_card(source: Source, label: str, most_rows: int, map_number: int, first_gearbox: int) -> StudyCard:
+    """What the page says of one study.
+
+    Args:
+        source: the study.
+        label: its name on the page.
+        most_rows: trials that the page may hold of it.
+        map_number: which of the page's stage 1 maps is its motor's.
+        first_gearbox: number of that map's first gearbox.
+    """
+    data, study, again = source.data, source.data.study, source.resimulation
+    front = data.front()
+    weights = best_of_weights(data)
+    always = np.isin(data.trials["trial"], [*front["trial"], *data.ill_conditioned, *(trial for _, trial in weights)])
+    trials = thinned(data.trials, always, most_rows)
+    row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
+    state = data.trials["state"]
+    feasible_kg = data.trials.loc[state == "feasible", "mass_kg"]
+    foot_kg, foot_radius_m = _foot(data)
+    cases = pd.DataFrame([case.design.as_dict() for case in PAPER_CASES.values()])
+
+    def gearboxes(designs: pd.DataFrame) -> dict[str, list[int]]:
+        return {
+            joint: gearbox_numbers(data.actuator_map, designs[f"{joint}_ratio"].to_numpy(dtype=float), first_gearbox)
+            for joint in ("hip", "knee")
+        }
+
+    return StudyCard(
+        label=label,
+        name=study.name,
+        description=study.description,
+        database=str(data.db),
+        motor=data.actuator_map.motor.name,
+        motor_name=study.motor,
+        calibration=data.meta.calibration,
+        calibration_name=study.calibration,
+        map=map_number,
+        algorithm=study.algorithm.name,
+        seed=study.seed,
+        group=group_of(data),
+        state="finished" if data.meta.finished else "unfinished",
+        budget=data.meta.budget,
+        seconds=data.wall_time_s,
+        counts={name: int((state == name).sum()) for name in LETTERS} | {"total": len(data.trials)},
+        reasons=_failures(data.trials),
+        hypervolume=float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
+        reference=asdict(data.reference_point),
+        bounds={
+            name: [value.lower, value.upper] if isinstance(value, Bounds) else [value, value]
+            for name, value in study.variables.items()
+        },
+        summary=sentences(data, front, again.cases),
+        notes=notes(data, again),
+        trials=trial_columns(trials, gearboxes(trials), len(data.trials)),
+        front=[row_of[int(trial)] for trial in front["trial"]],
+        ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
+        picks=_picks(front, row_of),
+        more=front_columns(front, _body_masses_kg(data, front)),
+        audits=audit_records(data.audits),
+        jumps={str(trial): jump for trial, jump in again.jumps.items()},
+        models={str(trial): model for trial, model in source.models.items()},
+        cases=again.cases,
+        case_gearboxes=gearboxes(cases),
+        history=history_columns(data.history),
+        weighted=[[weight, row_of[trial]] for weight, trial in weights],
+        floor_mass_kg=float(feasible_kg.min()) if len(feasible_kg) else None,
+        foot_mass_kg=foot_kg,
+        foot_radius_m=foot_radius_m,
+        provenance=provenance(data),
+        reproduce=command(data),
+    )
+
+
+def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float64]:
+    """Masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
+    if len(designs) == 0:
+        return np.zeros((0, 3))
+    values = designs[list(NAMES)].to_numpy(dtype=np.float64)
+    return robot_arrays(values, data.actuator_map, data.calibration.mass).body_mass_kg
+
+
+def _foot(data: StudyData) -> tuple[float, float]:
+    """Mass in kg, which the shank's mass includes, and radius in m of the foot that was simulated."""
+    given, leg = data.calibration.mass, leg_dimensions(data.actuator_map)
+    mass_kg = float(foot_part(0.0, leg).mass_kg()) if given.foot_mass_kg is None else given.foot_mass_kg
+    radius_m = 1e-3 * leg.foot_radius_mm if given.foot_radius_m is None else given.foot_radius_m
+    return mass_kg, radius_m
+
+
+def _failures(trials: pd.DataFrame) -> dict[str, int]:
+    """Why trials failed, and how many of each."""
+    counts = trials.loc[trials["state"] == "failed", "status"].value_counts()
+    return {str(status): int(count) for status, count in counts.items()}
+
+
+def _picks(front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
+    """The knee, and the designs of least energy at the headline heights that the front reaches."""
+    named: list[tuple[str, Selector]] = [
+        ("knee", Knee()),
+        *((f"{height:g} m", MinHeight(height_m=height)) for height in HEADLINES_M),
+    ]
+    found: list[Picked] = []
+    for name, selector in named:
+        try:
+            picked = pick(front, selector)
+        except SelectionError:
+            continue
+        if row_of[picked.trial] not in [p.row for p in found]:
+            found.append(Picked(name=name, row=row_of[picked.trial], why=picked.why))
+    return found
+
+
+def best_of_weights(data: StudyData) -> list[tuple[float, int]]:
+    """Each run of a weighted search: the weight of the height, and the trial of least cost."""
+    settings = data.study.algorithm
+    if not isinstance(settings, WeightedSettings):
+        return []
+    rows = data.trials[(data.trials["state"] == "feasible") & data.trials["height_weight"].notna()]
+    best = []
+    for weight, run in rows.groupby("height_weight"):
+        share = float(weight)
+        cost = share * settings.height_scale_j * np.exp(-run["height_m"]) + (1.0 - share) * run["energy_j"]
+        best.append((share, int(run.loc[cost.idxmin(), "trial"])))
+    return best

@@ -1,0 +1,83 @@
+"""The trials of a study as columns: which of them the page holds, and what it says of each."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
+from pareto_monoped.report.rounding import column
+from pareto_monoped.report.schema import Column, Trials
+
+MOST_ROWS = 20_000
+"""Trials on one page, of all its studies together. A page with more says that it leaves some dominated trials out."""
+LETTERS = {"feasible": "f", "infeasible": "i", "failed": "x"}
+"""States of a trial, and the letter that stands for each on the page."""
+_HISTORY_POINTS = 300  # of a convergence curve
+
+
+def rows_per_study(sizes: Sequence[int]) -> list[int]:
+    """How many rows each study gets: all of them, or a share of ``MOST_ROWS`` in proportion to its trials."""
+    total = sum(sizes)
+    return [size if total <= MOST_ROWS else max(size * MOST_ROWS // total, 1) for size in sizes]
+
+
+def thinned(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> pd.DataFrame:
+    """At most ``most`` rows: those at the mask ``always``, however many, and others spread evenly."""
+    if len(trials) <= most:
+        return trials.reset_index(drop=True)
+    others = np.flatnonzero(~always)
+    room = max(most - int(always.sum()), 0)
+    chosen = others[np.linspace(0, len(others) - 1, room).astype(np.intp)] if room else others[:0]
+    rows = np.sort(np.concatenate((np.flatnonzero(always), chosen)))
+    return trials.iloc[rows].reset_index(drop=True)
+
+
+def trial_columns(trials: pd.DataFrame, gearboxes: Mapping[str, Sequence[int]], total: int) -> Trials:
+    """The trials on the page.
+
+    Args:
+        trials: one row per trial.
+        gearboxes: number of each trial's gearbox, by joint.
+        total: trials in the database.
+    """
+    names = [*NAMES, "height_m", "energy_j", *EVERY_TRIAL]
+    columns: dict[str, Column] = {name: column(trials[name]) for name in names}
+    columns |= {f"{joint}_gearbox": numbers for joint, numbers in gearboxes.items()}
+    return Trials(
+        trial=trials["trial"].tolist(),
+        state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),
+        columns=columns,
+        total=total,
+    )
+
+
+def front_columns(front: pd.DataFrame, bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
+    """What the page has of the front alone: all measures, and the masses of base, thigh and shank, shape (n, 3)."""
+    names = [q.name for q in QUANTITIES if q.name in front.columns and q.name not in (*NAMES, "height_m", "energy_j")]
+    bodies = {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
+    return {name: column(front[name]) for name in names} | bodies
+
+
+def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
+    """Measures, verdict and reason of each audit, by trial number."""
+    names = [name for name in AUDIT if name in audits.columns]
+    # An infinite change (the perturbed design did not jump) becomes None; the reason says it in words.
+    values = {name: column(audits[name]) for name in names}
+    reasons = audits["reason"].tolist() if "reason" in audits.columns else [""] * len(audits)
+    return {
+        str(int(trial)): {name: values[name][i] for name in names} | {"good": bool(good), "reason": str(reasons[i])}
+        for i, (trial, good) in enumerate(zip(audits["trial"], audits["well_conditioned"], strict=True))
+    }
+
+
+def history_columns(history: pd.DataFrame) -> dict[str, Column]:
+    """Hypervolume over evaluations, at no more points than a chart can show."""
+    rows = np.unique(np.linspace(0, len(history) - 1, min(len(history), _HISTORY_POINTS)).astype(int))
+    return {
+        name: column(history[name].to_numpy()[rows], 6) if len(history) else []
+        for name in ("evaluations", "hypervolume")
+    }
