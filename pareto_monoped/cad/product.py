@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Pose, instances
-from pareto_monoped.cad.kernel.client import Leaf, SolidFacts, Tree, solid_facts
+from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly, StepPlacement, solid_facts
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_of, placed
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.robot.build import Robot
@@ -96,15 +96,15 @@ def build_product(robot: Robot, pose: Pose) -> Product:
     )
 
 
-def step_tree(product: Product, name: str) -> Tree:
+def step_assembly(product: Product, name: str) -> StepAssembly:
     """What the kernel writes a product's STEP files from."""
-    units: dict[str, list[Leaf]] = {unit.name: [] for unit in product.robot.units}
-    for instance, kind in product.placed():
-        units[instance.unit].append(Leaf(kind=kind.name, matrix=instance.world))
-    return Tree(
+    units: dict[str, list[StepPlacement]] = {unit.name: [] for unit in product.robot.units}
+    for instance, unique in product.placed():
+        units[instance.unit].append(StepPlacement(part=unique.name, matrix=instance.world))
+    return StepAssembly(
         name=name,
-        kinds={kind.name: kind.part for kind in product.unique},
-        units={unit: tuple(leaves) for unit, leaves in units.items()},
+        parts={unique.name: unique.part for unique in product.unique},
+        units={unit: tuple(placements) for unit, placements in units.items()},
     )
 
 

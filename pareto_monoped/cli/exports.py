@@ -2,19 +2,16 @@
 
 import math
 import os
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from pareto_monoped.cli.fronts import required, selector_options
-from pareto_monoped.design import NAMES, PAPER_CASES, Design
+from pareto_monoped.design import PAPER_CASES
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.motors import Motor
     from pareto_monoped.cad.jobs import Job
-    from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.pareto.pick import Selector
 
 
@@ -53,106 +50,68 @@ def export(
     nothing is written if a check fails. An export's design.json holds its motor and jump model too, so that --record
     needs neither the study nor its files.
     """
+    _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg)
+    from pareto_monoped.cad.jobs import case_job, front_jobs, record_job, trial_job
+    from pareto_monoped.pareto.pick import pick
+    from pareto_monoped.study.reader import read_study
+
+    names = None if formats is None else [name.strip() for name in formats.split(",")]
+    angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
+    if record is not None:
+        _one(record_job(record, folder=output, formats=names, force=force, note=_note))
+    elif case is not None:
+        _one(case_job(case, folder=output, formats=names, force=force, **angles))
+    elif whole_front:
+        jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
+        _many(jobs, workers or os.cpu_count() or 1)
+    else:
+        study, wanted = _given(db), required(selector)
+        data = read_study(study)
+        picked = pick(data.front(), wanted)
+        _note(picked.why)
+        _one(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles))
+
+
+def _refuse_mixed_sources(
+    db: Path | None,
+    selector: "Selector | None",
+    case: str | None,
+    record: Path | None,
+    whole_front: bool,
+    hip_deg: float | None,
+    knee_deg: float | None,
+) -> None:
+    """A usage error for options that exclude each other."""
     if record is not None:
         if db is not None or selector is not None or case is not None or whole_front:
             raise click.UsageError("--record takes no DB, no selector, no --case and no --front; drop one of them")
         if hip_deg is not None or knee_deg is not None:
             raise click.UsageError("--record takes no --hip-deg and no --knee-deg, it holds the pose; drop them")
-        from pareto_monoped.cad.jobs import recorded
-
-        _one(
-            recorded(
-                record,
-                folder=output,
-                formats=_names(formats),
-                force=force,
-                note=lambda text: click.echo(text, err=True),
-            )
-        )
-        return
     if whole_front and (selector is not None or case is not None):
         raise click.UsageError("--front takes no selector and no --case; drop one of them")
-    if case is not None:
-        if db is not None or selector is not None:
-            raise click.UsageError(f"--case {case} takes no DB and no selector; drop one of them")
-        from pareto_monoped.actuator.motors import load_motor
-        from pareto_monoped.jump.calibration import load_calibration
+    if case is not None and (db is not None or selector is not None):
+        raise click.UsageError(f"--case {case} takes no DB and no selector; drop one of them")
 
-        motor, calibration = load_motor("VT8020"), load_calibration("reference")
-        job = _job(PAPER_CASES[case].design, motor, calibration, output, formats, force, {"case": case})
-        _one(_posed(job, hip_deg, knee_deg))
-        return
+
+def _given(db: Path | None) -> Path:
     if db is None:
         raise click.UsageError("no DB given; give the study's database, or --case, or --record")
-    from pareto_monoped.pareto.pick import pick
-    from pareto_monoped.study.reader import read_study
-
-    if not whole_front:
-        wanted = required(selector)
-    data = read_study(db)
-    rows = data.front()
-    if not whole_front:
-        picked = pick(rows, wanted)
-        click.echo(picked.why, err=True)
-        rows = rows[rows["trial"] == picked.trial]
-    jobs = [
-        _job(
-            Design.from_array([row[name] for name in NAMES]),
-            data.motor,
-            data.calibration,
-            output / f"trial_{int(row['trial'])}" if whole_front else output,
-            formats,
-            force,
-            {"study": data.study.name, "trial": int(row["trial"])},
-        )
-        for row in rows.iloc[::every].to_dict(orient="records")
-    ]
-    if whole_front:
-        _many(jobs, workers or os.cpu_count() or 1)
-    else:
-        _one(_posed(jobs[0], hip_deg, knee_deg))
+    return db
 
 
-def _names(formats: str | None) -> list[str] | None:
-    return None if formats is None else [name.strip() for name in formats.split(",")]
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)
 
 
-def _posed(job: "Job", hip_deg: float | None, knee_deg: float | None) -> "Job":
-    return replace(
-        job,
-        hip_rad=None if hip_deg is None else math.radians(hip_deg),
-        knee_rad=None if knee_deg is None else math.radians(knee_deg),
-    )
-
-
-def _job(
-    design: Design,
-    motor: "Motor",
-    calibration: "Calibration",
-    folder: Path,
-    formats: str | None,
-    force: bool,
-    source: dict[str, Any],
-) -> "Job":
-    from pareto_monoped.cad.export import chosen_formats
-    from pareto_monoped.cad.jobs import Job
-
-    return Job(
-        design=design,
-        motor=motor,
-        calibration=calibration,
-        folder=folder,
-        formats=chosen_formats(_names(formats)),
-        force=force,
-        source=source,
-    )
+def _note(text: str) -> None:
+    click.echo(text, err=True)
 
 
 def _one(job: "Job") -> None:
-    from pareto_monoped.cad.jobs import run
+    from pareto_monoped.cad.batch import run
 
-    record = run(job, progress=lambda step: click.echo(f"{step} ...", err=True))
-    click.echo(f"wrote {job.folder} ({len(record['files'])} files)", err=True)
+    record = run(job, progress=lambda step: _note(f"{step} ..."))
+    _note(f"wrote {job.folder} ({len(record['files'])} files)")
     for name in ("searched", "as_built"):
         jump = record["jumps"][name]
         height, energy = jump["height_m"], jump["energy_j"]
@@ -164,7 +123,7 @@ def _many(jobs: "list[Job]", workers: int) -> None:
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from pareto_monoped.cad.jobs import run_all
+    from pareto_monoped.cad.batch import run_all
 
     columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True)) as bar:

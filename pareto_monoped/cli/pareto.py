@@ -30,6 +30,8 @@ def pareto(
 
     Safe to repeat: a finished study is not run again, and CAD and report that are up to date are not made again.
     """
+    from pareto_monoped.cad.jobs import trial_job
+    from pareto_monoped.cad.made import is_made
     from pareto_monoped.pareto.pick import Knee, pick
     from pareto_monoped.study.definition import load_study
     from pareto_monoped.study.reader import read_study
@@ -47,7 +49,9 @@ def pareto(
     data = read_study(db)
     knee = pick(data.front(), Knee())
     design = cad / f"trial_{knee.trial}"
-    _step(3, "export", db, "--trial", knee.trial, "-o", design, made=(design / "design.json").exists)
+    job = trial_job(data, knee.trial, folder=design)
+    again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []
+    _step(3, "export", db, "--trial", knee.trial, "-o", design, *again, made=lambda: is_made(job))
     _step(4, "report", db, "-o", report, "--exports", cad, made=lambda: _newer(report, db, design / "design.json"))
 
     click.echo("\nMade")

@@ -9,7 +9,7 @@ import pytest
 
 from pareto_monoped.cad.kernel.process import step_files
 from pareto_monoped.cad.kernel.solids import solid_from
-from pareto_monoped.cad.product import build_product, step_tree
+from pareto_monoped.cad.product import build_product, step_assembly
 
 _EXPORTS = """
 import sys
@@ -33,10 +33,11 @@ def exports(place, *cases):
 def test_step_files_of_both_actuators_come_out_the_same_twice(product):
     # An ISSPG and an ESSPG: gears have the most faces, whose order must not change. All else is left out for time.
     units = tuple(unit for unit in product.robot.units if unit.name.endswith("_actuator"))
-    tree = step_tree(build_product(dataclasses.replace(product.robot, units=units), product.pose), "monoped")
-    one = step_files(tree)
+    actuators = build_product(dataclasses.replace(product.robot, units=units), product.pose)
+    assembly = step_assembly(actuators, "monoped")
+    one = step_files(assembly)
     solid_from.cache_clear()
-    assert step_files(tree) == one
+    assert step_files(assembly) == one
 
 
 @pytest.mark.long

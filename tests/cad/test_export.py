@@ -5,9 +5,11 @@ import json
 
 import pytest
 
-from pareto_monoped.cad import export, jobs
+from pareto_monoped.cad import batch, export, jobs
+from pareto_monoped.cad.as_built import as_built, require_fit
 from pareto_monoped.cad.check.checks import Check
-from pareto_monoped.cad.export import as_built, export_design
+from pareto_monoped.cad.export import export_design
+from pareto_monoped.cad.made import is_made
 from pareto_monoped.cad.write.folder import safe
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
@@ -81,7 +83,7 @@ def test_a_failure_while_writing_leaves_nothing(quick, monkeypatch, actuator_map
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(export.documents, "bom", full)
+    monkeypatch.setattr(export, "parts_list", full)
     with pytest.raises(OutputError, match="No space left on device"):
         export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
     assert list(tmp_path.iterdir()) == []
@@ -102,13 +104,13 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
 def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
     robot, leg = build_robot(DESIGN, actuator_map), leg_dimensions(actuator_map)
     weak = dataclasses.replace(leg.chain, breaking_n=1000.0)
-    export._require_fit(robot, leg)
+    require_fit(robot, leg)
     with pytest.raises(DesignError, match=r"^bolt circle of the hip actuator = 98\.0 mm: must be 100\.0 mm.*drilled"):
-        export._require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
+        require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
     with pytest.raises(DesignError, match=r"^back's bolt circle of the hip actuator = 51\.0 mm: must be 50\.0 mm"):
-        export._require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
+        require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
     with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 12\.8 N m.*05B-1.*lower knee_ratio"):
-        export._require_fit(robot, dataclasses.replace(leg, chain=weak))
+        require_fit(robot, dataclasses.replace(leg, chain=weak))
 
 
 def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):
@@ -120,10 +122,10 @@ def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp
         formats=(),
         source={"trial": 1},
     )
-    assert not jobs.is_made(job)
-    jobs.run(job)
-    assert jobs.is_made(job)
-    assert jobs.run_all([job], workers=2) == 0
-    assert not jobs.is_made(dataclasses.replace(job, design=DESIGN.replace({"shank_length_m": 0.35})))
+    assert not is_made(job)
+    batch.run(job)
+    assert is_made(job)
+    assert batch.run_all([job], workers=2) == 0
+    assert not is_made(dataclasses.replace(job, design=DESIGN.replace({"shank_length_m": 0.35})))
     (tmp_path / "trial_1" / "bom.csv").unlink()
-    assert not jobs.is_made(job)
+    assert not is_made(job)

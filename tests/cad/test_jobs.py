@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.cad import batch, jobs
 from pareto_monoped.cad import export as export_room
-from pareto_monoped.cad import jobs
 from pareto_monoped.cli import main
+from pareto_monoped.config import checked
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import load_calibration
@@ -44,7 +45,7 @@ def original(tmp_path_factory):
         source={"study": "mine", "trial": 7},
         knee_rad=1.25,
     )
-    jobs.run(job)
+    batch.run(job)
     motor.unlink()
     model.unlink()
     return job.folder
@@ -73,9 +74,9 @@ def test_an_export_is_made_again_byte_for_byte(original, tmp_path, capsys):
 
 
 def test_formats_of_the_record_can_be_limited(original, tmp_path):
-    job = jobs.recorded(original / "design.json", folder=tmp_path / "again", formats=["dxf"])
+    job = jobs.record_job(original / "design.json", folder=tmp_path / "again", formats=["dxf"])
     assert job.formats == ("dxf",)
-    assert jobs.recorded(original / "design.json", folder=tmp_path / "again").formats == tuple(
+    assert jobs.record_job(original / "design.json", folder=tmp_path / "again").formats == tuple(
         name for name in jobs.FORMATS if name in FORMATS
     )
 
@@ -83,7 +84,7 @@ def test_formats_of_the_record_can_be_limited(original, tmp_path):
 @pytest.mark.parametrize("name", ["VT8020", "U8", "MN8014"])
 def test_a_motor_comes_back_from_its_values(name):
     motor = load_motor(name)
-    assert jobs.checked(type(motor), json.loads(json.dumps(asdict(motor))), source="") == motor
+    assert checked(type(motor), json.loads(json.dumps(asdict(motor))), source="") == motor
 
 
 def damaged(change):
@@ -178,7 +179,7 @@ def test_names_in_a_record_cannot_lead_outside_its_folder(original, tmp_path, mo
     path = damaged(hostile)(original, tmp_path / "design.json")
     notes = []
     folder = tmp_path / "out"
-    jobs.run(jobs.recorded(path, folder=folder, formats=(), note=notes.append))
+    batch.run(jobs.record_job(path, folder=folder, formats=(), note=notes.append))
     assert len(notes) == 1
     assert "was made by '../../x'" in notes[0]
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["design.json", "out", "precious.txt"]
@@ -188,7 +189,7 @@ def test_names_in_a_record_cannot_lead_outside_its_folder(original, tmp_path, mo
 
 def test_a_record_without_its_own_words_is_refused():
     with pytest.raises(InputError, match=r"give the design\.json of an export"):
-        jobs.recorded(Path("/"), folder=Path("x"))
+        jobs.record_job(Path("/"), folder=Path("x"))
 
 
 @pytest.mark.parametrize(

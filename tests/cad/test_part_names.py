@@ -9,7 +9,7 @@ from pareto_monoped.cad.check import checks
 from pareto_monoped.cad.check.overlaps import in_gear_cycle, in_working_range
 from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.cad.picture.scenes import assembly_scene
-from pareto_monoped.cad.write.models import colliders, visuals
+from pareto_monoped.cad.write.visuals import colliders, visuals
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The CAD kernel in a process of its own: this side asks, ``kernel_process`` answers.
+"""The CAD kernel in a process of its own: this side asks, ``process`` answers.
 
 The kernel holds Python's lock while it works, so that a thread would gain nothing; in its own process it builds, checks
 and writes solids while this one simulates, makes meshes and draws. The process is started once and serves every later
@@ -45,20 +45,26 @@ class SolidFacts:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Leaf:
-    """A part placed in a unit: name of its kind, and the 4 x 4 matrix to the assembly's frame in millimetres."""
+class StepPlacement:
+    """A part placed in a unit: name of the unique part, and the 4 x 4 matrix to the assembly's frame in millimetres."""
 
-    kind: str
+    part: str
     matrix: Floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tree:
-    """What the STEP files of a robot are written from: its kinds of parts by name, and the units with their leaves."""
+class StepAssembly:
+    """What the STEP files of a robot are written from.
+
+    Attributes:
+        name: of the robot.
+        parts: its unique parts by name.
+        units: its units by name, each with its placed parts.
+    """
 
     name: str
-    kinds: Mapping[str, Part]
-    units: Mapping[str, tuple[Leaf, ...]]
+    parts: Mapping[str, Part]
+    units: Mapping[str, tuple[StepPlacement, ...]]
 
 
 def start() -> None:
@@ -71,16 +77,16 @@ def solid_facts(parts: Sequence[Part]) -> "Future[list[SolidFacts]]":
     return _process().ask("solid_facts", list(parts))
 
 
-def step_files(tree: Tree) -> "Future[tuple[bytes, dict[str, bytes]]]":
-    """The STEP file of the assembly, and those of its kinds of parts by name."""
-    return _process().ask("step_files", tree)
+def step_files(assembly: StepAssembly) -> "Future[tuple[bytes, dict[str, bytes]]]":
+    """The STEP file of the assembly, and those of its unique parts by name."""
+    return _process().ask("step_files", assembly)
 
 
 class _Process:
     """One kernel process; questions are answered in the order in which they are asked."""
 
     def __init__(self) -> None:
-        # Found where this process finds it, and nothing from the folder that happens to be the current one.
+        # Use this process's import path, never the working directory.
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         self.process = subprocess.Popen(
             [sys.executable, "-P", "-m", "pareto_monoped.cad.kernel.process"],

@@ -1,4 +1,4 @@
-"""The process that holds the CAD kernel: answers the questions of ``kernel`` until its input ends."""
+"""The process that holds the CAD kernel: answers the questions of ``client`` until its input ends."""
 
 import os
 import pickle
@@ -15,7 +15,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from pareto_monoped.cad.kernel import step
-from pareto_monoped.cad.kernel.client import SolidFacts, Tree
+from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly
 from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
@@ -25,14 +25,13 @@ def solid_facts(parts: list[Part]) -> list[SolidFacts]:
     return [_facts(part.prisms, part.balls) for part in parts]
 
 
-def step_files(tree: Tree) -> tuple[bytes, dict[str, bytes]]:
-    """The STEP file of the assembly, and those of its kinds of parts by name."""
-    # Kinds of one geometry, such as both sprockets, share a solid that is kept; a document takes it for one part.
-    solids = {name: BRepBuilderAPI_Copy(solid_of(part)).Shape() for name, part in tree.kinds.items()}
-    colours = {name: part.material.colour for name, part in tree.kinds.items()}
+def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
+    """The STEP file of the assembly, and those of its unique parts by name."""
+    # Parts of one geometry, such as both sprockets, share a solid in the cache; a document would take them for one.
+    solids = {name: BRepBuilderAPI_Copy(solid_of(part)).Shape() for name, part in assembly.parts.items()}
     return (
-        step.assembly_step(tree, solids),
-        {name: step.part_step(solid, name, colours[name]) for name, solid in solids.items()},
+        step.assembly_step(assembly, solids),
+        {name: step.part_step(solid, name, assembly.parts[name].material.colour) for name, solid in solids.items()},
     )
 
 

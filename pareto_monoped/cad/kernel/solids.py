@@ -19,8 +19,8 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
-from pareto_monoped.cad.shape.curves import Loop, Points, Spline, ends, on_arc
-from pareto_monoped.cad.shape.outlines import loops
+from pareto_monoped.cad.shape.curves import Contour, Points, Spline, ends, on_arc
+from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.shape.stacks import regrouped
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line
@@ -54,10 +54,10 @@ def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     return found
 
 
-def wire_of(loop: Loop, z_mm: float = 0.0) -> TopoDS_Wire:
+def wire_of(contour: Contour, z_mm: float = 0.0) -> TopoDS_Wire:
     """A closed curve as a wire in a plane across the z axis, anticlockwise."""
     wire = BRepBuilderAPI_MakeWire()
-    for edge in _circle(loop.circle, z_mm) if loop.circle is not None else _edges(loop, z_mm):
+    for edge in _circle(contour.circle, z_mm) if contour.circle is not None else _edges(contour, z_mm):
         wire.Add(edge)
     return wire.Wire()
 
@@ -67,8 +67,8 @@ def _circle(circle: Circle, z_mm: float) -> Iterator[TopoDS_Edge]:
     yield BRepBuilderAPI_MakeEdge(gp_Circ(axes, float(circle.radius_mm))).Edge()
 
 
-def _edges(loop: Loop, z_mm: float) -> Iterator[TopoDS_Edge]:
-    for piece in loop.pieces:
+def _edges(contour: Contour, z_mm: float) -> Iterator[TopoDS_Edge]:
+    for piece in contour.pieces:
         if isinstance(piece, Spline):
             yield BRepBuilderAPI_MakeEdge(_spline(piece, z_mm)).Edge()
             continue
@@ -95,9 +95,9 @@ def _spline(piece: Spline, z_mm: float) -> Geom_BSplineCurve:
 
 def _extruded(prism: Prism) -> Iterator[TopoDS_Shape]:
     z0, z1 = float(prism.z0_mm), float(prism.z1_mm)
-    outlines = loops(prism.outline)
+    outlines = contours(prism.outline)
     # Holes belong to the one region; a pattern of discs has none.
-    holes = [wire_of(loop, z0) for hole in prism.holes for loop in loops(hole)] if len(outlines) == 1 else []
+    holes = [wire_of(contour, z0) for hole in prism.holes for contour in contours(hole)] if len(outlines) == 1 else []
     for outline in outlines:
         face = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, z0), _UP), wire_of(outline, z0), True)
         for hole in holes:

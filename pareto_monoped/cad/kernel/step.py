@@ -27,7 +27,7 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from OCP.XSControl import XSControl_WorkSession
 
-from pareto_monoped.cad.kernel.client import Tree
+from pareto_monoped.cad.kernel.client import StepAssembly
 
 Colour = tuple[float, float, float]
 
@@ -102,16 +102,16 @@ def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
     return document.text(name, {name: colour})
 
 
-def assembly_step(tree: Tree, solids: Mapping[str, TopoDS_Shape]) -> bytes:
-    """The assembly as a tree, the robot, its units, their parts; every kind of part is written once."""
+def assembly_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
+    """The assembly as a tree: the robot, its units, their parts. Each unique part is written once."""
     document = _Document()
     labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []
-    for unit, leaves in tree.units.items():
-        members = [(leaf.kind, labels[leaf.kind], leaf.matrix) for leaf in leaves]
+    for unit, placements in assembly.units.items():
+        members = [(placement.part, labels[placement.part], placement.matrix) for placement in placements]
         units.append((unit, document.assembly(unit, members), np.eye(4)))
-    document.assembly(tree.name, units)
-    return document.text(tree.name, {name: part.material.colour for name, part in tree.kinds.items()})
+    document.assembly(assembly.name, units)
+    return document.text(assembly.name, {name: part.material.colour for name, part in assembly.parts.items()})
 
 
 def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:

@@ -19,7 +19,7 @@ class Spline:
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class Contour:
     """A closed curve: pieces that join end to end, anticlockwise; or a full circle."""
 
     pieces: tuple[Line | Arc | Spline, ...] = ()
@@ -42,14 +42,14 @@ def on_arc(arc: Arc, angle_rad: float) -> Points:
     )
 
 
-def polygon(loop: Loop, tolerance_mm: float = 0.01) -> Points:
-    """Points along a loop, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
-    if loop.circle is not None:
-        circle = loop.circle
+def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
+    """Points along a contour, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
+    if contour.circle is not None:
+        circle = contour.circle
         full = Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)
         return _arc_points(full, tolerance_mm)
     rows = []
-    for piece in loop.pieces:
+    for piece in contour.pieces:
         if isinstance(piece, Line):
             rows.append(np.array([[piece.x0_mm, piece.y0_mm]], dtype=np.float64))
         elif isinstance(piece, Spline):

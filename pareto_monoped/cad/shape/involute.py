@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.shape.curves import Loop, Spline
+from pareto_monoped.cad.shape.curves import Contour, Spline
 from pareto_monoped.geometry.shapes import Arc, Line
 
 Point = NDArray[np.float64]
@@ -62,7 +62,7 @@ class Teeth:
         return float(at_pitch + _inv(self.pressure_angle_rad) - _inv(_angle(self.base_radius_mm, radius_mm)))
 
 
-def outline(teeth: Teeth) -> Loop:
+def outline(teeth: Teeth) -> Contour:
     """The closed outline of a gear, anticlockwise.
 
     Raises:
@@ -81,7 +81,7 @@ def outline(teeth: Teeth) -> Loop:
         pieces.append(Arc(0.0, 0.0, far, middle - far_angle, middle + far_angle))
         pieces += [_placed(piece, middle, mirror=False) for piece in reversed(half.outward)]
         pieces.append(Arc(0.0, 0.0, near, middle + near_angle, middle + turn - near_angle))
-    return Loop(pieces=tuple(pieces))
+    return Contour(pieces=tuple(pieces))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

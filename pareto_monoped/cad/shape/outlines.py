@@ -3,37 +3,37 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from pareto_monoped.cad.shape.curves import Loop, Points, polygon
+from pareto_monoped.cad.shape.curves import Contour, Points, polygon
 from pareto_monoped.cad.shape.involute import Teeth, outline
 from pareto_monoped.geometry.gears import FILLET, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Circle, Path, Pattern, Shape
 
 
-def loops(shape: Shape) -> tuple[Loop, ...]:
+def contours(shape: Shape) -> tuple[Contour, ...]:
     """The closed curves that bound a shape, one for each separate region.
 
     Raises:
         TypeError: a kind of shape that has no outline here.
     """
     if isinstance(shape, Circle):
-        return (Loop(circle=shape),)
+        return (Contour(circle=shape),)
     if isinstance(shape, Pattern):
         radius = float(shape.radius_mm)
-        return tuple(Loop(circle=Circle(radius_mm=radius, x_mm=x, y_mm=y)) for x, y in shape.centres_mm())
+        return tuple(Contour(circle=Circle(radius_mm=radius, x_mm=x, y_mm=y)) for x, y in shape.centres_mm())
     if isinstance(shape, Path):
-        return (Loop(pieces=shape.pieces),)
+        return (Contour(pieces=shape.pieces),)
     if isinstance(shape, ExternalGear | InternalGear):
         return (_gear(shape),)
     raise TypeError(f"no outline for a shape of kind {type(shape).__name__}")
 
 
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:
-    """Polygons of every loop of several shapes."""
-    return [polygon(loop, tolerance_mm) for shape in shapes for loop in loops(shape)]
+    """Polygons of every contour of several shapes."""
+    return [polygon(contour, tolerance_mm) for shape in shapes for contour in contours(shape)]
 
 
 @lru_cache(maxsize=64)
-def _gear(gear: ExternalGear | InternalGear) -> Loop:
+def _gear(gear: ExternalGear | InternalGear) -> Contour:
     module = float(gear.module_mm)
     return outline(
         Teeth(

@@ -1,13 +1,51 @@
-"""DXF drawings of laser-cut plates: the true outline and holes, without kerf, on one layer, in millimetres."""
+"""DXF drawings of laser-cut plates: the true outline and holes, without kerf, on one layer, in millimetres.
+
+A DXF file is a list of pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12).
+"""
+
+from collections.abc import Iterator
 
 import numpy as np
 
-from pareto_monoped.cad.shape.curves import Loop, Spline
-from pareto_monoped.cad.shape.outlines import loops
+from pareto_monoped.cad.shape.curves import Contour, Spline
+from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.shapes import Line
+from pareto_monoped.geometry.shapes import Arc, Circle, Line
 
 LAYER = "CUT"
+
+Pair = tuple[int, str]
+"""A group code and its value."""
+
+_HEAD: tuple[Pair, ...] = (
+    (0, "SECTION"),
+    (2, "HEADER"),
+    (9, "$ACADVER"),
+    (1, "AC1009"),  # release 12
+    (9, "$INSUNITS"),
+    (70, "4"),  # millimetres
+    (0, "ENDSEC"),
+)
+_LAYERS: tuple[Pair, ...] = (
+    (0, "SECTION"),
+    (2, "TABLES"),
+    (0, "TABLE"),
+    (2, "LAYER"),
+    (70, "1"),  # number of layers
+    (0, "LAYER"),
+    (2, LAYER),
+    (70, "0"),  # neither frozen nor locked
+    (62, "7"),  # black or white, whichever shows
+    (6, "CONTINUOUS"),
+    (0, "ENDTAB"),
+    (0, "ENDSEC"),
+)
+_ENTITIES: tuple[Pair, ...] = ((0, "SECTION"), (2, "ENTITIES"))
+_END: tuple[Pair, ...] = ((0, "ENDSEC"), (0, "EOF"))
+
+# Group codes of an entity's values; x of a point has the code given, y that plus 10, z that plus 20.
+_ENTITY, _ON_LAYER, _FIRST_POINT, _SECOND_POINT = 0, 8, 10, 11
+_RADIUS, _START_DEG, _END_DEG = 40, 50, 51
 
 
 def is_flat(part: Part) -> bool:
@@ -23,60 +61,55 @@ def dxf(part: Part) -> str:
     """
     if not is_flat(part):
         raise ValueError(f"{part.name}: not a flat part")
-    prism = part.prisms[0]
-    entities = [
-        line for shape in (prism.outline, *prism.holes) for loop in loops(shape) for line in _entities(part.name, loop)
-    ]
-    head = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1009", "9", "$INSUNITS", "70", "4", "0", "ENDSEC"]
-    layer = ["0", "LAYER", "2", LAYER, "70", "0", "62", "7", "6", "CONTINUOUS"]
-    tables = [
-        "0",
-        "SECTION",
-        "2",
-        "TABLES",
-        "0",
-        "TABLE",
-        "2",
-        "LAYER",
-        "70",
-        "1",
-        *layer,
-        "0",
-        "ENDTAB",
-        "0",
-        "ENDSEC",
-    ]
-    body = ["0", "SECTION", "2", "ENTITIES", *entities, "0", "ENDSEC", "0", "EOF"]
-    return "\n".join([*head, *tables, *body]) + "\n"
+    (prism,) = part.prisms
+    drawn = [contour for shape in (prism.outline, *prism.holes) for contour in contours(shape)]
+    entities = [pair for contour in drawn for pair in _contour(part.name, contour)]
+    pairs = (*_HEAD, *_LAYERS, *_ENTITIES, *entities, *_END)
+    return "".join(f"{code}\n{value}\n" for code, value in pairs)
 
 
-def _entities(name: str, loop: Loop) -> list[str]:
-    if loop.circle is not None:
-        c = loop.circle
-        return [*_kind("CIRCLE"), *_point(10, float(c.x_mm), float(c.y_mm)), "40", _n(float(c.radius_mm))]
-    found = []
-    for piece in loop.pieces:
+def _contour(name: str, contour: Contour) -> Iterator[Pair]:
+    """The entities of a closed curve of the part ``name``."""
+    if contour.circle is not None:
+        yield from _circle(contour.circle)
+    for piece in contour.pieces:
         if isinstance(piece, Spline):
             raise ValueError(f"{name}: a spline cannot be drawn for the laser")
-        if isinstance(piece, Line):
-            found += _kind("LINE") + _point(10, float(piece.x0_mm), float(piece.y0_mm))
-            found += _point(11, float(piece.x1_mm), float(piece.y1_mm))
-        else:
-            # DXF arcs run anticlockwise.
-            start, end = sorted((float(piece.start_rad), float(piece.end_rad)))
-            found += _kind("ARC") + _point(10, float(piece.x_mm), float(piece.y_mm))
-            found += ["40", _n(float(piece.radius_mm)), "50", _n(np.degrees(start) % 360.0)]
-            found += ["51", _n(np.degrees(end) % 360.0)]
-    return found
+        yield from _line(piece) if isinstance(piece, Line) else _arc(piece)
 
 
-def _kind(name: str) -> list[str]:
-    return ["0", name, "8", LAYER]
+def _circle(circle: Circle) -> Iterator[Pair]:
+    yield from _entity("CIRCLE")
+    yield from _point(_FIRST_POINT, float(circle.x_mm), float(circle.y_mm))
+    yield _RADIUS, _number(float(circle.radius_mm))
 
 
-def _point(code: int, x: float, y: float) -> list[str]:
-    return [str(code), _n(x), str(code + 10), _n(y), str(code + 20), "0.0"]
+def _line(line: Line) -> Iterator[Pair]:
+    yield from _entity("LINE")
+    yield from _point(_FIRST_POINT, float(line.x0_mm), float(line.y0_mm))
+    yield from _point(_SECOND_POINT, float(line.x1_mm), float(line.y1_mm))
 
 
-def _n(value: float) -> str:
+def _arc(arc: Arc) -> Iterator[Pair]:
+    # DXF arcs run anticlockwise.
+    start_rad, end_rad = sorted((float(arc.start_rad), float(arc.end_rad)))
+    yield from _entity("ARC")
+    yield from _point(_FIRST_POINT, float(arc.x_mm), float(arc.y_mm))
+    yield _RADIUS, _number(float(arc.radius_mm))
+    yield _START_DEG, _number(np.degrees(start_rad) % 360.0)
+    yield _END_DEG, _number(np.degrees(end_rad) % 360.0)
+
+
+def _entity(name: str) -> Iterator[Pair]:
+    yield _ENTITY, name
+    yield _ON_LAYER, LAYER
+
+
+def _point(code: int, x_mm: float, y_mm: float) -> Iterator[Pair]:
+    yield code, _number(x_mm)
+    yield code + 10, _number(y_mm)
+    yield code + 20, "0.0"
+
+
+def _number(value: float) -> str:
     return f"{value:.6f}"

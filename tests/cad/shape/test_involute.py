@@ -63,7 +63,7 @@ def test_flank_points_keep_the_definition_of_the_involute(inner):
 def test_pieces_join_and_fillets_are_tangent(teeth, inner):
     gear = (InternalGear if inner else ExternalGear)(teeth=teeth, module_mm=0.5)
     pitch = gear.pitch_radius_mm
-    loop = outline(
+    contour = outline(
         Teeth(
             count=teeth,
             module_mm=0.5,
@@ -73,10 +73,10 @@ def test_pieces_join_and_fillets_are_tangent(teeth, inner):
             inner=inner,
         )
     )
-    for one, following in zip(loop.pieces, (*loop.pieces[1:], loop.pieces[0]), strict=True):
+    for one, following in zip(contour.pieces, (*contour.pieces[1:], contour.pieces[0]), strict=True):
         assert ends(one)[1] == pytest.approx(ends(following)[0], abs=1e-9)
     # No corner sharper than 30 degrees along the root: only the tips have edges, and they lie off the pitch circle.
-    points = polygon(loop, 1e-4)
+    points = polygon(contour, 1e-4)
     step = np.diff(np.vstack([points, points[:2]]), axis=0)
     heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
     corner = np.abs(np.diff(heading))

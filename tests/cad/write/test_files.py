@@ -14,7 +14,7 @@ from ezdxf import edgeminer, edgesmith
 from ezdxf.path import make_path
 from PIL import Image
 
-from pareto_monoped.cad.shape.outlines import loops
+from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.write.dxf import LAYER, dxf, is_flat
 from pareto_monoped.cad.write.triangles import glb, stl, threemf
 
@@ -48,8 +48,8 @@ def test_laser_drawings_hold_outline_and_holes_on_one_layer(product):
         entities = list(document.modelspace())
         assert {entity.dxf.layer for entity in entities} == {LAYER}
         circles = [entity for entity in entities if entity.dxftype() == "CIRCLE"]
-        holes = [loop for hole in kind.part.prisms[0].holes for loop in loops(hole)]
-        assert len(circles) == sum(loop.circle is not None for loop in holes)
+        holes = [contour for hole in kind.part.prisms[0].holes for contour in contours(hole)]
+        assert len(circles) == sum(contour.circle is not None for contour in holes)
         # The area that the drawing encloses, by chaining its lines and arcs, is the plate's.
         edges = list(edgesmith.edges_from_entities_2d(entity for entity in entities if entity.dxftype() != "CIRCLE"))
         closed = edgeminer.find_all_simple_chains(edgeminer.Deposit(edges, gap_tol=1e-4))

@@ -1,0 +1,81 @@
+"""From a searched design to what can be built: whole lengths, real ratios, one leg for both actuators, a pose."""
+
+import numpy as np
+
+from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.design import Design
+from pareto_monoped.errors import DesignError
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.robot.build import Robot
+from pareto_monoped.robot.population import RobotArrays
+
+LENGTH_STEP_M = 1e-4
+"""Link lengths are made to 0.1 mm."""
+_SAME_CIRCLE_MM = 0.05  # pitch circles closer than this take each other's screws
+_REST = Pose(hip_rad=-0.8, knee_rad=1.6)
+"""Shown when the robot cannot stand in its start pose."""
+
+
+def as_built(design: Design, actuator_map: ActuatorMap) -> Design:
+    """The design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
+
+    Raises:
+        DesignError: no gearbox of this motor has the ratio.
+    """
+    return design.replace(
+        {
+            "thigh_length_m": round(round(design.thigh_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
+            "shank_length_m": round(round(design.shank_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
+            "hip_ratio": actuator_map.lookup(design.hip_ratio).ratio,
+            "knee_ratio": actuator_map.lookup(design.knee_ratio).ratio,
+        }
+    )
+
+
+def require_fit(robot: Robot, leg: LegDimensions) -> None:
+    """Refuse actuators that do not fit the leg: it has one bolt circle at either end, and its chain one strength.
+
+    Raises:
+        DesignError: a bolt circle differs from the leg's, or the knee's torque exceeds what the chain carries.
+    """
+    drilled = {
+        "bolt circle": 2.0 * leg.mount_pitch_radius_mm,
+        "back's bolt circle": 2.0 * leg.back_pitch_radius_mm,
+    }
+    for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
+        mount = actuator.mount
+        circles = (mount.bolts.pitch_circle_mm, mount.back_bolts.pitch_circle_mm)
+        for (name, allowed), circle in zip(drilled.items(), circles, strict=True):
+            if abs(circle - allowed) > _SAME_CIRCLE_MM:
+                raise DesignError(
+                    f"{name} of the {joint} actuator = {circle:.1f} mm: must be {allowed:.1f} mm, for which this "
+                    f"motor's leg is drilled; choose ratios of one family, or give {actuator.motor.name} a frame as "
+                    "wide as its frameless kit"
+                )
+    torque, allowed = robot.knee.peak_torque_n_m, leg.chain.torque_limit_n_m
+    if torque > allowed:
+        raise DesignError(
+            f"peak torque of the knee actuator = {torque:.1f} N m: must be at most {allowed:.1f} N m, half of what "
+            f"breaks the thigh's chain ({leg.chain.name}); choose a lower knee_ratio"
+        )
+
+
+def assembly_pose(
+    arrays: RobotArrays, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
+) -> Pose:
+    """The pose in which the first robot is assembled: that in which its jump starts.
+
+    Args:
+        arrays: the robot as it is simulated.
+        calibration: the jump model, which sets the start pose.
+        hip_rad: angle of the hip, in place of the start pose's.
+        knee_rad: angle of the knee, likewise.
+    """
+    start = start_pose(arrays, calibration)
+    stands = bool(np.isfinite(start.hip_rad[0]))
+    hip = float(start.hip_rad[0]) if stands else _REST.hip_rad
+    knee = float(start.knee_rad[0]) if stands else _REST.knee_rad
+    return Pose(hip_rad=hip if hip_rad is None else hip_rad, knee_rad=knee if knee_rad is None else knee_rad)

@@ -1,0 +1,86 @@
+"""Whether an export that a job asks for is there already, up to date and whole."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from pareto_monoped.actuator.search import map_of
+from pareto_monoped.cad.as_built import as_built, assembly_pose, require_fit
+from pareto_monoped.cad.jobs import Job
+from pareto_monoped.cad.write.design_record import design_record
+from pareto_monoped.cad.write.folder import RECORD
+from pareto_monoped.cad.write.formats import FILES
+from pareto_monoped.errors import DesignError
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.robot.build import build_robot
+from pareto_monoped.robot.population import robot_arrays
+
+_ALWAYS = ("README.md", "bom.csv", "checks.json", RECORD)
+"""Files of every export."""
+_NOT_COMPARED = ("jumps", "formats", "files")
+"""Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
+_GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
+"""Keys whose values the job gives; all others are computed, and another machine may round them differently."""
+_REL_TOLERANCE = 1e-9
+
+
+def is_made(job: Job) -> bool:
+    """Whether the job's folder holds this very export: same version, design, motor, calibration, source and pose.
+
+    Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
+    have the job's formats, and every file that it lists must be there and not empty.
+    """
+    try:
+        record = json.loads((job.folder / RECORD).read_text(encoding="utf-8"))
+        if not (set(job.formats) <= set(record["formats"]) and _is_whole(job.folder, record)):
+            return False
+        found = {key: value for key, value in record.items() if key not in _NOT_COMPARED}
+        expected = _expected(job)
+        return all(found[key] == expected[key] for key in _GIVEN) and _same(found, expected)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, DesignError):
+        # No record, or none of ours; or a design that cannot be built, which the export itself will explain.
+        return False
+
+
+def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
+    """Whether all listed files are there, and the list has what the record's formats make."""
+    names = [str(name) for name in record["files"]]
+    needed = [*_ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
+    if record["jumps"]["as_built"]["status"] == "cannot_stand":
+        needed = [path for path in needed if path != "model/monoped.xml"]
+    listed = all(
+        any(name == path or (path.endswith("/") and name.startswith(path)) for name in names) for path in needed
+    )
+    return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
+
+
+def _expected(job: Job) -> dict[str, Any]:
+    """The record that this version would write, without what is not compared."""
+    actuator_map = map_of(job.motor)
+    built = as_built(job.design, actuator_map)
+    robot = build_robot(built, actuator_map)
+    require_fit(robot, leg_dimensions(actuator_map))
+    simulated = robot_arrays(built.as_array(), actuator_map, job.calibration.mass)
+    record = design_record(
+        searched=job.design,
+        built=built,
+        robot=robot,
+        pose=assembly_pose(simulated, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad),
+        jumps={},
+        calibration=job.calibration,
+        source=job.source,
+        formats=(),
+    )
+    return {key: value for key, value in record.items() if key not in _NOT_COMPARED}
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two JSON values are equal, numbers to within rounding."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=_REL_TOLERANCE, abs_tol=1e-12)
+    return type(one) is type(other) and bool(one == other)

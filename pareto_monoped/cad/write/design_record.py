@@ -1,0 +1,77 @@
+"""``design.json``: the design, what it was made with, and what came out; an export can be made again from it."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from pareto_monoped import __version__
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.design import Design
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.robot.build import Robot
+
+MADE_BY = f"pareto-monoped {__version__}"
+"""Program and version, as written into every record."""
+
+
+def design_record(
+    *,
+    searched: Design,
+    built: Design,
+    robot: Robot,
+    pose: Pose,
+    jumps: Mapping[str, Mapping[str, Any]],
+    calibration: Calibration,
+    source: Mapping[str, Any] | None,
+    formats: Sequence[str],
+) -> dict[str, Any]:
+    """The content of ``design.json``, apart from the list of files.
+
+    Args:
+        searched: the design as the search found it.
+        built: the design as it was built.
+        robot: the robot of ``built``.
+        pose: joint angles of the assembly.
+        jumps: by ``searched`` and ``as_built``: the results of both simulations.
+        calibration: the jump model of both.
+        source: where the design comes from.
+        formats: what was written.
+    """
+    return {
+        "made_by": MADE_BY,
+        "motor": robot.hip.motor.name,
+        "calibration": calibration.label,
+        "source": dict(source or {}),
+        "searched": searched.as_dict(),
+        "as_built": built.as_dict(),
+        "jumps": {name: dict(jump) for name, jump in jumps.items()},
+        "mass_kg": robot.mass_kg,
+        "pose": {"hip_rad": pose.hip_rad, "knee_rad": pose.knee_rad},
+        "actuators": {
+            name: {
+                "family": actuator.family,
+                "sun_teeth": int(actuator.gears.sun_teeth),
+                "planet_teeth": int(actuator.gears.planet_teeth),
+                "ring_teeth": int(actuator.gears.ring_teeth),
+                "module_mm": float(actuator.gears.module_mm),
+                "planets": int(actuator.gears.planets),
+                "face_width_mm": actuator.face_width_mm,
+                "ratio": actuator.ratio,
+                "mass_kg": actuator.mass_kg,
+                "peak_torque_n_m": actuator.peak_torque_n_m,
+                "length_mm": actuator.length_mm,
+            }
+            for name, actuator in (("hip", robot.hip), ("knee", robot.knee))
+        },
+        "formats": list(formats),
+        "motor_data": json_values(robot.hip.motor),
+        "calibration_data": json_values(calibration),
+    }
+
+
+def json_values(record: Motor | Calibration) -> dict[str, Any]:
+    """Every value of a record as JSON has it, so that it compares equal to what is read back."""
+    values: dict[str, Any] = json.loads(json.dumps(asdict(record)))
+    return values

@@ -1,0 +1,40 @@
+"""The formats that an export can write, and the files that each of them makes."""
+
+from collections.abc import Mapping, Sequence
+
+from pareto_monoped.errors import InputError
+
+FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "step": (
+        ("assembly.step", "the whole robot for any CAD program: named, coloured parts, mm"),
+        ("parts/step/", "each part for machining or changing"),
+    ),
+    "stl": (("parts/stl/", "each part as triangles, mm"),),
+    "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
+    "dxf": (("laser/", "the plates for the laser cutter: true outline without kerf, one layer, mm"),),
+    "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
+    "mjcf": (("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),),
+    "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
+    "png": (
+        ("assembly.png", "the robot in its start pose"),
+        ("knee_actuator_section.png", "the knee actuator cut along its axis"),
+    ),
+}
+"""Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
+
+FORMATS = tuple(FILES)
+"""All formats, in the order in which they are listed; an export writes all of them by default."""
+
+
+def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
+    """The formats asked for, in the order of ``FORMATS``; all of them for None.
+
+    Raises:
+        InputError: an unknown name.
+    """
+    if names is None:
+        return FORMATS
+    for name in names:
+        if name not in FORMATS:
+            raise InputError(f"format {name!r}: must be one of {', '.join(FORMATS)}; correct the name")
+    return tuple(name for name in FORMATS if name in names)

@@ -1,0 +1,110 @@
+"""URDF: the simulated robot for other simulators, in SI units."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+
+import numpy as np
+
+from pareto_monoped.cad.write.visuals import Collider, Visual, numbers
+from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
+from pareto_monoped.robot.frames import BODIES, JOINTS
+from pareto_monoped.robot.population import RobotArrays
+
+_RANGES_RAD = {"hip": HIP_RANGE_RAD, "knee": KNEE_RANGE_RAD}
+"""Working range of each joint."""
+_NO_TURN = "0 0 0"
+
+
+def urdf(arrays: RobotArrays, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
+    """The URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``.
+
+    URDF has no element for the rotors' reflected inertia, so each joint has a comment with it.
+
+    Args:
+        arrays: the robot as it is simulated.
+        shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
+        solid: primitives; the foot's sphere is added to them.
+    """
+    root = ET.Element("robot", name="monoped")
+    # Only MuJoCo reads this: keep the visual meshes and their folder.
+    extension = ET.SubElement(root, "mujoco")
+    ET.SubElement(extension, "compiler", strippath="false", discardvisual="false")
+    for body, name in enumerate(BODIES):
+        link = ET.SubElement(root, "link", name=name)
+        _add_inertial(link, arrays, body)
+        for visual in shown:
+            if visual.body == name:
+                _add_visual(link, visual)
+        for collider in solid:
+            if collider.body == name:
+                _add_collision(link, collider)
+        if name == "shank":
+            _add_foot(link, arrays)
+    places_m = {"hip": 0.0, "knee": -float(arrays.thigh_length_m[0])}
+    for joint, name in enumerate(JOINTS):
+        _add_joint(root, arrays, joint, z_m=places_m[name])
+    ET.indent(root)
+    return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _add_inertial(link: ET.Element, arrays: RobotArrays, body: int) -> None:
+    """Mass and inertia about the centre of mass, along the axes of the body frame."""
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=numbers(*arrays.body_com_m[0, body]), rpy=_NO_TURN)
+    ET.SubElement(inertial, "mass", value=numbers(arrays.body_mass_kg[0, body]))
+    tensor = arrays.body_inertia_kg_m2[0, body]
+    entries = {f"i{'xyz'[a]}{'xyz'[b]}": numbers(tensor[a, b]) for a in range(3) for b in range(a, 3)}
+    ET.SubElement(inertial, "inertia", attrib=entries)
+
+
+def _add_visual(link: ET.Element, visual: Visual) -> None:
+    element = ET.SubElement(link, "visual", name=visual.name)
+    geometry = ET.SubElement(element, "geometry")
+    ET.SubElement(geometry, "mesh", filename=f"meshes/{visual.name}.stl")
+    material = ET.SubElement(element, "material", name=visual.name)
+    ET.SubElement(material, "color", rgba=numbers(*visual.colour, 1.0))
+
+
+def _add_collision(link: ET.Element, collider: Collider) -> None:
+    """A primitive; URDF's cylinders stand along z and have full lengths, boxes have full sizes."""
+    element = ET.SubElement(link, "collision", name=collider.name)
+    cylinder = collider.shape == "cylinder"
+    ET.SubElement(
+        element,
+        "origin",
+        xyz=numbers(*collider.position),
+        rpy=numbers(np.pi / 2, 0.0, 0.0) if cylinder else _NO_TURN,
+    )
+    geometry = ET.SubElement(element, "geometry")
+    if cylinder:
+        radius, half_length = collider.size
+        ET.SubElement(geometry, "cylinder", radius=numbers(radius), length=numbers(2.0 * half_length))
+    else:
+        ET.SubElement(geometry, "box", size=numbers(*(2.0 * half for half in collider.size)))
+
+
+def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
+    """The sphere that touches the ground in the simulation."""
+    element = ET.SubElement(link, "collision", name="foot")
+    ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
+    ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
+
+
+def _add_joint(root: ET.Element, arrays: RobotArrays, joint: int, *, z_m: float) -> None:
+    """The joint between a body and the next one, with its axis along +y of the body frame."""
+    name, lower_rad, upper_rad = JOINTS[joint], *_RANGES_RAD[JOINTS[joint]]
+    inertia_kg_m2 = float(arrays.armature_kg_m2[0, joint])
+    root.append(ET.Comment(f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "))
+    element = ET.SubElement(root, "joint", name=name, type="revolute")
+    ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, z_m), rpy=_NO_TURN)
+    ET.SubElement(element, "parent", link=BODIES[joint])
+    ET.SubElement(element, "child", link=BODIES[joint + 1])
+    ET.SubElement(element, "axis", xyz="0 1 0")
+    ET.SubElement(
+        element,
+        "limit",
+        lower=numbers(lower_rad),
+        upper=numbers(upper_rad),
+        effort=numbers(arrays.peak_torque_n_m[0, joint]),
+        velocity=numbers(arrays.no_load_speed_rad_per_s[0, joint]),
+    )
