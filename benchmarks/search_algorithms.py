@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
-from pareto_monoped.study.algorithms import Algorithm, create
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.protocol import Algorithm
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Evaluate, load_simulator
@@ -91,7 +92,7 @@ def search(
 ) -> tuple[list[Archive], float]:
     """One search a seed, in step; the archives, and the seconds spent in the algorithm per 1,000 evaluations."""
     studies = [study(settings, seed, evaluations) for seed in seeds]
-    running: list[tuple[Algorithm, Archive, Study]] = [(create(s), Archive(marks), s) for s in studies]
+    running: list[tuple[Algorithm, Archive, Study]] = [(make_algorithm(s), Archive(marks), s) for s in studies]
     archives = [archive for _, archive, _ in running]
     thinking = 0.0
     while running:

@@ -28,10 +28,10 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.study.algorithm_settings import EvolutionSettings
 from pareto_monoped.study.definition import Bounds, Study, study_from_dict
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import default_workers, run
-from pareto_monoped.study.settings import EvolutionSettings
 from pareto_monoped.study.simulator import Simulator, load_simulator
 from tests.jump.oracle import jump, motors_of
 

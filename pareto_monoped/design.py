@@ -162,6 +162,8 @@ PAPER_CASES: Mapping[str, PaperCase] = {
 }
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""
+HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
+"""Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
 BASE_START_HEIGHT_M = 0.5
 """Height of the base above the floor at rest (paper, section IV-B)."""
 GRAVITY_M_PER_S2 = 9.81

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from pareto_monoped.study.loop import Progress
     from pareto_monoped.study.run import RunSummary
+    from pareto_monoped.study.session import Progress
 
 _evaluations = click.option(
     "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, instead of the study's."

@@ -13,7 +13,7 @@ from pareto_monoped.config import checked, read_toml
 from pareto_monoped.design import BASE_START_HEIGHT_M, NAMES, PAPER_CASES, VARIABLES
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.study.settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
+from pareto_monoped.study.algorithm_settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 

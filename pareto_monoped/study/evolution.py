@@ -11,15 +11,9 @@ from pymoo.core.termination import NoTermination
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from pareto_monoped.study.algorithms import (
-    Floats,
-    Proposal,
-    Scores,
-    Space,
-    generator_state,
-    set_generator_state,
-)
-from pareto_monoped.study.settings import EvolutionSettings
+from pareto_monoped.study.algorithm_settings import EvolutionSettings
+from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
+from pareto_monoped.study.random_state import generator_state, set_generator_state
 
 
 class Evolution:
@@ -62,7 +56,7 @@ class Evolution:
                 state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
         return state
 
-    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Set all of the state; the history is not needed."""
         algorithm = self._algorithm
         set_generator_state(algorithm.random_state, state["generator"])

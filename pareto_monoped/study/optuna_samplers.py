@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import optuna
 
-from pareto_monoped.study.algorithms import Floats, Proposal, Scores, Space
-from pareto_monoped.study.settings import OptunaSettings
+from pareto_monoped.study.algorithm_settings import OptunaSettings
+from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 
 
 class OptunaSampler:
@@ -55,11 +55,11 @@ class OptunaSampler:
         """The number of generations; the trials are in the database."""
         return {"generation": self._generation}
 
-    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the trials as they were."""
         self._generation = int(state["generation"])
         with _quiet():
-            for generation, (values, scores) in enumerate(told):
+            for generation, (values, scores) in enumerate(history):
                 self._add(generation, values, scores)
             sampler = self._study.sampler
             if isinstance(sampler, optuna.samplers.NSGAIISampler):

@@ -8,8 +8,8 @@ from importlib.metadata import version
 from typing import Any
 
 from pareto_monoped import __version__
+from pareto_monoped.study.algorithm_settings import EvolutionSettings, OptunaSettings, WeightedSettings
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.settings import EvolutionSettings, OptunaSettings, WeightedSettings
 
 _NOT_RESULTS = ("audit", "description", "evaluations", "stop")
 """Keys of a study that say when it ends or what follows, not which trials it has."""

@@ -11,10 +11,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.config import checked
-from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.study.columns import COLUMNS, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
@@ -24,20 +24,17 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.search import ActuatorMap
     from pareto_monoped.jump.calibration import Calibration
 
-HEADLINE_HEIGHT_M = 0.8
-"""Height at which progress and status give the least energy: that of the paper's Case C."""
-
-_TEXT = ("state", "status", "reason")
-_WHOLE = ("trial", "generation")
-_FIRST = ("trial", "generation", "state", "status", "reason", *NAMES, "height_m", "energy_j")
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
+_HISTORY = {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
+"""Columns of the table ``monoped_history`` and their types in the data frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Checkpoint:
-    """Where a study stands: the algorithm's state after ``told`` trials, before generation ``generation``."""
+    """The algorithm's state before generation ``generation``, when it knew the scores of ``evaluations`` trials."""
 
     generation: int
-    told: int
+    evaluations: int
     state: dict[str, Any]
 
 
@@ -49,10 +46,9 @@ class StudyData:
         db: the database it was read from.
         study: its definition.
         meta: what else is stored about it: versions, hash, budget, how it ended, contents of motor and calibration.
-        trials: a row a trial: trial, generation, state, status, reason, the seven variables, height_m, energy_j, every
-            other measure, violation, height_weight (of a weighted search).
-        history: evaluations, hypervolume, seconds, generation by generation.
-        audits: trial, well_conditioned and the measures of the audit, for the front at the study's end.
+        trials: one row per trial; ``columns.COLUMNS`` says what each column is.
+        history: one row per generation: generation, evaluations, hypervolume, seconds, all counted from the start.
+        audits: one row per audited trial: trial, well_conditioned, the measures of the audit, reason.
         checkpoint: for resuming.
     """
 
@@ -137,9 +133,9 @@ def read_study(db: Path) -> StudyData:
         meta_rows = connection.execute("SELECT key, value FROM monoped_meta").fetchall()
         checkpoint_row = connection.execute("SELECT generation, told, state FROM monoped_checkpoint").fetchone()
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = _frame([column[0] for column in cursor.description], cursor.fetchall())
+        trials = _frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
         history_rows = connection.execute(
-            "SELECT generation, evaluations, hypervolume, seconds FROM monoped_history ORDER BY generation"
+            f"SELECT {', '.join(_HISTORY)} FROM monoped_history ORDER BY generation"
         ).fetchall()
         audit_rows = connection.execute(
             "SELECT trial, well_conditioned, measures FROM monoped_audits ORDER BY trial"
@@ -147,8 +143,8 @@ def read_study(db: Path) -> StudyData:
     meta = meta_of_rows(meta_rows, db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     try:
-        generation, told, state = checkpoint_row
-        checkpoint = Checkpoint(generation=int(generation), told=int(told), state=json.loads(state))
+        generation, evaluations, state = checkpoint_row
+        checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=json.loads(state))
         audits = [
             {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
             for trial, good, measures in audit_rows
@@ -162,26 +158,27 @@ def read_study(db: Path) -> StudyData:
         study=study,
         meta=meta,
         trials=trials,
-        history=pd.DataFrame(history_rows, columns=["generation", "evaluations", "hypervolume", "seconds"]).astype(
-            {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
-        ),
+        history=pd.DataFrame(history_rows, columns=list(_HISTORY)).astype(_HISTORY),
         audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=checkpoint,
     )
 
 
-def _frame(names: list[str], rows: list[tuple[Any, ...]]) -> pd.DataFrame:
+def _frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
     columns = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else dict.fromkeys(names, ())
-    ordered = [*_FIRST, *(name for name in names if name not in _FIRST)]
+    ordered = [*REQUIRED, *(name for name in names if name not in REQUIRED)]
     try:
-        return pd.DataFrame({name: _column(name, columns[name]) for name in ordered})
+        # A column that only a later version knows is read as a number, as every measure is.
+        return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise DatabaseError(f"study database: its trials are damaged ({error}); restore a copy") from None
+        raise DatabaseError(
+            f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
 
 
-def _column(name: str, values: tuple[Any, ...]) -> Any:
-    if name in _TEXT:
+def _typed(values: tuple[Any, ...], dtype: str) -> Any:
+    if dtype == "str":
         return pd.array([str(value) for value in values], dtype="str")
-    if name in _WHOLE:
+    if dtype == "int64":
         return np.array(values, dtype=np.int64)
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -10,17 +10,16 @@ from typing import Any
 from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study import provenance
-from pareto_monoped.study.algorithms import create
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import locked
-from pareto_monoped.study.loop import Loop, Progress
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.session import Progress, Session
 from pareto_monoped.study.simulator import Simulator, load_simulator, stored_simulator
-from pareto_monoped.study.store import Store
-from pareto_monoped.study.store import create as create_database
+from pareto_monoped.study.store import Store, create_database
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +86,7 @@ def run(
     with locked(db):
         simulator = load_simulator(study, workers=workers or default_workers())
         if not db.exists():
-            create_database(db, study, _meta(study, simulator), create(study).state())
+            create_database(db, study, _meta(study, simulator), make_algorithm(study).state())
             data = read_study(db)
         else:
             data = read_study(db)
@@ -190,14 +189,14 @@ def _go_on(
     _refuse_other_results(data, simulator, db)
     with Store(db, study) as store:
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
-        loop = Loop(data, study, simulator.evaluator, store, budget, progress)
+        session = Session(data, study, simulator.evaluator, store, budget, progress)
         with Interrupt(notify) as interrupt:
-            reason = loop.go(interrupt)
+            reason = session.go(interrupt)
         finished = reason != "interrupted"
         if finished and study.audit:
             audit_front(db, store, simulator, notify)
         store.set_meta({"finished": finished, "stop_reason": reason})
-    return _summary(db, data, read_study(db), loop.elapsed)
+    return _summary(db, data, read_study(db), session.elapsed)
 
 
 def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> RunSummary:

@@ -1,16 +1,46 @@
 """Evaluations -> feasible, infeasible or failed, with a graded violation and a reason."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.jump.evaluate import Evaluations
-from pareto_monoped.study.algorithms import Scores
 from pareto_monoped.study.definition import Constraints
+from pareto_monoped.study.protocol import Scores
 
 FAILED_VIOLATION = 100.0
 """Violation of a jump that failed: beyond any that a real jump can have, whose limits are missed by shares of them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraint:
+    """One constraint of a study.
+
+    Attributes:
+        key: field of ``definition.Constraints`` with the limit.
+        measure: what is limited.
+        violated: on which side of the limit a value violates it.
+    """
+
+    key: str
+    measure: str
+    violated: Literal["above", "below"]
+
+    def shares(self, values: NDArray[np.float64], limit: float) -> NDArray[np.float64]:
+        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0."""
+        sign = 1.0 if self.violated == "above" else -1.0
+        return sign * (values - limit) / limit
+
+
+CONSTRAINTS: tuple[Constraint, ...] = (
+    Constraint(key="min_height_m", measure="height_m", violated="below"),
+    Constraint(key="max_energy_j", measure="energy_j", violated="above"),
+    Constraint(key="max_mass_kg", measure="mass_kg", violated="above"),
+    Constraint(key="min_foot_clearance_m", measure="foot_clearance_m", violated="below"),
+)
+"""All constraints that a study may set, in the order in which they are stored and named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,14 +71,16 @@ def judge(evaluations: Evaluations, constraints: Constraints) -> Judgement:
     failed = (evaluations.status != "ok") | ~np.isfinite(evaluations.height_m) | ~np.isfinite(evaluations.energy_j)
     reasons = list(evaluations.reason)
     columns = []
-    for name, limit, sign in _limits(constraints):
-        values = np.asarray(getattr(evaluations, name), dtype=np.float64)
-        shares = np.where(failed, FAILED_VIOLATION, sign * (values - limit) / limit)
+    for constraint in CONSTRAINTS:
+        limit = getattr(constraints, constraint.key)
+        if limit is None:
+            continue
+        values = np.asarray(getattr(evaluations, constraint.measure), dtype=np.float64)
+        shares = np.where(failed, FAILED_VIOLATION, constraint.shares(values, limit))
         columns.append(shares)
         for i in np.flatnonzero(~failed & (shares > 0.0)):
-            side = "above" if sign > 0.0 else "below"
             also = f"{reasons[i]}; " if reasons[i] else ""
-            reasons[i] = f"{also}{name} = {values[i]:.4g} is {side} the limit of {limit:g}"
+            reasons[i] = f"{also}{constraint.measure} = {values[i]:.4g} is {constraint.violated} the limit of {limit:g}"
     table = np.column_stack(columns) if columns else np.zeros((n, 0))
     violation = np.maximum(table, 0.0).sum(axis=1)
     state = np.where(failed, "failed", np.where(violation > 0.0, "infeasible", "feasible"))
@@ -58,16 +90,3 @@ def judge(evaluations: Evaluations, constraints: Constraints) -> Judgement:
 def scores(evaluations: Evaluations, judgement: Judgement) -> Scores:
     """What a search algorithm may know."""
     return Scores(height_m=evaluations.height_m, energy_j=evaluations.energy_j, violation=judgement.violation)
-
-
-def _limits(constraints: Constraints) -> list[tuple[str, float, float]]:
-    """Measure, limit, and the sign that makes (value - limit) positive when violated."""
-    limits = [("height_m", constraints.min_height_m, -1.0)]
-    for name, limit, sign in (
-        ("energy_j", constraints.max_energy_j, 1.0),
-        ("mass_kg", constraints.max_mass_kg, 1.0),
-        ("foot_clearance_m", constraints.min_foot_clearance_m, -1.0),
-    ):
-        if limit is not None:
-            limits.append((name, limit, sign))
-    return limits

@@ -3,9 +3,10 @@
 from pathlib import Path
 from typing import Any
 
+from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.lock import holder
-from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, read_study
+from pareto_monoped.study.reader import read_study
 
 
 def status(db: Path) -> dict[str, Any]:

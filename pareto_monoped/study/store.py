@@ -10,10 +10,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import replacing
-from pareto_monoped.jump.evaluate import MEASURES
+from pareto_monoped.study.columns import COLUMNS
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
@@ -29,14 +28,11 @@ CREATE TABLE monoped_history (
     generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, hypervolume REAL NOT NULL, seconds REAL NOT NULL
 );
 CREATE TABLE monoped_audits (trial INTEGER PRIMARY KEY, well_conditioned INTEGER NOT NULL, measures TEXT NOT NULL);
-CREATE TABLE monoped_trials (
-    trial INTEGER PRIMARY KEY, generation INTEGER NOT NULL, state TEXT NOT NULL, status TEXT NOT NULL,
-    reason TEXT NOT NULL, violation REAL NOT NULL, height_weight REAL, {columns}
-);
+CREATE TABLE monoped_trials ({columns});
 """
 
 
-def create(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
+def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
     """A new study database without trials, whole or not at all.
 
     Args:
@@ -56,7 +52,7 @@ def create(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) 
         with translated(path):
             connection = sqlite3.connect(temporary, isolation_level=None)
             try:
-                columns = ", ".join(f"{name} REAL" for name in (*NAMES, *MEASURES))
+                columns = ", ".join(f"{column.name} {column.sql}" for column in COLUMNS)
                 connection.execute("BEGIN IMMEDIATE")
                 for statement in _OUR_TABLES.format(columns=columns).split(";"):
                     connection.execute(statement)
@@ -152,25 +148,12 @@ class Store:
 
     def _add_to_our_tables(self, generation: Generation) -> None:
         execute, executemany = self._connection.execute, self._connection.executemany
-        evaluations, judgement = generation.evaluations, generation.judgement
-        n = len(generation.designs)
-        columns = [
-            range(generation.first_trial, generation.first_trial + n),
-            [generation.number] * n,
-            judgement.state.tolist(),
-            evaluations.status.tolist(),
-            judgement.reason,
-            judgement.violation.tolist(),
-            [generation.height_weight] * n,
-            *generation.designs.T.tolist(),
-            *(getattr(evaluations, name).tolist() for name in MEASURES),
-        ]
-        names = ("trial", "generation", "state", "status", "reason", "violation", "height_weight", *NAMES, *MEASURES)
+        names = ", ".join(column.name for column in COLUMNS)
         executemany(
-            f"INSERT INTO monoped_trials ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",
-            zip(*columns, strict=True),
+            f"INSERT INTO monoped_trials ({names}) VALUES ({', '.join('?' * len(COLUMNS))})",
+            zip(*(column.values(generation) for column in COLUMNS), strict=True),
         )
-        total = generation.first_trial + n
+        total = generation.first_trial + len(generation.designs)
         execute(
             "INSERT OR REPLACE INTO monoped_history VALUES (?, ?, ?, ?)",
             (generation.number, total, generation.hypervolume, generation.seconds),

@@ -7,8 +7,8 @@ from typing import Any
 import cma
 import numpy as np
 
-from pareto_monoped.study.algorithms import Floats, Proposal, Scores, Space
-from pareto_monoped.study.settings import WeightedSettings
+from pareto_monoped.study.algorithm_settings import WeightedSettings
+from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 
 
 class WeightedSearch:
@@ -66,16 +66,16 @@ class WeightedSearch:
         """Which run it is in and how far; the designs and scores are in the database."""
         return {"run": self._run, "iteration": self._iteration}
 
-    def restore(self, state: dict[str, Any], told: Iterable[tuple[Floats, Scores]]) -> None:
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Tell the present run its history again."""
-        history = list(told)
+        generations = list(history)
         self._run = int(state["run"])
         self._iteration = 0
         if self._run == len(self._settings.height_weights):
             return
         self._strategy = self._fresh()
         iterations = int(state["iteration"])
-        for _, scores in islice(history, len(history) - iterations, None):
+        for _, scores in islice(generations, len(generations) - iterations, None):
             self.ask()
             self.tell(scores)
 

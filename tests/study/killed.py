@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from pareto_monoped.study.algorithms import create
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import load_study
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
@@ -73,7 +73,7 @@ def main():
     reports = []
     for folder in map(Path, sys.argv[3:]):
         study = load_study(folder / "s.toml")
-        create(study)
+        make_algorithm(study)
         starting, working = whole(study, folder / "whole.db")
         db, report = folder / "killed.db", []
         for k in range(kills):

@@ -6,12 +6,12 @@ import numpy as np
 
 from pareto_monoped.jump.evaluate import MEASURES, Evaluations
 from pareto_monoped.study import provenance
-from pareto_monoped.study.algorithms import create as create_algorithm
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.scoring import judge
-from pareto_monoped.study.store import Store, create
+from pareto_monoped.study.store import Store, create_database
 
 CONTENTS = {"motor": {"peak_torque_n_m": 5.5}, "calibration": {"name": "reference"}}
 
@@ -76,7 +76,7 @@ def made_database(path, generations=None, study=None, **options):
     Default: two generations with feasible, infeasible and failed trials.
     """
     study = study or made_study()
-    create(path, study, made_meta(study), create_algorithm(study).state())
+    create_database(path, study, made_meta(study), make_algorithm(study).state())
     if generations is None:
         generations = [
             made_generation(

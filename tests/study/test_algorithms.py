@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from pareto_monoped.pareto.indicators import ReferencePoint, hypervolume
-from pareto_monoped.study.algorithms import Scores, create
+from pareto_monoped.study.algorithm_settings import ALGORITHMS
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.settings import ALGORITHMS
+from pareto_monoped.study.protocol import Scores
 
 # AGE-MOEA2 compiles itself for some six seconds in every process.
 SLOW = {"age_moea2": pytest.mark.long}
@@ -42,7 +43,7 @@ def zdt1(values, lower, upper):
 
 def search(definition, generations, algorithm=None, history=None):
     """Ask and tell; returns the algorithm and [(values, scores)]."""
-    algorithm = algorithm or create(definition)
+    algorithm = algorithm or make_algorithm(definition)
     history = [] if history is None else history
     for _ in range(generations):
         proposal = algorithm.ask()
@@ -70,7 +71,7 @@ def test_asks_for_designs_within_the_bounds(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_works_in_the_free_variables_only(name):
     definition = study(name, variables={"thigh_length_m": 0.4, "hip_ratio": 5.0})
-    assert create(definition).ask().values.shape[1] == 5
+    assert make_algorithm(definition).ask().values.shape[1] == 5
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -94,7 +95,7 @@ def test_restored_from_json_it_goes_on_exactly(name, told):
     definition = study(name)
     algorithm, history = search(definition, told)
     state = json.loads(json.dumps(algorithm.state()))
-    restored = create(definition)
+    restored = make_algorithm(definition)
     restored.restore(state, iter(history))
     _, expected = search(definition, 4, algorithm)
     _, got = search(definition, 4, restored)
@@ -110,7 +111,7 @@ def test_beats_random_search_at_equal_evaluations(name):
 
     def volume(algorithm_name, evaluations=400):
         definition = study(algorithm_name)
-        batch = len(create(definition).ask().values)
+        batch = len(make_algorithm(definition).ask().values)
         _, history = search(definition, evaluations // batch)
         feasible = [np.column_stack((s.height_m, s.energy_j))[s.violation == 0.0] for _, s in history]
         return hypervolume(np.vstack(feasible), reference)
@@ -122,7 +123,7 @@ def test_beats_random_search_at_equal_evaluations(name):
 def test_infeasible_designs_give_way_to_feasible_ones(name):
     """With the feasible region a tenth of one variable, late generations live in it."""
     definition = study(name, variables={"knee_ratio": 5.0, "hip_ratio": 5.0})
-    algorithm = create(definition)
+    algorithm = make_algorithm(definition)
     free = np.array([n in definition.free for n in definition.variables])
     lower, upper = definition.lower[free], definition.upper[free]
     for _ in range(25):
@@ -145,7 +146,7 @@ def test_the_first_weighted_designs_gather_around_the_papers_start_vector():
     definition = study_from_dict(
         {"name": "w", "evaluations": 1, "algorithm": {"name": "weighted_cmaes", "population": 4000}}, source="test"
     )
-    values = create(definition).ask().values
+    values = make_algorithm(definition).ask().values
     start = np.array([0.4, 0.4, 6.0, 6.0, 50.0, 2.5, 10.0])
     extent = definition.upper - definition.lower
     # 0.1 / sqrt(4000) = 0.0016; variables near a bound are folded back into it and shift a little more.
@@ -155,8 +156,8 @@ def test_the_first_weighted_designs_gather_around_the_papers_start_vector():
 
 
 def test_the_weighted_cost_is_the_papers():
-    from pareto_monoped.study.algorithms import Space
-    from pareto_monoped.study.settings import WeightedSettings
+    from pareto_monoped.study.algorithm_settings import WeightedSettings
+    from pareto_monoped.study.protocol import Space
     from pareto_monoped.study.weighted import WeightedSearch
 
     settings = WeightedSettings(name="weighted_cmaes", height_weights=(0.25,), height_scale_j=80.0)
@@ -174,6 +175,6 @@ def test_the_weighted_cost_is_the_papers():
 
 
 def test_the_default_height_scale_makes_both_terms_equal_at_the_papers_nominal_design():
-    from pareto_monoped.study.settings import WeightedSettings
+    from pareto_monoped.study.algorithm_settings import WeightedSettings
 
     assert WeightedSettings(name="weighted_cmaes").height_scale_j * np.exp(-0.887) == pytest.approx(31.44, rel=1e-12)

@@ -6,8 +6,8 @@ import pytest
 
 from pareto_monoped.design import LOWER, NAMES, UPPER
 from pareto_monoped.errors import StudyError
+from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
-from pareto_monoped.study.settings import ALGORITHMS
 
 SHIPPED = sorted((Path(__file__).parents[2] / "studies").glob("*.toml"))
 MINIMAL = {"name": "s", "evaluations": 10}

@@ -271,7 +271,7 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
     assert "Traceback" not in said
     data = read_study(db)
     assert data.meta.stop_reason == "interrupted"
-    assert len(data.trials) == data.checkpoint.told > 0
+    assert len(data.trials) == data.checkpoint.evaluations > 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["s.db", "s.toml"]
 
 

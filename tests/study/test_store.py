@@ -89,7 +89,7 @@ def test_the_checkpoint_moves_with_whole_generations_only(tmp_path):
         store.add(made_generation(study, 0, 0, part, state={"a": 1}))
         store.add(made_generation(study, 1, 2, part, state=None))
     data = read_study(path)
-    assert (data.checkpoint.generation, data.checkpoint.told, data.checkpoint.state) == (1, 2, {"a": 1})
+    assert (data.checkpoint.generation, data.checkpoint.evaluations, data.checkpoint.state) == (1, 2, {"a": 1})
     assert len(data.trials) == 4
 
 

@@ -10,15 +10,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study.algorithms import Algorithm, Scores, create
+from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.reader import HEADLINE_HEIGHT_M, StudyData
+from pareto_monoped.study.protocol import Algorithm, Scores
+from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Evaluate
 from pareto_monoped.study.store import Store
@@ -44,8 +45,8 @@ class Progress:
     least_energy_j: float | None
 
 
-class Loop:
-    """Ask, simulate, tell, store: one session of a study."""
+class Session:
+    """One session of a study: from the state in its database until something says stop."""
 
     def __init__(
         self,
@@ -66,21 +67,21 @@ class Loop:
         self.total = self._before = len(data.trials)
         self._seconds_before = data.wall_time_s
         self._started = time.monotonic()
-        self._history: list[tuple[int, float]] = list(
+        self._volumes: list[tuple[int, float]] = list(
             zip(data.history["evaluations"].tolist(), data.history["hypervolume"].tolist(), strict=True)
         )
         feasible = (data.trials["state"] == "feasible").to_numpy()
         self._front = np.zeros((0, 2))
         self._add_to_front(data.trials.loc[feasible, ["height_m", "energy_j"]].to_numpy())
-        self._algorithm: Algorithm = create(study)
+        self._algorithm: Algorithm = make_algorithm(study)
         try:
-            self._algorithm.restore(data.checkpoint.state, _told(data, self._free))
+            self._algorithm.restore(data.checkpoint.state, _history(data, self._free))
         except (KeyError, TypeError, ValueError, IndexError) as error:
             raise DatabaseError(
                 f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
             ) from None
         # Trials of a generation that the last budget cut short: the algorithm has not been told of them yet.
-        self._designs, self._scores = _rows(data, data.checkpoint.told, len(data.trials))
+        self._designs, self._scores = _rows(data, data.checkpoint.evaluations, len(data.trials))
 
     @property
     def elapsed(self) -> float:
@@ -110,9 +111,9 @@ class Loop:
             return "budget"
         if stop.wall_time_s is not None and self._seconds_before + self.elapsed >= stop.wall_time_s:
             return "wall_time"
-        if stop.plateau_evaluations is not None and self._history:
-            earlier = [volume for n, volume in self._history if n <= self.total - stop.plateau_evaluations]
-            volume = self._history[-1][1]
+        if stop.plateau_evaluations is not None and self._volumes:
+            earlier = [volume for n, volume in self._volumes if n <= self.total - stop.plateau_evaluations]
+            volume = self._volumes[-1][1]
             if earlier and earlier[-1] > 0.0 and volume - earlier[-1] < stop.plateau_growth * earlier[-1]:
                 return "plateau"
         return None
@@ -147,7 +148,7 @@ class Loop:
             self._generation += 1
             self._designs, self._scores = self._designs[:0], _joined(self._scores, None)
         volume = hypervolume(self._front, self._study.reference_point)
-        self._history.append((self.total, volume))
+        self._volumes.append((self.total, volume))
         return Generation(
             number=number,
             first_trial=first,
@@ -174,7 +175,7 @@ class Loop:
             budget=self._budget,
             per_second=rate,
             seconds_left=(self._budget - self.total) / rate,
-            hypervolume=self._history[-1][1],
+            hypervolume=self._volumes[-1][1],
             least_energy_j=float(high.min()) if len(high) else None,
         )
 
@@ -196,14 +197,14 @@ def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], S
     )
 
 
-def _told(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.float64], Scores]]:
-    """Every whole generation so far: values of the free variables, and scores."""
-    numbers = data.trials["generation"].to_numpy()[: data.checkpoint.told]
-    edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.told]
+def _history(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.float64], Scores]]:
+    """Values of the free variables and scores of every complete generation, in order."""
+    numbers = data.trials["generation"].to_numpy()[: data.checkpoint.evaluations]
+    edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.evaluations]
     for first, end in pairwise(edges):
         if first < end:
-            designs, told = _rows(data, first, end)
-            yield designs[:, free], told
+            designs, known = _rows(data, first, end)
+            yield designs[:, free], known
 
 
 def _joined(before: Scores, new: Scores | None) -> Scores:

@@ -1,0 +1,118 @@
+"""The columns of a trial: name, storage, what it is, and where its values come from. Storage and reader read this."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Literal
+
+from pareto_monoped.design import VARIABLES
+from pareto_monoped.measures import MEASURES
+from pareto_monoped.study.definition import Objectives
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.generation import Generation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """One column of the table ``monoped_trials`` and of ``StudyData.trials``.
+
+    Attributes:
+        name: in both.
+        sql: type and constraints in the database.
+        dtype: in the data frame; a missing real number is NaN there and NULL in the database.
+        meaning: what it is.
+        values: its values of all trials of a generation, in order.
+    """
+
+    name: str
+    sql: str
+    dtype: Literal["int64", "str", "float64"]
+    meaning: str
+    values: "Callable[[Generation], Sequence[Any]]"
+
+
+def _variable(index: int) -> Column:
+    variable = VARIABLES[index]
+    return Column(
+        name=variable.name,
+        sql="REAL",
+        dtype="float64",
+        meaning=variable.meaning,
+        values=lambda generation: generation.designs[:, index].tolist(),
+    )
+
+
+def _measure(name: str, meaning: str) -> Column:
+    return Column(
+        name=name,
+        sql="REAL",
+        dtype="float64",
+        meaning=meaning,
+        values=lambda generation: getattr(generation.evaluations, name).tolist(),
+    )
+
+
+_IDENTITY = (
+    Column(
+        name="trial",
+        sql="INTEGER PRIMARY KEY",
+        dtype="int64",
+        meaning="number of the trial, from 0",
+        values=lambda generation: range(generation.first_trial, generation.first_trial + len(generation.designs)),
+    ),
+    Column(
+        name="generation",
+        sql="INTEGER NOT NULL",
+        dtype="int64",
+        meaning="number of its generation, from 0",
+        values=lambda generation: [generation.number] * len(generation.designs),
+    ),
+    Column(
+        name="state",
+        sql="TEXT NOT NULL",
+        dtype="str",
+        meaning="feasible, infeasible (jumps, but misses a constraint) or failed (no jump)",
+        values=lambda generation: generation.judgement.state.tolist(),
+    ),
+    Column(
+        name="status",
+        sql="TEXT NOT NULL",
+        dtype="str",
+        meaning="how the jump ended, one of jump.evaluate.STATUSES",
+        values=lambda generation: generation.evaluations.status.tolist(),
+    ),
+    Column(
+        name="reason",
+        sql="TEXT NOT NULL",
+        dtype="str",
+        meaning="why it is not feasible; empty where it is",
+        values=lambda generation: generation.judgement.reason,
+    ),
+)
+_JUDGEMENT = (
+    Column(
+        name="violation",
+        sql="REAL NOT NULL",
+        dtype="float64",
+        meaning="how far the constraints are missed, as a sum of shares of their limits; 0 where all hold",
+        values=lambda generation: generation.judgement.violation.tolist(),
+    ),
+    Column(
+        name="height_weight",
+        sql="REAL",
+        dtype="float64",
+        meaning="lambda1 of a weighted search; missing for other searches",
+        values=lambda generation: [generation.height_weight] * len(generation.designs),
+    ),
+)
+_VARIABLES = tuple(_variable(index) for index in range(len(VARIABLES)))
+_MEASURES = tuple(_measure(measure.name, measure.meaning) for measure in MEASURES)
+
+COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, *_MEASURES)
+"""All columns of a trial, in the order of the database."""
+
+OBJECTIVES: tuple[str, ...] = tuple(field.name for field in fields(Objectives))
+"""Columns of the objectives: the height first."""
+
+REQUIRED: tuple[str, ...] = (*(column.name for column in (*_IDENTITY, *_VARIABLES)), *OBJECTIVES)
+"""Columns that every study has, in the order of the data frame; the others follow as the database has them."""

@@ -1,0 +1,59 @@
+import sqlite3
+from dataclasses import fields
+from pathlib import Path
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.study.columns import COLUMNS, OBJECTIVES, REQUIRED
+from pareto_monoped.study.definition import Constraints
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.scoring import CONSTRAINTS
+from tests.study.support import made_database, made_study
+
+STORED = Path(__file__).parent / "data" / "plain.db"
+
+
+def test_every_variable_and_measure_has_one_column():
+    names = [column.name for column in COLUMNS]
+    assert len(set(names)) == len(names)
+    assert {*NAMES, *MEASURE_NAMES} < set(names)
+    assert all(column.meaning for column in COLUMNS)
+    assert OBJECTIVES == ("height_m", "energy_j")
+    assert set(REQUIRED) < set(names)
+
+
+def test_tables_are_declared_as_version_0_1_0_declared_them(tmp_path):
+    """Name, type, NOT NULL, default and primary key of every column of every table of ours."""
+    made_database(tmp_path / "s.db", study=made_study())
+    declared = []
+    for path in (STORED, tmp_path / "s.db"):
+        connection = sqlite3.connect(f"{path.as_uri()}?mode=ro&immutable=1", uri=True)
+        tables = [name for (name,) in connection.execute("SELECT name FROM sqlite_master WHERE name LIKE 'monoped_%'")]
+        declared.append({name: connection.execute(f"PRAGMA table_info({name})").fetchall() for name in sorted(tables)})
+        connection.close()
+    assert len(declared[0]) == 5
+    assert declared[0] == declared[1]
+
+
+def test_the_frame_has_the_types_of_the_table(tmp_path):
+    for generations in (None, []):
+        path = tmp_path / f"{generations}.db"
+        made_database(path, generations)
+        trials = read_study(path).trials
+        assert {name: str(dtype) for name, dtype in trials.dtypes.items()} == {c.name: c.dtype for c in COLUMNS}
+        assert tuple(trials.columns[: len(REQUIRED)]) == REQUIRED
+
+
+def test_a_column_of_a_later_version_is_read_as_a_number(tmp_path):
+    path = tmp_path / "s.db"
+    made_database(path)
+    connection = sqlite3.connect(path)
+    connection.execute("ALTER TABLE monoped_trials ADD COLUMN later_j REAL DEFAULT 2.5")
+    connection.commit()
+    connection.close()
+    assert read_study(path).trials["later_j"].tolist() == [2.5] * 6
+
+
+def test_every_constraint_of_a_study_file_is_judged():
+    assert [constraint.key for constraint in CONSTRAINTS] == [field.name for field in fields(Constraints)]
+    assert {constraint.measure for constraint in CONSTRAINTS} <= set(MEASURE_NAMES)
