@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
@@ -27,12 +27,12 @@ from pareto_monoped.report.trials import (
     trial_columns,
 )
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.settings import WeightedSettings
 
-HEADLINES_M = (0.7, 0.8, 0.9)
-"""Heights at which designs are pointed out and studies compared; 0.8 m is that of the paper's Case C."""
+HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
+"""Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

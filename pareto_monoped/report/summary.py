@@ -5,15 +5,13 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import HEADLINE_HEIGHT_M, PAPER_CASES
 from pareto_monoped.report.schema import Case
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
     from pareto_monoped.report.resimulation import Resimulation
 
-HEADLINE_M = 0.8
-"""Height of the paper's Case C."""
 _DRIFT_M = 0.001
 
 
@@ -33,8 +31,8 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
     else:
         low, high = front.iloc[0], front.iloc[-1]
         lines = [
-            f"{_price(front, HEADLINE_M)}; the front of {len(front)} designs runs from {low['height_m']:.2f} m on "
-            f"{low['energy_j']:.1f} J to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
+            f"{_price(front, HEADLINE_HEIGHT_M)}; the front of {len(front)} designs runs from "
+            f"{low['height_m']:.2f} m on {low['energy_j']:.1f} J to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
         ]
     return [*lines, *_against_paper(front, cases)]
 

@@ -8,8 +8,8 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.studies import _described
-from pareto_monoped.study.loop import Progress
 from pareto_monoped.study.run import RunSummary
+from pareto_monoped.study.session import Progress
 
 STUDY = 'name = "s"\nevaluations = 40\naudit = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
 
