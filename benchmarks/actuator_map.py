@@ -1,4 +1,4 @@
-"""How long stage 1 takes: the whole map of every motor, and one interval against a plain loop.
+"""Time of stage 1: the whole map of every motor, and one interval against a plain loop.
 
 Run: python benchmarks/actuator_map.py
 """

@@ -1,7 +1,9 @@
-"""Time of one complete export, in a fresh process and again in the same one, and what its checks found.
+"""Time of one complete export in a new process and in a running one, and the values its checks measured.
 
-Run with ``python benchmarks/cad_export.py``; prints JSON. The bounds are 15 s in a fresh process and 6 s after, on two
-cores. ``later_s`` are other designs than the first, so that most parts of their actuators are new to the process.
+Run: python benchmarks/cad_export.py
+
+Prints JSON. The aims are 15 s in a new process and 6 s in a running one, on two cores. The exports in ``later_s`` are
+of other designs than the first, so that the process has to build most of their actuators' parts.
 """
 
 import json
@@ -33,7 +35,7 @@ def main() -> None:
         from pareto_monoped.jump.calibration import load_calibration
 
         actuator_map, calibration = map_for("VT8020"), load_calibration()
-        # Another length each time: no design is made twice.
+        # Every export has another length, so that no design is exported twice.
         first = PAPER_CASES["C"].design.replace({"thigh_length_m": 0.4})
         export_design(first, actuator_map, calibration, Path(place) / "first")
         later = []

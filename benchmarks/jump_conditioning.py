@@ -1,7 +1,7 @@
-"""How far jumps can be trusted, and what they cost: the tables of docs/model.md.
+"""How accurate jumps are and what they cost: the tables of docs/model.md.
 
-Prints the conditioning of each calibration over 200 random designs, conditioning against speed for integrators and
-steps, and how the height and energy of two of the paper's designs move with each open choice of the model.
+Prints the conditioning of each calibration over 200 random designs, conditioning and speed of integrators and steps,
+and how each open choice of the model changes height and energy of two of the paper's designs.
 
     python benchmarks/jump_conditioning.py [DESIGNS]
 """
@@ -62,7 +62,7 @@ def main(count: int) -> None:
 
 
 def _conditioning(designs: Floats, calibration: Calibration) -> tuple[str, ...]:
-    """How many jumped, and the four distributions as text."""
+    """The share of designs that jump, and the four distributions, as text."""
     base = Evaluator(MAP, calibration)(designs)
     copies = perturbed(designs, PERTURBATIONS, np.random.default_rng(1))
     spread = Evaluator(MAP, calibration)(copies)
@@ -75,7 +75,7 @@ def _conditioning(designs: Floats, calibration: Calibration) -> tuple[str, ...]:
 
 
 def _change(base: Evaluations, other: Evaluations, repeats: int) -> tuple[Floats, Floats]:
-    """Absolute change of height and relative change of energy of every design that jumps, infinite for a lost jump."""
+    """Absolute change of height and relative change of energy per design that jumps; infinite for a lost jump."""
     jumped = np.repeat(base.ok, repeats)
     height = np.abs(other.height_m - np.repeat(base.height_m, repeats))[jumped]
     energy = np.abs(other.energy_j / np.repeat(base.energy_j, repeats) - 1.0)[jumped]
@@ -87,7 +87,7 @@ def _three(values: Floats) -> str:
 
 
 def _speed(designs: Floats, calibration: Calibration, other: Calibration) -> float:
-    """Designs a second of processor time under ``calibration`` over those under ``other``: median of paired runs."""
+    """Speed under ``calibration`` relative to ``other``, in designs per processor second: median of paired runs."""
 
     def seconds(evaluator: Evaluator) -> float:
         start = time.process_time()
@@ -99,7 +99,7 @@ def _speed(designs: Floats, calibration: Calibration, other: Calibration) -> flo
 
 
 def _choices(reference: Calibration) -> Iterator[tuple[str, Calibration]]:
-    """One open choice at a time."""
+    """The reference calibration, then variants of it that differ in one choice each."""
     joints, drive, contact, gate = reference.joints, reference.drive, reference.contact, reference.gate
     assert isinstance(contact, SpringContact)
     assert isinstance(gate, FadeGate)

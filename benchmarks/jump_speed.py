@@ -1,10 +1,11 @@
 """Speed of the batch evaluation, paired against raw ``mj_step`` and against the naive way.
 
-Raw: the same steps of the same models with the recorded torques, (a) by ``mujoco.rollout``, whose loop over ``mj_step``
-is compiled, and (b) by a Python loop over ``mj_step``. Naive: the XML of each design compiled, and the controller in
-Python and NumPy (the tests' oracle). All are timed in turn in every round, medians of the rounds' ratios are printed,
-and answers are compared before. Ratios are of processor time, which other work on the machine disturbs little; the
-gain by two threads is of wall time and needs a quiet machine. The last two columns leave out weighing the robots.
+Raw: the same steps of the same models with the recorded torques, (a) by ``mujoco.rollout``, which has a compiled loop
+over ``mj_step``, and (b) by a Python loop over ``mj_step``. Naive: the XML of each design is compiled, and the
+controller is written in Python and NumPy (the tests' oracle). The script compares the results first. Every round then
+times all methods alternately, and medians of the rounds' ratios are printed. Ratios are of processor time, which
+other work on the machine disturbs little; the gain by a second thread is of wall time and needs a quiet machine. The
+last two columns leave out the weighing of the robots.
 
     python benchmarks/jump_speed.py [ROUNDS]
 """
@@ -36,7 +37,7 @@ AGREEMENT = 1e-9
 
 
 def main(rounds: int) -> None:
-    """Print one line a batch size; ``of raw`` is against ``mujoco.rollout``, ``of loop`` against the Python loop."""
+    """Print one line per batch size; ``of raw`` is against ``mujoco.rollout``, ``of loop`` against the Python loop."""
     calibration, actuators = load_calibration("reference"), map_for("VT8020")
     one, two = Evaluator(actuators, calibration, 1), Evaluator(actuators, calibration, 2)
     heads = ("batch", "steps", "us/step", "of raw", "of loop", "x naive", "2 threads", "us/step", "of raw")
@@ -85,7 +86,7 @@ def main(rounds: int) -> None:
 
 
 class Raw:
-    """The recorded jumps, stepped again without a controller."""
+    """The recorded jumps, stepped again with the recorded torques."""
 
     def __init__(self, documents: list[str], torques: list[Floats]) -> None:
         self.torques = torques

@@ -1,13 +1,13 @@
-"""Search algorithms on the real problem (Case C, VT8020, ``reference``): how much of the front for how many jumps.
+"""Search algorithms on the real problem (Case C, VT8020, ``reference``): share of the front against number of jumps.
 
     python benchmarks/search_algorithms.py                       # a short look: 1,000 jumps, 2 seeds, small reference
     python benchmarks/search_algorithms.py --full                # what benchmarks/search_algorithms.md shows
     python benchmarks/search_algorithms.py --full --evaluations 5000 --only nsga2-100 random
 
-All seeds of one algorithm run in step, so that their generations are simulated as one batch; a jump's result does not
-depend on its batch. Quality is the hypervolume of all designs evaluated so far (not of the last population), as a
-share of that of the reference front. Results are kept in build/search_algorithms.json, and the table is made of all
-that is in there.
+All seeds of one algorithm advance together, and their generations are simulated as one batch; the result of a jump
+does not depend on its batch. Quality is the hypervolume of all designs evaluated so far, not of the last population,
+as a share of the hypervolume of the reference front. Results are kept in build/search_algorithms.json; the table
+shows everything in that file.
 """
 
 import argparse
@@ -34,7 +34,7 @@ from pareto_monoped.study.simulator import Evaluate, load_simulator
 HERE = Path(__file__).parent
 MARKS = (1_000, 2_000, 5_000, 10_000)
 REFERENCE_POINT = ReferencePoint(height_m=0.55, energy_j=100.0)
-# Ten weights of the paper's cost, spread so that the runs end all along the front.
+# Ten weights of the paper's cost, chosen so that the runs end at points along the whole front.
 WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
 CONTENDERS: dict[str, dict[str, Any]] = {
@@ -52,12 +52,12 @@ CONTENDERS: dict[str, dict[str, Any]] = {
     "random": {"name": "random"},
     "weighted_cmaes, 10 weights": {"name": "weighted_cmaes", "height_weights": WEIGHTS},
 }
-# TPE takes longer than the jumps themselves, and ever longer: it stops here.
+# TPE takes longer than the jumps, and its time per trial grows with the number of trials.
 TPE_EVALUATIONS = 2_000
 
 
 def study(settings: dict[str, Any], seed: int, evaluations: int) -> Study:
-    """Case C with these algorithm settings; a sweep's runs share the evaluations evenly."""
+    """Case C with these algorithm settings; the runs of a sweep over weights share the evaluations evenly."""
     if settings["name"] == "weighted_cmaes":
         settings = settings | {"iterations": max(1, evaluations // (8 * len(settings["height_weights"])))}
     values = {"name": "b", "case": "C", "evaluations": evaluations, "seed": seed, "algorithm": settings}
@@ -65,7 +65,7 @@ def study(settings: dict[str, Any], seed: int, evaluations: int) -> Study:
 
 
 class Archive:
-    """The front of everything one search has evaluated, and its hypervolume at each mark."""
+    """The front of all designs that one search has evaluated, and its hypervolume at each mark."""
 
     def __init__(self, marks: tuple[int, ...]) -> None:
         self.front = np.zeros((0, 2))
@@ -74,7 +74,7 @@ class Archive:
         self._marks = marks
 
     def add(self, points: NDArray[np.float64], feasible: NDArray[np.bool_]) -> None:
-        """Take n evaluated designs, in order; shape (n, 2) of height and energy."""
+        """Add n evaluated designs, in order; ``points`` has shape (n, 2): height and energy."""
         for mark in self._marks:
             if self.evaluations < mark <= self.evaluations + len(points):
                 part = mark - self.evaluations
@@ -90,7 +90,7 @@ class Archive:
 def search(
     evaluate: Evaluate, settings: dict[str, Any], seeds: list[int], evaluations: int, marks: tuple[int, ...]
 ) -> tuple[list[Archive], float]:
-    """One search a seed, in step; the archives, and the seconds spent in the algorithm per 1,000 evaluations."""
+    """One search per seed, all advancing together; their archives, and the seconds of the algorithm per 1,000 jumps."""
     studies = [study(settings, seed, evaluations) for seed in seeds]
     running: list[tuple[Algorithm, Archive, Study]] = [(make_algorithm(s), Archive(marks), s) for s in studies]
     archives = [archive for _, archive, _ in running]
@@ -125,7 +125,7 @@ def reference(evaluate: Evaluate, evaluations: int) -> dict[str, Any]:
     """The front of many evaluations: half by NSGA-II with a population of 200, half by SMS-EMOA with 100."""
     fronts = []
     for settings in ({"name": "nsga2", "population": 200}, {"name": "sms_emoa", "population": 100}):
-        # Not fewer than 5,000 jumps a search, or it is no better than what it measures.
+        # At least 5,000 jumps per search; with fewer, the reference is no better than the searches it measures.
         seeds = list(range(101, 101 + max(1, min(4, evaluations // 10_000))))
         archives, _ = search(evaluate, settings, seeds, evaluations // (2 * len(seeds)), ())
         fronts += [archive.front for archive in archives]
@@ -136,7 +136,7 @@ def reference(evaluate: Evaluate, evaluations: int) -> dict[str, Any]:
 
 
 def contend(evaluate: Evaluate, name: str, seeds: list[int], evaluations: int, best: dict[str, Any]) -> dict[str, Any]:
-    """One contender's row."""
+    """The results of one contender: one row of the table."""
     settings = CONTENDERS[name]
     budget = min(evaluations, TPE_EVALUATIONS) if settings["name"] == "optuna_tpe" else evaluations
     marks = tuple(mark for mark in MARKS if mark <= budget)
@@ -144,7 +144,7 @@ def contend(evaluate: Evaluate, name: str, seeds: list[int], evaluations: int, b
     front = np.array(best["front"])
     shares = {str(m): [a.volumes[m] / best["hypervolume"] for a in archives if m in a.volumes] for m in marks}
     if settings["name"] == "weighted_cmaes":
-        # Its runs follow each other, so only the end is a fair mark; runs that converge early end it early.
+        # Its runs follow one another, so only the end is a fair mark; runs that converge early end the sweep early.
         shares = {str(budget): [hypervolume(a.front, REFERENCE_POINT) / best["hypervolume"] for a in archives]}
     return {
         "evaluations": budget,
@@ -183,8 +183,8 @@ def table(results: dict[str, Any]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--full", action="store_true", help="10,000 jumps, 5 seeds, reference of 200,000; keep results")
-    parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="these contenders")
-    parser.add_argument("--evaluations", type=int, help="jumps a search, in place of 1,000 or 10,000")
+    parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="run only these contenders")
+    parser.add_argument("--evaluations", type=int, help="jumps per search, instead of 1,000 or 10,000")
     arguments = parser.parse_args()
     evaluations, seeds, effort = (10_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
     evaluations = arguments.evaluations or evaluations

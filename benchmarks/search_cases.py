@@ -3,7 +3,7 @@
     python benchmarks/search_cases.py               # what benchmarks/search_cases.md shows
     python benchmarks/search_cases.py --evaluations 1600
 
-All energies are simulated here, under ``reference``, but for the column "published".
+All energies are simulated here, under ``reference``, except for the column "published".
 """
 
 import argparse
@@ -24,7 +24,7 @@ WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
 
 def least_energy(front: DataFrame, height_m: float) -> str:
-    """Least energy on a front at this height or above, as text."""
+    """Least energy of the designs on a front that reach this height, as text."""
     high = front[front["height_m"] >= height_m]
     return f"{high['energy_j'].min():.2f}" if len(high) else "not reached"
 
@@ -39,7 +39,7 @@ def front(folder: Path, case: str, algorithm: dict[str, Any], evaluations: int) 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--evaluations", type=int, default=8_000, help="of each search of each case")
+    parser.add_argument("--evaluations", type=int, default=8_000, help="jumps per search")
     evaluations = parser.parse_args().evaluations
     simulator = load_simulator(study_from_dict({"name": "b", "evaluations": 1}, source="benchmark"), workers=1)
     cases = [PAPER_CASES[name] for name in ("A", "B", "C")]

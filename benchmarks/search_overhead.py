@@ -3,10 +3,10 @@
     python benchmarks/search_overhead.py            # 4,000 jumps
     python benchmarks/search_overhead.py --full     # 20,000 jumps: what benchmarks/search_overhead.md shows
 
-Bare simulation: the same designs through the evaluator and nothing else, in the study's generations, and in one batch.
-Optuna's loop: ``Study.optimize`` with its NSGA-II sampler on SQLite, one naive simulation (XML, Python loop) a trial;
-measured on fewer trials (the naive way is the tests' oracle). Both sides must agree in what they compute before a
-ratio is printed. CPU times stand beside the wall times, for machines that others use, too.
+Bare simulation: only the evaluator, with the same designs, in the study's generations and in one batch. Optuna's loop:
+``Study.optimize`` with its NSGA-II sampler on SQLite and one naive simulation per trial (XML, Python loop: the tests'
+oracle), measured on fewer trials. No ratio is printed unless both sides compute the same. CPU times stand beside the
+wall times for machines that have other work to do.
 """
 
 import argparse
@@ -90,7 +90,7 @@ def optuna_loop(study: Study, simulator: Simulator, folder: Path, trials: int) -
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--full", action="store_true", help="20,000 jumps instead of 4,000")
-    parser.add_argument("--rounds", type=int, default=3, help="interleaved rounds; medians are shown")
+    parser.add_argument("--rounds", type=int, default=3, help="interleaved rounds; the medians are printed")
     parser.add_argument("--workers", type=int, default=default_workers())
     arguments = parser.parse_args()
     evaluations = 20_000 if arguments.full else 4_000
