@@ -31,8 +31,9 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
     else:
         low, high = front.iloc[0], front.iloc[-1]
         lines = [
-            f"{_price(front, HEADLINE_HEIGHT_M)}; the front of {len(front)} designs runs from "
-            f"{low['height_m']:.2f} m on {low['energy_j']:.1f} J to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
+            f"{_price(front, HEADLINE_HEIGHT_M)}; the front of {len(front)} designs runs "
+            f"from {low['height_m']:.2f} m on {low['energy_j']:.1f} J "
+            f"to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
         ]
     return [*lines, *_against_paper(front, cases)]
 
