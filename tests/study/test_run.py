@@ -188,6 +188,25 @@ def test_stops_on_wall_time_over_all_sessions(tmp_path):
     assert run(longer, tmp_path / "s.db", evaluations=first.evaluations + 20).new_evaluations == 20
 
 
+def test_wall_time_counts_earlier_sessions(tmp_path):
+    """With an hour on the clock from earlier sessions, a limit of half an hour is used up and one of two is not."""
+    import sqlite3
+
+    path, hour = tmp_path / "s.db", 3600.0
+    run(made(), path, evaluations=20)
+    connection = sqlite3.connect(path)
+    connection.execute("UPDATE monoped_history SET seconds = ?", (hour,))
+    connection.commit()
+    connection.close()
+    summary = run(replace(made(), stop=Stop(wall_time_s=0.5 * hour)), path)
+    assert (summary.stop_reason, summary.new_evaluations) == ("wall_time", 0)
+    summary = run(replace(made(), stop=Stop(wall_time_s=2.0 * hour)), path, evaluations=40)
+    assert (summary.stop_reason, summary.new_evaluations) == ("budget", 20)
+    data = read_study(path)
+    assert hour < data.wall_time_s < 2.0 * hour
+    assert data.wall_time_s == data.history["seconds"].max() == status(path)["wall_time_s"]
+
+
 def test_a_weighted_sweep_ends_by_itself(tmp_path):
     study = made(evaluations=1000, algorithm={"name": "weighted_cmaes", "height_weights": [0.2, 0.8], "iterations": 2})
     summary = run(study, tmp_path / "s.db")

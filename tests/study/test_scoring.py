@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,27 @@ def test_failed_jumps_keep_their_reason_and_are_farther_off_than_any_real_one():
 
 def test_an_ok_status_without_numbers_is_still_a_failure():
     assert judge(made_evaluations([np.inf], [1.0]), Constraints()).state.tolist() == ["failed"]
+
+
+@pytest.mark.parametrize(
+    ("key", "limit", "measure", "values", "violation"),
+    [
+        ("min_height_m", 0.8, "height_m", [0.6, 0.8, 1.0], [0.25, 0.0, 0.0]),
+        ("max_energy_j", 20.0, "energy_j", [15.0, 20.0, 30.0], [0.0, 0.0, 0.5]),
+        ("max_mass_kg", 4.0, "mass_kg", [3.0, 4.0, 5.0], [0.0, 0.0, 0.25]),
+        ("min_foot_clearance_m", 0.02, "foot_clearance_m", [0.01, 0.02, 0.03], [0.5, 0.0, 0.0]),
+    ],
+)
+def test_each_constraint_refuses_the_values_on_its_wrong_side(key, limit, measure, values, violation):
+    evaluations = replace(made_evaluations([1.0, 1.0, 1.0], [5.0, 5.0, 5.0]), **{measure: np.array(values)})
+    judgement = judge(evaluations, Constraints(**{key: limit}))
+    assert judgement.violation == pytest.approx(violation, abs=1e-12)
+    assert judgement.state.tolist() == ["infeasible" if v else "feasible" for v in violation]
+    for value, missed, reason in zip(values, violation, judgement.reason, strict=True):
+        side = "below" if key.startswith("min") else "above"
+        assert reason == (f"{measure} = {value:g} is {side} the limit of {limit:g}" if missed else "")
+
+
+def test_a_limit_that_is_not_set_is_not_judged():
+    judgement = judge(made_evaluations([1.0], [5.0]), Constraints())
+    assert judgement.constraints.shape == (1, 1)
