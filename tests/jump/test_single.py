@@ -12,9 +12,26 @@ from pareto_monoped.robot.population import robot_arrays
 MAP = map_for("VT8020")
 
 
+# Hip and knee have different ratios, so that nothing of one passes for the other's.
+DESIGN = PAPER_CASES["A"].design
+
+
 @pytest.fixture(scope="module", params=["reference", "paper"])
 def jump(request):
-    return simulate(PAPER_CASES["B"].design, MAP, load_calibration(request.param), trace=True)
+    return simulate(DESIGN, MAP, load_calibration(request.param), trace=True)
+
+
+def robot_of(jump):
+    return robot_arrays(DESIGN.as_array(), MAP, load_calibration(jump.calibration.rpartition("-")[0]).mass)
+
+
+def during_steps(jump, joint):
+    """Motor torque, joint torque and booked speed of each step, and the step."""
+    trace = jump.trace
+    speed = trace[f"{joint}_rad_per_s"]
+    booked = speed[:-1] if jump.calibration.startswith("paper") else 0.5 * (speed[1:] + speed[:-1])
+    step = trace["time_s"][1]
+    return trace[f"{joint}_motor_torque_n_m"][:-1], trace[f"{joint}_torque_n_m"][:-1], booked, step
 
 
 def test_trace_and_measures_are_the_same_jump(jump):
@@ -23,14 +40,57 @@ def test_trace_and_measures_are_the_same_jump(jump):
     assert trace["base_z_m"].max() == measures["height_m"]
     assert trace["time_s"][-1] == pytest.approx(measures["apex_s"])
     assert trace["foot_clearance_m"][-1] == pytest.approx(measures["foot_clearance_m"])
-    assert np.abs(trace["knee_motor_torque_n_m"]).max() == measures["peak_torque_knee_n_m"]
-    step = trace["time_s"][1]
+    assert trace["time_s"][trace["foot_clearance_m"] <= 1e-9][-1] == pytest.approx(measures["lift_off_s"])
     work = 0.0
     for joint in ("hip", "knee"):
-        torque, speed = trace[f"{joint}_motor_torque_n_m"][:-1], trace[f"{joint}_rad_per_s"]
-        booked = speed[:-1] if jump.calibration.startswith("paper") else 0.5 * (speed[1:] + speed[:-1])
-        work += np.maximum(torque * booked, 0.0).sum() * step
+        torque, _, speed, step = during_steps(jump, joint)
+        work += np.maximum(torque * speed, 0.0).sum() * step
     assert work == pytest.approx(measures["energy_j"])
+
+
+@pytest.mark.parametrize("joint", ["hip", "knee"])
+def test_each_joints_measures_are_those_of_its_trace(jump, joint):
+    measures = jump.measures
+    torque, _, speed, step = during_steps(jump, joint)
+    assert measures[f"energy_{joint}_j"] == pytest.approx(np.maximum(torque * speed, 0.0).sum() * step)
+    assert measures[f"peak_torque_{joint}_n_m"] == np.abs(torque).max()
+    assert measures[f"peak_speed_{joint}_rad_per_s"] == np.abs(jump.trace[f"{joint}_rad_per_s"]).max()
+    assert measures[f"peak_power_{joint}_w"] == pytest.approx(np.abs(torque * speed).max())
+
+
+def test_absorbed_work_and_drive_loss_are_those_of_the_trace(jump):
+    absorbed = lost = 0.0
+    for joint in ("hip", "knee"):
+        torque, delivered, speed, step = during_steps(jump, joint)
+        absorbed -= np.minimum(torque * speed, 0.0).sum() * step
+        lost += ((torque - delivered) * speed).sum() * step
+    assert jump.measures["absorbed_j"] == pytest.approx(absorbed)
+    assert jump.measures["drive_loss_j"] == pytest.approx(lost, abs=1e-12)
+    assert absorbed > 0.0
+
+
+def test_joule_heat_is_that_of_the_motors_currents(jump):
+    """R i^2 with i = (joint torque / ratio) / k_t, summed over both motors."""
+    robot, heat = robot_of(jump), 0.0
+    assert robot.ratio[0, 0] < 5.0 < 7.0 < robot.ratio[0, 1]
+    for k, joint in enumerate(("hip", "knee")):
+        torque, _, _, step = during_steps(jump, joint)
+        current = torque / robot.ratio[0, k] / robot.torque_constant_n_m_per_a[0, k]
+        heat += robot.winding_resistance_ohm[0, k] * (current**2).sum() * step
+    assert jump.measures["joule_heat_j"] == pytest.approx(heat, rel=1e-9)
+
+
+def test_saturation_is_the_share_of_controlled_steps_at_the_limit():
+    """Without a voltage limit a saturated motor has its peak torque."""
+    calibration = load_calibration("paper")
+    design = PAPER_CASES["B"].design.replace({"stiffness_n_per_m": 8.0})
+    robot = robot_arrays(design.as_array(), MAP, calibration.mass)
+    result = simulate(design, MAP, calibration, trace=True)
+    torque = np.abs([result.trace[f"{joint}_motor_torque_n_m"] for joint in ("hip", "knee")])
+    controlled = torque.max(axis=0) > 0.0
+    share = (torque == robot.peak_torque_n_m.T).sum(axis=1) / controlled.sum()
+    assert [result.measures[f"saturation_{joint}"] for joint in ("hip", "knee")] == pytest.approx(share.tolist())
+    assert 0.0 == share[0] < share[1] < 0.9
 
 
 def test_trace_begins_at_rest_and_ends_at_the_apex(jump):
