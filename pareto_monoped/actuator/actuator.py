@@ -11,6 +11,7 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import SCREWS, Group, Role
+from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Numbers
 
 
@@ -173,7 +174,7 @@ def output_interface(settings: ActuatorSettings) -> OutputInterface:
         flange_radius_mm=data.carrier.flange_radius_mm,
         bolts=HolePattern(
             pitch_circle_mm=data.interface.output_bolt_circle_mm,
-            diameter_mm=3.0,
+            diameter_mm=2.0 * M3.shank,
             count=data.interface.output_bolt_count,
         ),
         thread_depth_mm=data.carrier.thread_depth_mm,
@@ -185,17 +186,17 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
     body = motor.frameless if family == "ISSPG" else motor.framed
     assert body is not None
     assert motor.mount_holes is not None
-    case = settings.parts.case
+    casing = settings.parts.casing
     radius = 0.5 * body.outer_diameter_mm
     return MountInterface(
-        housing_radius_mm=radius + case.flange_width_mm,
-        opening_radius_mm=radius + case.motor_clearance_mm,
+        housing_radius_mm=radius + casing.flange_width_mm,
+        opening_radius_mm=radius + casing.motor_clearance_mm,
         bolts=HolePattern(
-            pitch_circle_mm=2.0 * (radius + case.bolt_offset_mm),
-            diameter_mm=3.0,
+            pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
+            diameter_mm=2.0 * M3.shank,
             count=settings.parts.interface.mount_bolt_count,
         ),
-        thread_depth_mm=case.rim_mm,
+        thread_depth_mm=casing.rim_mm,
         back_bolts=motor.mount_holes,
-        back_depth_mm=BACK_THREAD_MM if family == "ISSPG" else case.plate_mm,
+        back_depth_mm=BACK_THREAD_MM if family == "ISSPG" else casing.plate_mm,
     )

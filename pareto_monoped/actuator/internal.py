@@ -2,20 +2,21 @@
 
 import numpy as np
 
-from pareto_monoped.actuator.common import (
+from pareto_monoped.actuator.features import (
+    END_PLAY_MM,
     GEAR_NOTE,
-    M3_CLEARANCE_MM,
-    M3_THREAD_MM,
+    MOTOR_TAPPED_HOLE_MM,
     bought_bearing,
-    carrier_parts,
-    case_holes,
-    gear_parts,
+    casing_holes,
+    motor_holes,
+    note_with,
     slab,
     spigot,
-    told,
     tube,
     vents,
 )
+from pareto_monoped.actuator.front import carrier_parts, gear_parts
+from pareto_monoped.actuator.internal_layout import InternalLayout, frameless, internal_layout
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -24,16 +25,14 @@ from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibil
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
-_END_PLAY_MM = 0.5
-"""From the sun shaft's end to the output face."""
-_NECK_RADIUS_MM = 3.8
-"""Of the sun's neck, which touches the inner ring of its end bearing only (619/6: abutment from 7.6 mm diameter)."""
-_NECK_PLAY_MM = 0.2
-"""Axial play of the rotor between end bearing and rear bearing."""
+BACK_THREAD_MM = 6.0
+"""Depth of the motor's own pattern in the backplate: M5 screws need more than the casing's M3."""
 _HUB_WALL_MM = 1.2
 """Of the coupling's hub, which touches the inner ring of the rear bearing only (6800: abutment 12 mm)."""
-BACK_THREAD_MM = 6.0
-"""Depth of the motor's own pattern in the backplate: M5 screws need more than the case's M3."""
+_PAD_RIM_MM = 0.5
+"""Metal inside and outside the threads in the backplate's pad; our own choice."""
+_BELL_PLAY_MM = 1.0
+"""From the sun's rear shaft to the bell's bore; our own choice."""
 
 
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
@@ -41,76 +40,49 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
     The ring housing is one turned piece, solid between ring and stator: it carries the main bearing, the ring and the
     stator, takes the stator's torque and its heat. Where the gears need more depth than the stator has, the stator
-    sits further back on it and the case grows.
+    sits further back on it and the casing grows.
     """
-    data, materials = settings.parts, settings.materials
-    case, coupling = data.case, data.coupling
-    kit = motor.frameless
-    assert kit is not None
-    assert kit.stator_height_mm is not None
-    height, bell = kit.stator_height_mm, kit.bell_thickness_mm
-
-    # Where the main bearing is too large for the stator's bore, its seat stands in front of the stator.
-    fits = at.r_seat + case.ring_wall_mm <= at.r_stator_in
-    r_seat_out = np.where(fits, at.r_stator_in, at.r_seat + case.ring_wall_mm)[()]
-    z_flange = -(case.plate_mm + case.flange_mm)
-    z_lip = at.z_shoulder
-    z_free = np.where(fits, z_flange, z_lip)[()] - case.rotor_clearance_mm
-    # The rotor's cavity is as high as the stator; turned past each other with play at the back.
-    z_bell = np.minimum(
-        z_free - height - case.rotor_clearance_mm, at.z_secondary_back - case.motor_carrier_clearance_mm
-    )
-    z_stator_back = z_bell + case.rotor_clearance_mm
-    z_coupling = z_bell - bell
-    z_seat = z_coupling - coupling.thickness_mm - case.bearing_play_mm
-    z_plate = z_seat - at.rear_bearing.width_mm
-    z_end = z_plate - case.wall_mm
-
-    r_flange = r_seat_out + case.flange_width_mm - 1.0
-    flange_bolts = r_flange - 0.5 * (case.flange_width_mm - 1.0)
-    count = data.interface.mount_bolt_count
-    flange_threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=flange_bolts, count=count)
-    flange_screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=flange_bolts, count=count)
-    mount, back = case_holes(at, settings), case_holes(at, settings, M3_CLEARANCE_MM)
-    bell_circle = 0.5 * coupling.bolt_circle_mm
-    bell_screws = Pattern(radius_mm=M3_CLEARANCE_MM, pitch_radius_mm=bell_circle, count=coupling.bolt_count)
-    bell_threads = Pattern(radius_mm=M3_THREAD_MM, pitch_radius_mm=bell_circle, count=coupling.bolt_count)
-
-    # Opening of the lip behind the main bearing: holds its outer ring and the ring gear, clears the carrier's shoulder.
-    r_lip = np.maximum(
-        np.minimum(at.r_seat - case.lip_mm, at.r_ring - 0.5 * case.ring_lip_mm),
-        at.r_bore + data.carrier.shoulder_height_mm + case.rotor_clearance_mm,
-    )
-    shaft, journal = coupling.shaft_radius_mm, 0.5 * at.end_bearing.inner_diameter_mm
-    z_neck = -at.end_bearing.width_mm - _NECK_PLAY_MM
-    neck = np.maximum(journal, np.minimum(_NECK_RADIUS_MM, at.r_carrier_in - case.rotor_clearance_mm))[()]
-    rear_seat = 0.5 * at.rear_bearing.outer_diameter_mm
-    rotor_share = motor.rotor_share()
-    mount_holes = motor.mount_holes
-    assert mount_holes is not None
-    r_mount = 0.5 * (mount_holes.pitch_circle_mm + mount_holes.diameter_mm)
-    front_vents = vents(r_flange, at.r_case, case.vent_wall_mm)
-    # A pad behind the motor's own bolt pattern gives its threads the same depth as the mounting threads.
-    back_threads = back_holes(motor, -0.8)
-    r_pad = 0.5 * (mount_holes.pitch_circle_mm - mount_holes.diameter_mm) - 0.5
-    back_vents = vents(r_mount + case.vent_wall_mm, at.r_case, case.vent_wall_mm)
+    shell = internal_layout(at, motor, settings)
     return (
         *gear_parts(at, settings),
         *carrier_parts(at, settings),
+        *_turning_parts(at, shell, settings),
+        *_casing_and_ring_housing(at, shell, settings),
+        _backplate(at, shell, motor, settings),
+        *_screws(at, shell, motor, settings),
+        bought_bearing(
+            "rear_bearing",
+            settings.materials.bearing_steel,
+            at.rear_bearing,
+            shell.z_seat,
+            Group.HOUSING,
+            "carries the rotor",
+            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="backplate"),
+        ),
+        *_motor_parts(at, shell, motor, settings),
+    )
+
+
+def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """What turns with the motor: the sun in one piece with its shaft, and the coupling to the bell."""
+    data, materials = settings.parts, settings.materials
+    coupling, shaft = data.coupling, data.coupling.shaft_radius_mm
+    z_hub = shell.z_coupling - coupling.thickness_mm
+    return (
         Part(
             name="sun",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
             material=materials.gear_steel,
             prisms=(
-                *slab(z_neck, -_END_PLAY_MM, journal),
-                *slab(at.z_gear_front, z_neck, neck),
+                *slab(shell.z_neck, -END_PLAY_MM, shell.r_journal),
+                *slab(at.z_gear_front, shell.z_neck, shell.r_neck),
                 *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
-                *slab(z_plate, at.z_gear_back, shaft),
+                *slab(shell.z_plate, at.z_gear_back, shaft),
             ),
             process="machined",
             group=Group.ROTOR,
-            note=told(
+            note=note_with(
                 "one piece with its shaft; " + GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm
             ),
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
@@ -121,23 +93,45 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             visibility=Visibility.INSIDE,
             material=materials.aluminium,
             prisms=(
-                *slab(z_coupling - coupling.thickness_mm, z_coupling, coupling.radius_mm, shaft, bell_threads),
-                *tube(z_seat, z_coupling - coupling.thickness_mm, shaft + _HUB_WALL_MM, shaft),
+                *slab(z_hub, shell.z_coupling, coupling.radius_mm, shaft, _bell_holes(settings, M3.core)),
+                *tube(shell.z_seat, z_hub, shaft + _HUB_WALL_MM, shaft),
             ),
             process="machined",
             group=Group.ROTOR,
             note="screwed to the bell",
         ),
+    )
+
+
+def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
+    """Bolt pattern between bell and coupling."""
+    coupling = settings.parts.coupling
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * coupling.bolt_circle_mm, count=coupling.bolt_count)
+
+
+def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
+    """Bolt pattern between casing and ring housing."""
+    return Pattern(
+        radius_mm=radius_mm, pitch_radius_mm=shell.r_flange_bolts, count=settings.parts.interface.mount_bolt_count
+    )
+
+
+def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    casing, aluminium = settings.parts.casing, settings.materials.aluminium
+    mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
+    front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
+    z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
+    return (
         Part(
             name="casing",
             role=Role.HOUSING,
-            material=materials.aluminium,
+            material=aluminium,
             prisms=(
-                *slab(-case.plate_mm, 0.0, at.r_plate, at.r_open, mount, flange_screws, *front_vents),
-                *tube(at.z_bearing_front, -case.plate_mm, at.r_seat, at.r_open),
-                *tube(-case.rim_mm, -case.plate_mm, at.r_plate, at.r_case, mount),
-                *tube(z_plate + case.flange_mm, -case.rim_mm, at.r_case + case.wall_mm, at.r_case),
-                *tube(z_plate, z_plate + case.flange_mm, at.r_plate, at.r_case, mount),
+                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, screws, *front_vents),
+                *tube(at.z_bearing_front, -casing.plate_mm, at.r_seat, at.r_open),
+                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount),
+                *tube(z_plate + casing.flange_mm, -casing.rim_mm, at.r_casing + casing.wall_mm, at.r_casing),
+                *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
             process="machined",
             group=Group.HOUSING,
@@ -146,54 +140,76 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="ring_housing",
             role=Role.HOUSING,
-            material=materials.aluminium,
+            material=aluminium,
             prisms=(
-                *tube(z_flange, -case.plate_mm, r_flange, at.r_seat, flange_threads),
-                *tube(at.z_bearing_back, z_flange, r_seat_out, at.r_seat),
-                *tube(z_lip, at.z_bearing_back, r_seat_out, r_lip),
-                *tube(at.z_gear_front, z_lip, at.r_stator_in, at.r_ring - 0.5 * case.ring_lip_mm),
+                *tube(z_flange, -casing.plate_mm, shell.r_flange, at.r_seat, _flange_holes(shell, settings, M3.core)),
+                *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
+                *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
+                *tube(at.z_gear_front, z_lip, at.r_stator_in, at.r_ring - 0.5 * casing.ring_lip_mm),
                 *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
                 *tube(
-                    np.minimum(z_stator_back, at.z_gear_back),
+                    np.minimum(shell.z_stator_back, at.z_gear_back),
                     at.z_gear_back,
                     at.r_stator_in,
-                    at.r_stator_in - case.ring_wall_mm,
+                    at.r_stator_in - casing.ring_wall_mm,
                 ),
             ),
             process="machined",
             group=Group.HOUSING,
-            note=told(
+            note=note_with(
                 "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring, {} for the stator",
                 2.0 * at.r_seat,
                 2.0 * at.r_ring,
                 2.0 * at.r_stator_in,
             ),
         ),
-        Part(
-            name="backplate",
-            role=Role.HOUSING,
-            material=materials.aluminium,
-            prisms=(
-                *slab(z_end, z_plate, at.r_plate, rear_seat - case.lip_mm, back, back_threads, *back_vents),
-                *tube(z_plate, z_end + BACK_THREAD_MM, r_mount + 0.5, r_pad, back_threads),
-                *tube(z_plate, z_seat, rear_seat + case.seat_wall_mm, rear_seat),
-                *spigot(z_plate, at, settings),
-            ),
-            process="machined",
-            group=Group.HOUSING,
-            note=told("EN AW-6082; seat {} J7 for the rear bearing, step to fit the casing", 2.0 * rear_seat),
+    )
+
+
+def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
+    """The plate at the back with the rear bearing's seat and the motor's own bolt pattern.
+
+    A pad behind that pattern gives its threads their depth.
+    """
+    casing = settings.parts.casing
+    holes, rear_seat, z_plate = motor.mount_holes, shell.r_rear_seat, shell.z_plate
+    assert holes is not None
+    back, threads = casing_holes(at, settings, M3.hole), motor_holes(motor, MOTOR_TAPPED_HOLE_MM)
+    r_mount = 0.5 * (holes.pitch_circle_mm + holes.diameter_mm)
+    r_pad = 0.5 * (holes.pitch_circle_mm - holes.diameter_mm) - _PAD_RIM_MM
+    back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
+    return Part(
+        name="backplate",
+        role=Role.HOUSING,
+        material=settings.materials.aluminium,
+        prisms=(
+            *slab(shell.z_end, z_plate, at.r_plate, rear_seat - casing.lip_mm, back, threads, *back_vents),
+            *tube(z_plate, shell.z_end + BACK_THREAD_MM, r_mount + _PAD_RIM_MM, r_pad, threads),
+            *tube(z_plate, shell.z_seat, rear_seat + casing.seat_wall_mm, rear_seat),
+            *spigot(z_plate, at, settings),
         ),
+        process="machined",
+        group=Group.HOUSING,
+        note=note_with("EN AW-6082; seat {} J7 for the rear bearing, step to fit the casing", 2.0 * rear_seat),
+    )
+
+
+def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """Of ring housing, backplate and coupling."""
+    casing, coupling, steel = settings.parts.casing, settings.parts.coupling, settings.materials.steel
+    mount_bolts = settings.parts.interface.mount_bolt_count
+    return (
         screw_part(
             "ring_housing_screw",
             M3,
             head="countersunk",
             seat_mm=0.0,
-            grip_mm=case.plate_mm,
-            room_mm=case.flange_mm,
+            grip_mm=casing.plate_mm,
+            room_mm=casing.flange_mm,
             direction=-1.0,
-            material=materials.steel,
-            count=count,
-            pitch_radius_mm=flange_bolts,
+            material=steel,
+            count=mount_bolts,
+            pitch_radius_mm=shell.r_flange_bolts,
             group=Group.HOUSING,
             note="flush with the mounting face",
         ),
@@ -201,12 +217,12 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             "backplate_screw",
             M3,
             head="cap",
-            seat_mm=z_end,
-            grip_mm=case.wall_mm,
-            room_mm=case.flange_mm,
+            seat_mm=shell.z_end,
+            grip_mm=casing.wall_mm,
+            room_mm=casing.flange_mm,
             direction=1.0,
-            material=materials.steel,
-            count=count,
+            material=steel,
+            count=mount_bolts,
             pitch_radius_mm=at.r_bolts,
             group=Group.HOUSING,
             note="into the casing",
@@ -215,30 +231,32 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             "coupling_screw",
             M3,
             head="countersunk",
-            seat_mm=z_bell,
-            grip_mm=bell,
+            seat_mm=shell.z_bell,
+            grip_mm=frameless(motor).bell_thickness_mm,
             room_mm=coupling.thickness_mm,
             direction=-1.0,
-            material=materials.steel,
+            material=steel,
             count=coupling.bolt_count,
-            pitch_radius_mm=bell_circle,
+            pitch_radius_mm=0.5 * coupling.bolt_circle_mm,
             group=Group.ROTOR,
             note="through the bell into the coupling, flush",
         ),
-        bought_bearing(
-            "rear_bearing",
-            materials.bearing_steel,
-            at.rear_bearing,
-            z_seat,
-            Group.HOUSING,
-            "carries the rotor",
-            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="backplate"),
-        ),
+    )
+
+
+def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """Envelopes of stator and rotor, with their shares of the motor's mass."""
+    kit, rotor_share = frameless(motor), motor.rotor_share()
+    height = kit.stator_height_mm
+    assert height is not None
+    bell_bore = settings.parts.coupling.shaft_radius_mm + _BELL_PLAY_MM
+    z_bell, z_stator_back = shell.z_bell, shell.z_stator_back
+    return (
         Part(
             name="motor_stator",
             role=Role.MOTOR_STATOR,
             visibility=Visibility.INSIDE,
-            material=materials.motor_stator,
+            material=settings.materials.motor_stator,
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
             process="bought",
             group=Group.HOUSING,
@@ -249,28 +267,14 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         Part(
             name="motor_rotor",
             role=Role.MOTOR_ROTOR,
-            material=materials.motor_rotor,
+            material=settings.materials.motor_rotor,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
-                *slab(z_coupling, z_bell, at.r_motor, shaft + 1.0, bell_screws),
+                *slab(shell.z_coupling, z_bell, at.r_motor, bell_bore, _bell_holes(settings, M3.hole)),
             ),
             process="bought",
             group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * kit.mass_kg,
             note=f"{motor.name}, frameless",
         ),
-    )
-
-
-def back_holes(motor: Motor, play_mm: float) -> Pattern:
-    """The motor's own mounting pattern in the backplate.
-
-    Args:
-        motor: which one.
-        play_mm: added to the diameter: 0.5 for clearance holes, -0.8 for threads.
-    """
-    holes = motor.mount_holes
-    assert holes is not None
-    return Pattern(
-        radius_mm=0.5 * (holes.diameter_mm + play_mm), pitch_radius_mm=0.5 * holes.pitch_circle_mm, count=holes.count
     )

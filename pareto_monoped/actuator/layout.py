@@ -41,7 +41,7 @@ class Layout:
     rear_bearing: Bearing
     # Radii.
     r_plate: float
-    r_case: float
+    r_casing: float
     r_bolts: float
     r_motor: float
     r_stator_in: float
@@ -77,7 +77,7 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
 def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers, settings: ActuatorSettings) -> Layout:
     """The common layout of an actuator."""
     data = settings.parts
-    carrier, case = data.carrier, data.case
+    carrier, casing = data.carrier, data.casing
     r_pins = gears.carrier_radius_mm
     least_bore = np.maximum(
         2.0 * r_pins + carrier.bearing_clearance_mm, 2.0 * carrier.flange_radius_mm + carrier.flange_clearance_mm
@@ -101,16 +101,16 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         bearing=bearing,
         end_bearing=small_bearing(END_BEARING_BORE_MM),
         rear_bearing=small_bearing(2.0 * data.coupling.shaft_radius_mm),
-        r_plate=r_motor + case.flange_width_mm,
-        r_case=r_motor + case.motor_clearance_mm,
-        r_bolts=r_motor + case.bolt_offset_mm,
+        r_plate=r_motor + casing.flange_width_mm,
+        r_casing=r_motor + casing.motor_clearance_mm,
+        r_bolts=r_motor + casing.bolt_offset_mm,
         r_motor=r_motor,
         r_stator_in=0.5 * stator_in,
         r_stator_out=0.5 * stator_out,
         r_rotor_in=0.5 * stator_out + AIR_GAP_MM,
         r_bore=0.5 * bearing.inner_diameter_mm,
         r_seat=0.5 * bearing.outer_diameter_mm,
-        r_open=0.5 * bearing.outer_diameter_mm - case.lip_mm,
+        r_open=0.5 * bearing.outer_diameter_mm - casing.lip_mm,
         r_pins=r_pins,
         r_ring=gears.ring_pitch_radius_mm + ring_width,
         r_carrier_in=r_pins - pin_reach,

@@ -24,9 +24,14 @@ PEAK_TO_CONTINUOUS = 5.5 / 3.82
 BELL_THICKNESS_MM = 2.0
 """Of an outrunner's bell where the stator's height is not published: VT8020 and U12 both are 2.0 mm longer than it."""
 
-# Stator diameters over motor diameter where they are not published: means over VT8020, U8, U10 and U12, rounded.
-_STATOR_OUTER_SHARE = 0.90
-_STATOR_INNER_SHARE = 0.67
+_STATOR_OUTER_SHARE, _STATOR_INNER_SHARE = 0.90, 0.67
+"""Stator diameters over motor diameter where they are not published: means over VT8020, U8, U10 and U12, rounded."""
+
+_ACTIVE_SHARE = 0.79
+"""Mass of a frameless motor over that of the framed one where it is not published (VT8020: 0.560 / 0.710)."""
+
+_DIAMETER_MM, _MOUNT_CIRCLE_MM, _OUTPUT_CIRCLE_MM = 89.0, 51.0, 71.5
+"""The VT8020's diameter and bolt circles, by which those of other motors are scaled if they are not published."""
 
 AIR_GAP_MM = 0.5
 """Magnetic air gap of small outrunners, per side; an estimate."""
@@ -165,9 +170,9 @@ class Motor:
                 f"peak_torque_n_m = {self.peak_torque_n_m}: must be at least the continuous torque, "
                 f"{self.continuous_torque_n_m:.4g} N m; correct one of them"
             )
-        scale = self.outer_diameter_mm / 89.0
-        fill("mount_holes", HolePattern(pitch_circle_mm=51.0 * scale, diameter_mm=4.0, count=4))
-        fill("output_holes", HolePattern(pitch_circle_mm=71.5 * scale, diameter_mm=3.0, count=6))
+        scale = self.outer_diameter_mm / _DIAMETER_MM
+        fill("mount_holes", HolePattern(pitch_circle_mm=_MOUNT_CIRCLE_MM * scale, diameter_mm=4.0, count=4))
+        fill("output_holes", HolePattern(pitch_circle_mm=_OUTPUT_CIRCLE_MM * scale, diameter_mm=3.0, count=6))
         fill("rotor_inertia_kg_m2", self.estimated_rotor_inertia_kg_m2())
 
     @property
@@ -203,12 +208,12 @@ class Motor:
     def estimated_rotor_inertia_kg_m2(self) -> float:
         """The rotor as a ring between air gap and outer diameter, with its share of the active mass.
 
-        The active mass is that of the frameless motor, or 0.79 of the framed one's (VT8020: 0.560 / 0.710). The bell is
-        thin and its radius of gyration smaller, so counting its mass into the ring errs to the high side by a few
-        percent. T-Motor gives no inertia for the U8; for it the estimate is 0.9e-4 kg m2, and published measurements on
-        motors of that size are about 1.2e-4.
+        The active mass is that of the frameless motor, or a share of the framed one's. The bell is thin and its radius
+        of gyration smaller, so counting its mass into the ring errs to the high side by a few percent. T-Motor gives no
+        inertia for the U8; the estimate for it is 0.9e-4 kg m2. Published measurements on motors of that size are about
+        1.2e-4 kg m2.
         """
-        active = self.frameless.mass_kg if self.frameless else 0.79 * self.framed.mass_kg  # type: ignore[union-attr]
+        active = self.frameless.mass_kg if self.frameless else _ACTIVE_SHARE * self.framed.mass_kg  # type: ignore[union-attr]
         _, outer = self.stator_diameters_mm
         r_in, r_out = 0.5e-3 * outer + 1e-3 * AIR_GAP_MM, 0.5e-3 * self.outer_diameter_mm
         return self.rotor_share() * active * 0.5 * (r_in**2 + r_out**2)

@@ -18,7 +18,7 @@ TOLERANCE_MM = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+class CandidateSets:
     """What the rules look at: gear sets, with what was laid out around them."""
 
     gears: GearSet
@@ -35,66 +35,66 @@ class Constraint:
 
     says: str
     source: str
-    margin: Callable[[Case], Numbers]
+    margin: Callable[[CandidateSets], Numbers]
 
 
-def _meshing(case: Case) -> Numbers:
-    gears = case.gears
+def _meshing(sets: CandidateSets) -> Numbers:
+    gears = sets.gears
     return -((gears.sun_teeth + gears.ring_teeth) % gears.planets)
 
 
-def _no_interference(case: Case) -> Numbers:
-    gears = case.gears
+def _no_interference(sets: CandidateSets) -> Numbers:
+    gears = sets.gears
     reach = 4.0 * gears.carrier_radius_mm * np.sin(np.pi / gears.planets)
-    return reach - 2.0 * gears.module_mm * gears.planet_teeth - case.settings.planet_gap_mm
+    return reach - 2.0 * gears.module_mm * gears.planet_teeth - sets.settings.planet_gap_mm
 
 
-def _sun_rim(case: Case) -> Numbers:
-    if case.family == "ISSPG":
-        return np.zeros(np.shape(case.gears.sun_teeth))
-    bore = 0.5 * case.settings.parts.gears.sun_bore_mm
-    return case.gears.sun().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * case.gears.module_mm
+def _sun_rim(sets: CandidateSets) -> Numbers:
+    if sets.family == "ISSPG":
+        return np.zeros(np.shape(sets.gears.sun_teeth))
+    bore = 0.5 * sets.settings.parts.gears.sun_bore_mm
+    return sets.gears.sun().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
-def _planet_rim(case: Case) -> Numbers:
-    bore = 0.5 * case.settings.parts.gears.planet_bore_mm
-    return case.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * case.gears.module_mm
+def _planet_rim(sets: CandidateSets) -> Numbers:
+    bore = 0.5 * sets.settings.parts.gears.planet_bore_mm
+    return sets.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
-def _ring_rim(case: Case) -> Numbers:
-    return case.at.r_ring - case.gears.ring_root_radius_mm - 3.5 * case.gears.module_mm
+def _ring_rim(sets: CandidateSets) -> Numbers:
+    return sets.at.r_ring - sets.gears.ring_root_radius_mm - 3.5 * sets.gears.module_mm
 
 
-def _ring_interference(case: Case) -> Numbers:
-    ring = case.gears.ring()
-    reach = case.gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
+def _ring_interference(sets: CandidateSets) -> Numbers:
+    ring = sets.gears.ring()
+    reach = sets.gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
     return ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
 
 
-def _contact_ratio(case: Case) -> Numbers:
-    outer, inner = contact_ratios(case.gears)
-    return np.minimum(outer, inner) - case.settings.contact_ratio_min
+def _contact_ratio(sets: CandidateSets) -> Numbers:
+    outer, inner = contact_ratios(sets.gears)
+    return np.minimum(outer, inner) - sets.settings.contact_ratio_min
 
 
-def _within_stator(case: Case) -> Numbers:
-    if case.family == "ESSPG":
-        return np.zeros(np.shape(case.gears.sun_teeth))
-    kit = case.motor.frameless
+def _within_stator(sets: CandidateSets) -> Numbers:
+    if sets.family == "ESSPG":
+        return np.zeros(np.shape(sets.gears.sun_teeth))
+    kit = sets.motor.frameless
     assert kit is not None
     assert kit.stator_height_mm is not None
-    return kit.stator_height_mm - case.face_width_mm
+    return kit.stator_height_mm - sets.face_width_mm
 
 
-def _bearing(case: Case) -> Numbers:
-    return np.where(np.isfinite(case.at.r_bore), 0.0, -1.0)
+def _bearing(sets: CandidateSets) -> Numbers:
+    return np.where(np.isfinite(sets.at.r_bore), 0.0, -1.0)
 
 
-def _bearing_room(case: Case) -> Numbers:
-    if case.family == "ISSPG":
+def _bearing_room(sets: CandidateSets) -> Numbers:
+    if sets.family == "ISSPG":
         # The seat in front of the stator and its flange must stay inside the casing's bolts and rim.
-        data = case.settings.parts.case
-        return case.at.r_case - (case.at.r_seat + data.ring_wall_mm + data.flange_width_mm)
-    return case.at.r_ring - case.settings.parts.case.ring_lip_mm - case.at.r_seat
+        data = sets.settings.parts.casing
+        return sets.at.r_casing - (sets.at.r_seat + data.ring_wall_mm + data.flange_width_mm)
+    return sets.at.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.at.r_seat
 
 
 CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
@@ -111,20 +111,20 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "teeth_min": Constraint(
         says="Ns, Np >= N_min, against undercutting",
         source="paper, V (eq. 5)",
-        margin=lambda case: np.minimum(case.gears.sun_teeth, case.gears.planet_teeth) - case.settings.teeth_min,
+        margin=lambda sets: np.minimum(sets.gears.sun_teeth, sets.gears.planet_teeth) - sets.settings.teeth_min,
     ),
     "gearbox_diameter": Constraint(
         says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",
         source="paper, V (eq. 5)",
-        margin=lambda case: (
-            radial_room_mm(case.motor, case.family, case.settings) - 2.0 * case.gears.ring_pitch_radius_mm
+        margin=lambda sets: (
+            radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_pitch_radius_mm
         ),
     ),
     "ring_root": Constraint(
         says="m (Nr + 2.5) <= D_GB: so does the ring's root circle",
         source="implied by the paper's section IV-A: the families end at 6:1 and 8.7:1; root circle after ISO 53",
-        margin=lambda case: (
-            radial_room_mm(case.motor, case.family, case.settings) - 2.0 * case.gears.ring_root_radius_mm
+        margin=lambda sets: (
+            radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_root_radius_mm
         ),
     ),
     "sun_rim": Constraint(
@@ -172,13 +172,13 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
 ranges of module and planets in V, which are enumerated."""
 
 
-def violations(case: Case) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
+def violations(sets: CandidateSets) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
     """Which of the constraints that are on each gear set breaks.
 
     Returns:
         The names, and an array of shape (names, sets), True where broken.
     """
-    names = tuple(name for name in CONSTRAINTS if name not in case.settings.constraints_off)
-    shape = np.shape(case.gears.sun_teeth)
-    broken = [np.broadcast_to(CONSTRAINTS[name].margin(case), shape) < -TOLERANCE_MM for name in names]
+    names = tuple(name for name in CONSTRAINTS if name not in sets.settings.constraints_off)
+    shape = np.shape(sets.gears.sun_teeth)
+    broken = [np.broadcast_to(CONSTRAINTS[name].margin(sets), shape) < -TOLERANCE_MM for name in names]
     return names, np.array(broken, dtype=bool).reshape(len(names), *shape)

@@ -18,7 +18,7 @@ from pareto_monoped.actuator.ratiomap import (
     FamilyResult,
     MapEntry,
 )
-from pareto_monoped.actuator.rules import Case, violations
+from pareto_monoped.actuator.rules import CandidateSets, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 
@@ -67,7 +67,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     width = np.asarray(face_width_mm(gears, motor, settings))
     at = layout(motor, family, gears, width, settings)
     names, broken = violations(
-        Case(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=settings)
+        CandidateSets(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=settings)
     )
     count = broken.sum(axis=0)
     # Sets that break one rule at most are weighed: the others are neither solutions nor kept out by a single rule.

@@ -78,7 +78,7 @@ class CarrierData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CaseData:
+class CasingData:
     """Casing, backplate and ring housing, in mm."""
 
     __pydantic_config__ = _STRICT
@@ -133,7 +133,7 @@ class PartData:
 
     gears: GearData
     carrier: CarrierData
-    case: CaseData
+    casing: CasingData
     coupling: CouplingData
     interface: InterfaceData
 

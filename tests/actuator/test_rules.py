@@ -6,7 +6,7 @@ import pytest
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import layout
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.rules import CONSTRAINTS, Case, violations
+from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.settings import CONSTRAINT_NAMES, ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 
@@ -19,7 +19,7 @@ def broken(family, sun, planet, module, planets, settings=None):
     width = face_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, family, gears, width, settings)
     names, flags = violations(
-        Case(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family=family, settings=settings)
+        CandidateSets(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family=family, settings=settings)
     )
     return {name for name, flag in zip(names, flags, strict=True) if flag}
 
@@ -89,7 +89,7 @@ def test_arrays_and_single_sets_agree():
     width = face_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, "ISSPG", gears, width, settings)
     names, flags = violations(
-        Case(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family="ISSPG", settings=settings)
+        CandidateSets(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family="ISSPG", settings=settings)
     )
     for k in range(4):
         single = broken("ISSPG", int(sun[k]), int(planet[k]), float(module[k]), int(planets[k]))

@@ -9,7 +9,7 @@ from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import FAMILIES, layout
 from pareto_monoped.actuator.motors import load_motor, motor_names
-from pareto_monoped.actuator.rules import Case, violations
+from pareto_monoped.actuator.rules import CandidateSets, violations
 from pareto_monoped.actuator.search import build_map, candidates, interval_tenths
 from pareto_monoped.actuator.settings import ISO_54_SERIES_1_MM, ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
@@ -125,7 +125,7 @@ def test_every_result_obeys_every_rule_and_weighs_the_sum_of_its_parts(name, set
                     continue
                 gears = candidate.gears
                 width = face_width_mm(gears, motor, settings)
-                case = Case(
+                sets = CandidateSets(
                     gears=gears,
                     face_width_mm=width,
                     at=layout(motor, family, gears, width, settings),
@@ -133,7 +133,7 @@ def test_every_result_obeys_every_rule_and_weighs_the_sum_of_its_parts(name, set
                     family=family,
                     settings=settings,
                 )
-                assert not violations(case)[1].any()
+                assert not violations(sets)[1].any()
                 assert 10 * (gears.sun_teeth + gears.ring_teeth) // gears.sun_teeth == round(10 * entry.ratio_low)
         if entry.actuator is not None:
             lightest = min(r.best.mass_kg for r in entry.families.values() if r.best is not None)
@@ -155,8 +155,8 @@ def test_no_lighter_allowed_set_in_a_random_sample(vt8020, vt_map, settings, fam
     )
     width = face_width_mm(gears, vt8020, settings)
     at = layout(vt8020, family, gears, width, settings)
-    case = Case(gears=gears, face_width_mm=width, at=at, motor=vt8020, family=family, settings=settings)
-    fine = ~violations(case)[1].any(axis=0)
+    sets = CandidateSets(gears=gears, face_width_mm=width, at=at, motor=vt8020, family=family, settings=settings)
+    fine = ~violations(sets)[1].any(axis=0)
     assert fine.sum() > 20
     mass = np.asarray(actuator_mass_kg(at, vt8020, family, settings))
     index = interval_tenths(sun, sun + 2 * planet) - 40

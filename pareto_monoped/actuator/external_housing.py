@@ -1,0 +1,164 @@
+"""The housing of the ESSPG: ring housing in front, casing around the motor, backplate, and what holds them together."""
+
+from pareto_monoped.actuator.external_layout import ExternalLayout
+from pareto_monoped.actuator.features import (
+    MOTOR_CLEARANCE_HOLE_MM,
+    RING_GROOVE_MM,
+    casing_holes,
+    motor_holes,
+    note_with,
+    slab,
+    spigot,
+    tube,
+    vents,
+)
+from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group, Role, Visibility
+from pareto_monoped.geometry.screws import M3, screw_part
+from pareto_monoped.geometry.shapes import Pattern
+
+_BACK_BORE_MM = 8.0
+"""Radius of the backplate's central hole, behind the motor's shaft; our own choice."""
+
+
+def housing_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """What stands still around gears and motor."""
+    return (
+        *_ring_housing(at, shell, settings),
+        *_casing_and_backplate(at, shell, motor, settings),
+        *_housing_screws(at, shell, settings),
+    )
+
+
+def _flange_holes(shell: ExternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
+    """Bolt pattern of the flange between ring housing and casing."""
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=shell.r_bolts, count=settings.parts.interface.mount_bolt_count)
+
+
+def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """The ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
+    casing, materials = settings.parts.casing, settings.materials
+    z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
+    mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
+    return (
+        Part(
+            name="ring_housing",
+            role=Role.HOUSING,
+            material=materials.aluminium,
+            prisms=(
+                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount),
+                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount),
+                *tube(at.z_bearing_front, -casing.plate_mm, shell.r_boss, at.r_open),
+                *tube(at.z_bearing_back, at.z_bearing_front, shell.r_boss, at.r_seat),
+                *tube(z_groove_back, at.z_bearing_back, shell.r_boss, at.r_seat + RING_GROOVE_MM),
+                *tube(z_seat_back, z_groove_back, shell.r_boss, at.r_seat),
+                *tube(z_seat_back, -casing.plate_mm, shell.r_tube, shell.r_tube_in),
+                *tube(at.z_gear_front, z_seat_back, shell.r_tube, at.r_ring - casing.ring_lip_mm),
+                *tube(z_flange, at.z_gear_front, shell.r_tube, at.r_ring),
+                *tube(z_flange, z_flange + casing.flange_mm, shell.r_flange, shell.r_tube, screws),
+            ),
+            process="machined",
+            group=Group.HOUSING,
+            note=note_with(
+                "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring", 2.0 * at.r_seat, 2.0 * at.r_ring
+            ),
+        ),
+        Part(
+            name="bore_retaining_ring",
+            role=Role.RETAINING_RING,
+            visibility=Visibility.INSIDE,
+            material=materials.steel,
+            prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
+            process="bought",
+            group=Group.HOUSING,
+            note=note_with("DIN 472 for {} mm, in the ring housing's groove behind the main bearing", 2.0 * at.r_seat),
+        ),
+    )
+
+
+def _casing_and_backplate(
+    at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings
+) -> tuple[Part, ...]:
+    """The bridge around the motor, and the plate that carries the motor's base."""
+    casing, materials = settings.parts.casing, settings.materials
+    z_flange, z_plate = shell.z_flange, shell.z_plate
+    threads = _flange_holes(shell, settings, M3.core)
+    mount, back = casing_holes(at, settings), casing_holes(at, settings, M3.hole)
+    assert motor.mount_holes is not None
+    r_mount = 0.5 * (motor.mount_holes.pitch_circle_mm + motor.mount_holes.diameter_mm)
+    back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
+    return (
+        Part(
+            name="casing",
+            role=Role.HOUSING,
+            material=materials.aluminium,
+            prisms=(
+                *tube(at.z_gear_back, z_flange, shell.r_web, at.r_ring, threads),
+                *tube(shell.z_web, at.z_gear_back, shell.r_web, at.r_ring - casing.ring_lip_mm, threads),
+                *tube(z_plate + casing.flange_mm, shell.z_web, at.r_casing + casing.wall_mm, at.r_casing),
+                *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
+            ),
+            process="machined",
+            group=Group.HOUSING,
+            note="EN AW-6082; bore and faces in one clamping",
+        ),
+        Part(
+            name="backplate",
+            role=Role.HOUSING,
+            material=materials.aluminium,
+            prisms=(
+                *slab(
+                    shell.z_end,
+                    z_plate,
+                    at.r_plate,
+                    _BACK_BORE_MM,
+                    back,
+                    motor_holes(motor, MOTOR_CLEARANCE_HOLE_MM),
+                    *back_vents,
+                ),
+                *spigot(z_plate, at, settings),
+            ),
+            process="machined",
+            group=Group.HOUSING,
+            note="EN AW-6082; step to fit the casing",
+        ),
+    )
+
+
+def _housing_screws(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """From the ring housing into the casing, and from the backplate into the casing."""
+    casing, steel = settings.parts.casing, settings.materials.steel
+    mount_bolts = settings.parts.interface.mount_bolt_count
+    return (
+        screw_part(
+            "casing_screw",
+            M3,
+            head="hexagon",
+            seat_mm=shell.z_flange + casing.flange_mm,
+            grip_mm=casing.flange_mm,
+            room_mm=casing.flange_mm,
+            direction=-1.0,
+            material=steel,
+            count=mount_bolts,
+            pitch_radius_mm=shell.r_bolts,
+            group=Group.HOUSING,
+            note="from the ring housing into the casing",
+        ),
+        screw_part(
+            "backplate_screw",
+            M3,
+            head="cap",
+            seat_mm=shell.z_end,
+            grip_mm=casing.plate_mm,
+            room_mm=casing.flange_mm,
+            direction=1.0,
+            material=steel,
+            count=mount_bolts,
+            pitch_radius_mm=at.r_bolts,
+            group=Group.HOUSING,
+            note="into the casing",
+        ),
+    )
