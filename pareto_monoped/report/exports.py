@@ -1,6 +1,7 @@
-"""Exported designs -> triangles for the page's 3D view, coarse enough to travel in it."""
+"""Exported designs -> triangles for the page's 3D view, few enough for the page to carry."""
 
 import base64
+import json
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -9,6 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.write.design_record import json_values
+from pareto_monoped.cad.write.folder import RECORD
+from pareto_monoped.design import NAMES
 from pareto_monoped.errors import OutputError
 from pareto_monoped.report.schema import Model3D
 from pareto_monoped.study.reader import StudyData
@@ -16,34 +20,49 @@ from pareto_monoped.study.reader import StudyData
 Floats = NDArray[np.float64]
 
 MOST_TRIANGLES = 60_000
-"""Of all models on a page together: about 1.7 MB."""
-_LEAST = 24  # triangles that even the smallest body may keep
+"""Triangles of all models of a study together; they take about 1.7 MB of the page."""
+_LEAST = 24  # triangles that even the smallest body keeps
 _FINEST_MM = 0.1
 _GREY = (170, 176, 184)
 _FOLDER = re.compile(r"^trial_(\d+)$")
 
 
 def read_models(folder: Path, data: StudyData) -> Mapping[int, Model3D]:
-    """The exported designs of a study: folders ``trial_N`` with a GLB file, for trials that the study has.
+    """The exported designs of a study: folders ``trial_N`` with a GLB file.
+
+    Trials that the study does not have are passed over, and so are exports whose record names another design or motor:
+    such an export is out of date or belongs to another study.
 
     Raises:
         OutputError: the folder does not exist.
     """
     if not folder.is_dir():
         raise OutputError(f"exports folder {str(folder)!r}: does not exist; give the folder that holds trial_N folders")
-    known = set(data.trials["trial"].astype(int))
+    designs = data.trials.set_index("trial")[list(NAMES)]
     found = {}
     for path in sorted(folder.iterdir()):
         match = _FOLDER.match(path.name)
         files = sorted(path.glob("*.glb")) if match else []
-        if match and files and int(match[1]) in known:
-            found[int(match[1])] = files[0]
+        trial = int(match[1]) if match else -1
+        if files and trial in designs.index and not _is_of_another(path, designs.loc[trial].to_dict(), data):
+            found[trial] = files[0]
     share = MOST_TRIANGLES // max(len(found), 1)
     return {trial: read_glb(path, share) for trial, path in found.items()}
 
 
+def _is_of_another(folder: Path, design: Mapping[str, float], data: StudyData) -> bool:
+    """Whether the export's record says that it shows another design or motor; without a record nothing says so."""
+    try:
+        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        return bool(record["searched"] != design or record["motor_data"] != json_values(data.motor))
+    except FileNotFoundError:
+        return False
+    except (OSError, ValueError, KeyError, TypeError):
+        return True
+
+
 def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
-    """Triangles of a GLB file with their colours, about ``most`` of them at most."""
+    """Triangles of a GLB file with their colours, about ``most`` of them at the most."""
     import trimesh
 
     scene = trimesh.load_scene(path)
@@ -53,17 +72,17 @@ def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
         mesh = scene.geometry[geometry]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             points = mesh.vertices @ transform[:3, :3].T + transform[:3, 3]
-            # GLB has y up and metres; the page's world has z up.
+            # GLB files are in metres with y up; the page has millimetres and z up.
             bodies.append((1000.0 * points[mesh.faces][..., [2, 0, 1]], _colour(mesh)))
     return model_of(bodies, most)
 
 
 def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
-    """Bodies, each made coarse enough for its share of ``most``: large ones get more, screws few.
+    """One model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
 
     Args:
-        bodies: corners in mm, shape (n, 3, 3), and colour, 0 to 255, of each.
-        most: triangles in all, but every body keeps at least a few.
+        bodies: for each, its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255.
+        most: triangles in total; more if there are so many bodies that each has only its least number.
     """
     sizes = [float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) for corners, _ in bodies]
     reduced = [
@@ -86,13 +105,17 @@ def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -
 
 
 def coarser(triangles_mm: Floats, most: int) -> Floats:
-    """Corners rounded to a grid and flat or double triangles dropped, on ever wider grids until ``most`` are left.
+    """At most ``most`` triangles of about the same shape.
 
-    Clustering of vertices (Rossignac and Borrel 1993): crude, but it keeps shape and size to within the grid.
+    Corners are rounded to a grid, and triangles that become flat or equal are dropped; the grid is widened until few
+    enough are left. This is vertex clustering (Rossignac and Borrel 1993): crude, but off by no more than the grid.
 
     Args:
-        triangles_mm: shape (n, 3, 3).
+        triangles_mm: corners, shape (n, 3, 3).
         most: triangles that may be left.
+
+    Returns:
+        Corners in mm, shape (m, 3, 3).
     """
     if len(triangles_mm) <= most:
         return triangles_mm
@@ -100,7 +123,7 @@ def coarser(triangles_mm: Floats, most: int) -> Floats:
     step = _FINEST_MM
     while True:
         grid = np.round((triangles_mm - middle) / step).astype(np.int64)
-        # A corner as one number, so that a triangle's three sort into a key.
+        # Each corner as one number; the sorted three identify a triangle.
         corners = np.sort(grid @ np.array([1, 1 << 20, 1 << 40]), axis=1)
         solid = np.flatnonzero((corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]))
         order = solid[np.lexsort(corners[solid].T)]

@@ -1,9 +1,12 @@
 import base64
+import json
 
 import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.cad.write.design_record import json_values
+from pareto_monoped.design import NAMES
 from pareto_monoped.report.exports import coarser, model_of, read_models
 
 
@@ -41,6 +44,27 @@ def test_large_bodies_keep_more_of_their_triangles():
     assert (colours[:, 0] > 0).sum() > 4 * (colours[:, 1] > 0).sum()
     assert model.triangles <= 800 + 24
     assert min(shares) > 100
+
+
+def export_of(folder, trial, record):
+    """An export of a trial, as far as the report reads it."""
+    path = folder / f"trial_{trial}"
+    path.mkdir()
+    trimesh.Scene(trimesh.creation.box(extents=(0.1, 0.1, 0.1))).export(path / "assembly.glb")
+    if record is not None:
+        (path / "design.json").write_text(json.dumps(record))
+
+
+def test_an_export_of_another_design_or_motor_is_not_shown(tmp_path, data, source_u12):
+    """A folder's name once was enough: an export that was out of date or of another study passed for the trial's."""
+    designs = data.trials.set_index("trial")[list(NAMES)]
+    own = {"searched": designs.loc[1].to_dict(), "motor_data": json_values(data.motor)}
+    export_of(tmp_path, 1, own)
+    export_of(tmp_path, 2, own)
+    export_of(tmp_path, 3, {"searched": designs.loc[3].to_dict(), "motor_data": json_values(source_u12.data.motor)})
+    export_of(tmp_path, 4, None)
+    export_of(tmp_path, 5, ["damaged"])
+    assert list(read_models(tmp_path, data)) == [1, 4]
 
 
 def test_models_are_read_from_folders_of_known_trials_and_stand_upright(tmp_path, data):
