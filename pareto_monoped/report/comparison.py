@@ -1,4 +1,4 @@
-"""Several studies side by side: hypervolume from one corner, energy at given heights, attainment over seeds."""
+"""Several studies side by side: hypervolume from one reference point, energy at given heights, spread over seeds."""
 
 import json
 from collections.abc import Sequence
@@ -8,16 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.report.schema import Comparison, Number
+from pareto_monoped.report.rounding import number
+from pareto_monoped.report.schema import Comparison
 from pareto_monoped.study.reader import StudyData
 
 Floats = NDArray[np.float64]
 
-_POINTS = 160  # of a surface or a curve
+_POINTS = 160  # of a surface or a curve: more than a chart can show apart
 
 
 def group_of(data: StudyData) -> str:
-    """What studies that differ only in seed, name and budget have in common, as text."""
+    """A text that is equal for studies which differ only in seed, name, description, budget or stopping rule."""
     values = data.study.as_dict()
     for key in ("name", "description", "seed", "evaluations", "stop"):
         values.pop(key, None)
@@ -42,7 +43,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
                 "evaluations": len(data.trials),
                 "front": len(front),
                 "hypervolume": round(hypervolume(front, reference), 4),
-                "energy_j": [_number(energy) for energy in energies],
+                "energy_j": [number(energy) for energy in energies],
             }
         )
     groups: dict[str, list[int]] = {}
@@ -59,15 +60,15 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
 
 
 def energy_at(front: Floats, heights_m: Floats) -> Floats:
-    """Least energy of a front, shape (n, 2), for at least each height; infinite where it does not reach."""
+    """Least energy of a front, shape (n, 2), for at least each height, shape (m,); infinite where none reaches it."""
     reach = front[:, 0][None, :] >= heights_m[:, None]
     return np.where(reach, front[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
 
 
 def _surface(fronts: Sequence[Floats], labels: Sequence[str]) -> dict[str, Any]:
-    """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): reached by all, by half, and by one of the runs.
+    """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half and all of the runs reached.
 
-    For two objectives a surface is, at each height, an order statistic of the runs' least energies.
+    For two objectives, a surface is an order statistic of the runs' least energies at each height.
     """
     everything = np.concatenate(fronts)
     if len(everything) == 0:
@@ -78,14 +79,14 @@ def _surface(fronts: Sequence[Floats], labels: Sequence[str]) -> dict[str, Any]:
     return {
         "labels": list(labels),
         "height_m": [round(h, 4) for h in heights.tolist()],
-        "best": [_number(v) for v in ranked[0]],
-        "median": [_number(v) for v in ranked[middle]],
-        "worst": [_number(v) for v in ranked[-1]],
+        "best": [number(v) for v in ranked[0]],
+        "median": [number(v) for v in ranked[middle]],
+        "worst": [number(v) for v in ranked[-1]],
     }
 
 
 def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, Any]:
-    """Least, median and greatest hypervolume over evaluations, as far as all runs have values."""
+    """Least, median and greatest hypervolume over evaluations, where all runs have values."""
     histories = [data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64) for data in studies]
     histories = [history for history in histories if len(history)]
     if not histories:
@@ -97,17 +98,13 @@ def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, An
     return {
         "labels": list(labels),
         "evaluations": at.tolist(),
-        "low": [_number(v) for v in volumes.min(axis=0)],
-        "median": [_number(v) for v in np.median(volumes, axis=0)],
-        "high": [_number(v) for v in volumes.max(axis=0)],
+        "low": [number(v) for v in volumes.min(axis=0)],
+        "median": [number(v) for v in np.median(volumes, axis=0)],
+        "high": [number(v) for v in volumes.max(axis=0)],
     }
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The last value known at each number of evaluations, 0 before the first."""
+    """The latest value at each number of evaluations, 0 before the first."""
     place = np.searchsorted(history[:, 0], at, side="right") - 1
     return np.where(place >= 0, history[np.maximum(place, 0), 1], 0.0)
-
-
-def _number(value: float) -> Number:
-    return round(float(value), 4) if np.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""The main figures for papers: SVG and PNG in a plain style that survives black-and-white print."""
+"""The main figures for papers: SVG and PNG in a plain style that stays readable in black and white."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,7 +14,7 @@ from pareto_monoped.files import replacing
 from pareto_monoped.report.quantities import QUANTITIES
 from pareto_monoped.report.schema import Column, Jump, Payload, StudyCard
 
-# Okabe and Ito's colours, with a marker each, so that colour is never all that tells two studies apart.
+# Okabe and Ito's colours, each with a marker of its own, so that studies can be told apart without colour.
 _STYLES = (("#0072b2", "o"), ("#d55e00", "s"), ("#009e73", "D"), ("#b0548a", "^"), ("#b87d00", "v"), ("#2f9bd8", "p"))
 _WIDTH_IN, _HEIGHT_IN = 3.5, 2.6  # one column of an IEEE paper is 3.5 in wide
 _DPI = 300
@@ -26,7 +26,10 @@ _FIXED = {"svg": {"Date": None}, "png": {"Software": None}}
 
 
 def write_figures(payload: Payload, folder: Path) -> list[Path]:
-    """Write every figure that the payload has data for; returns the files.
+    """Write every figure that the payload has data for.
+
+    Returns:
+        The files.
 
     Raises:
         OutputError: the folder cannot be made or written to.
@@ -59,7 +62,7 @@ def write_figures(payload: Payload, folder: Path) -> list[Path]:
 
 @contextmanager
 def _style() -> Iterator[Any]:
-    """A figure class under the style for print, without touching global state."""
+    """Matplotlib's figure class, with the style for print in force until the end of the context."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -140,7 +143,7 @@ def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
 
 
 def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
-    """The energy that it takes to raise the lightest robot, up to an energy."""
+    """The height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
     masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
     if not masses:
         return
@@ -216,7 +219,7 @@ def _links(payload: Payload, figure: Any) -> bool:
 
 
 def _states(payload: Payload, figure: Any) -> bool:
-    """The paper's figure of states and inputs over time, for the knee of the first front that has one."""
+    """States and inputs over time, like a figure of the paper, for the first picked design whose jump is kept."""
     jump, title = _knee_jump(payload)
     if jump is None:
         return False

@@ -1,4 +1,4 @@
-"""Payload -> one HTML file that needs nothing but itself."""
+"""Payload -> one self-contained HTML file."""
 
 import base64
 import hashlib
@@ -32,14 +32,14 @@ def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None)
     """Write the report of one or several studies.
 
     Args:
-        dbs: study databases; several are laid over each other and compared.
+        dbs: study databases; several are drawn over each other and compared.
         out: the HTML file.
-        exports: folder with exported designs, a folder ``trial_N`` each, for the 3D view.
+        exports: folder that holds a folder ``trial_N`` per exported design, for the 3D view.
 
     Raises:
         DatabaseError: a database that is missing, damaged, or no study.
-        StudyError: no database.
-        OutputError: ``out`` cannot be written.
+        StudyError: no database was given.
+        OutputError: ``exports`` is not a folder, or ``out`` cannot be written.
     """
     write_text(out, page(payload_of(dbs, exports=exports)))
 
@@ -60,7 +60,7 @@ def payload_of(dbs: Sequence[Path], *, exports: Path | None = None) -> Payload:
 
 @lru_cache(maxsize=1)
 def literal_cases() -> tuple[dict[str, float | None], ...]:
-    """The paper's cases with the paper's motor under the ``paper`` calibration: medians and spread."""
+    """Medians and spread of the paper's cases with the paper's motor under the ``paper`` calibration."""
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.table1 import paper_spreads
@@ -73,7 +73,7 @@ def page(payload: Payload) -> str:
     """The whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(_asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     plotly = _plotly()
-    # Only these two scripts may run, whatever else might find its way into the page; nothing may be fetched.
+    # Only these two scripts may run, whatever else gets into the page, and nothing may be loaded.
     policy = (
         f"default-src 'none'; script-src {_fingerprint(plotly)} {_fingerprint(script)}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
@@ -95,7 +95,7 @@ def page(payload: Payload) -> str:
 
 
 def embedded(payload: Payload) -> str:
-    """The payload as JSON that may stand inside a script element: no ``<`` can end it or begin a comment."""
+    """The payload as JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
     text = json.dumps(payload, default=_plain, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 

@@ -1,6 +1,6 @@
-"""What the page knows, as plain records: everything on it is drawn from one ``Payload``.
+"""The records that the page is made from; it shows nothing that is not in its ``Payload``.
 
-Field names are the keys in the page's JSON. Columns are lists, a number a row; None where a trial has no such value.
+Field names are the keys in the page's JSON. A column is a list with one number per row, None where there is no value.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ Column = Sequence[Number]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quantity:
-    """A column's name, what it is called on the page, its unit there, and decimals to show; ``scale`` leads there."""
+    """How the page shows a column: its name, label, unit and decimals; ``scale`` converts the value to that unit."""
 
     name: str
     label: str
@@ -24,7 +24,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gearbox:
-    """One actuator of a stage 1 map, as the page shows it; diameters in mm for the drawing to scale."""
+    """One actuator of a stage 1 map, as the page shows it and draws it to scale."""
 
     motor: str
     family: str
@@ -44,7 +44,14 @@ class Gearbox:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapPoint:
-    """One interval of a stage 1 map: its lower end, the chosen gearbox (an index, None: none) and best masses."""
+    """One interval of a stage 1 map.
+
+    Attributes:
+        ratio_low: lower end.
+        gearbox: number of the chosen gearbox on the page, None if no gearbox has such a ratio.
+        reason: why there is none.
+        family_mass_kg: mass of each family's lightest actuator.
+    """
 
     ratio_low: float
     gearbox: int | None
@@ -54,10 +61,11 @@ class MapPoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LegTable:
-    """The leg that fits a motor: masses of its links by length, and the dimensions to which the page draws it.
+    """The leg that fits a motor: masses of its links by length, and the dimensions of its drawing.
 
     Attributes:
-        length_m, thigh_kg, shank_kg: link lengths, and what each link weighs with its drive, the shank without foot.
+        length_m: link lengths.
+        thigh_kg, shank_kg: mass of each link at these lengths, the thigh with its drive, the shank without the foot.
         housing_radius_m: of an actuator's case.
         output_radius_m: of an actuator's output flange.
         base_top_m, base_top_radius_m: the round upper end of the base's cheek: height above the hip axis, radius.
@@ -91,9 +99,13 @@ class MotorMap:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jump:
-    """A jump in few frames; every list has one entry a frame.
+    """A jump in a few frames.
 
-    ``scale`` holds, for each column, the size of one count: the columns are whole numbers to keep the page small.
+    Attributes:
+        height_m: of the apex.
+        lift_off_s: time of the last contact.
+        columns: by name, one whole number per frame, which keeps the page small.
+        scale: value of one count in each column.
     """
 
     height_m: float
@@ -117,7 +129,7 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Picked:
-    """A design worth pointing out: what it is called, its row, and why."""
+    """A design that the page points out: its name there, its row, and why it was picked."""
 
     name: str
     row: int
@@ -126,13 +138,13 @@ class Picked:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trials:
-    """Trials of a study, a row each, in the order of their numbers.
+    """Trials of a study, one per row, in the order of their numbers.
 
     Attributes:
         trial: numbers.
-        state: one letter a row: f feasible, i infeasible, x failed.
+        state: one letter per row: f feasible, i infeasible, x failed.
         columns: by name; None where there is no value.
-        total: trials in the database; more than rows if the page had to leave some out.
+        total: trials in the database, which may be more than there are rows.
     """
 
     trial: Sequence[int]
@@ -143,7 +155,7 @@ class Trials:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model3D:
-    """Triangles of an exported design: corners in whole ``step_mm``, colours from 0 to 255, both base64."""
+    """Triangles of an exported design: corners as multiples of ``step_mm``, colours from 0 to 255, both in base64."""
 
     step_mm: float
     triangles: int
@@ -159,17 +171,19 @@ class StudyCard:
 
     Attributes:
         label: short and unique among the page's studies.
-        motor, calibration: as shown; ``motor_name`` and ``calibration_name`` are what the command line takes.
-        map: which of the page's stage 1 maps is this motor's.
-        group: studies that differ in nothing but their seed share it.
+        motor, calibration: as shown.
+        motor_name, calibration_name: as the command line takes them.
+        map: index of the motor's stage 1 map on the page.
+        group: equal for studies that are runs of one study with several seeds.
         bounds: variable -> [lower, upper], equal for a fixed one.
         front, ill_conditioned: rows of ``trials``.
-        more: further columns of the front's rows alone, in their order: the rest of the measures, body masses.
+        more: columns of the front alone, in its order: the other measures, and masses of the bodies.
         audits: trial number -> measures of its audit.
         jumps, models: by trial number.
-        weighted: results of a weighted search: weight of the height, row.
+        case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
+        weighted: results of a weighted search: weight of the height, and row.
         floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
-        notes: lines the reader has to know.
+        notes: what readers have to know before they trust the page.
     """
 
     label: str
@@ -218,9 +232,10 @@ class Comparison:
     """Several studies side by side.
 
     Attributes:
-        reference: the corner that all hypervolumes here are measured from.
-        rows: label, hypervolume, and least energy at each of ``heights_m`` (None where not reached).
-        surfaces: attainment of each group with several seeds: heights, and least, median and greatest energy there.
+        reference: the point that all hypervolumes here are measured from.
+        rows: one per study: label, hypervolume, least energy at each of ``heights_m`` (None where the front does not
+            reach it), and more.
+        surfaces: of each group with several seeds: heights, and the least, median and greatest energy there.
         growth: the same for hypervolume over evaluations.
     """
 

@@ -12,11 +12,11 @@ from pareto_monoped.study.reader import StudyData
 if TYPE_CHECKING:
     from pareto_monoped.report.resimulation import Resimulation
 
-_DRIFT_M = 0.001
+_DRIFT_M = 0.001  # our own choice: the last digit in which the page shows a height
 
 
 def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
-    """What the front comes to: the price of the headline height, and the paper's Case C against it."""
+    """What the front achieves: the energy that the headline height costs, and a comparison with the paper's Case C."""
     done = len(data.trials)
     if done == 0:
         return ["No design has been simulated yet: run or resume the study, then make the report again."]
@@ -46,7 +46,7 @@ def _price(front: pd.DataFrame, height_m: float) -> str:
 
 
 def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
-    """The paper's Case C, published and simulated here, against the front at the height it reaches here."""
+    """The paper's Case C, published and simulated here, compared with the front at the height that it reaches here."""
     here = next((case for case in cases if case.name == "C"), None)
     published = PAPER_CASES["C"]
     if here is None:
@@ -70,8 +70,8 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
     done, budget = len(data.trials), data.meta.budget
     if not data.meta.finished:
         lines.append(
-            f"Unfinished: {done} of {budget} designs are simulated, and its front is audited only at the end. "
-            "The front will still move."
+            f"Unfinished: {done} of {budget} designs are simulated. The front will still move, and it is audited only "
+            "at the end."
         )
     bad = len(data.ill_conditioned)
     if bad:
@@ -81,7 +81,7 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
         )
     if again.drift_m > _DRIFT_M:
         lines.append(
-            f"Simulated again for this page, heights differ by up to {1000.0 * again.drift_m:.1f} mm from those "
-            "stored: code, versions or machine are not those of the study."
+            f"Heights simulated again for this page differ by up to {1000.0 * again.drift_m:.1f} mm from those stored: "
+            "the code, a library version or the machine is not the one that the study ran with."
         )
     return lines

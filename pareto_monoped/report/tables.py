@@ -1,4 +1,4 @@
-"""The page's words and tables: what is painted before any script runs. Every text from a study is escaped here."""
+"""The page's text and tables, which are painted before any script runs. Every text from a study is escaped here."""
 
 from collections.abc import Sequence
 from html import escape
@@ -12,12 +12,12 @@ def safe(value: object) -> str:
 
 
 def head(payload: Payload) -> str:
-    """Summary and key facts; of each study if there are several."""
+    """Summary and key facts of each study."""
     if len(payload.studies) == 1:
         (card,) = payload.studies
         about = f'<p class="small">{safe(card.description)}</p>' if card.description else ""
         return f'{about}<p class="summary">{safe(" ".join(card.summary))}</p>{_notes(card)}{_facts_list(card)}'
-    # Several studies: a line each, the rest folded away, so that the front stays in sight.
+    # One line per study with the rest folded away, so that the front stays in sight.
     lines = "".join(
         f"<details><summary><b>{safe(card.label)}</b> {safe(card.summary[0])}</summary>"
         f"<p>{safe(' '.join(card.summary[1:]))}</p>{_facts_list(card)}</details>{_notes(card)}"
@@ -68,7 +68,7 @@ def _number(value: Number, decimals: int) -> str:
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
-    """An HTML table; ``rows`` hold text, the first cell names the row."""
+    """An HTML table; the first cell of each row is its heading."""
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
     body = "".join(
@@ -83,7 +83,7 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: st
 
 
 def cases_table(payload: Payload) -> str:
-    """The paper's table beside what is simulated here."""
+    """The paper's designs, and their heights and energies as published and as simulated here."""
     columns = [
         "design",
         *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables),
@@ -92,7 +92,7 @@ def cases_table(payload: Payload) -> str:
         [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
     ]
     parts = [_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
-    # Studies with the same motor and calibration simulate the cases alike: one column for all of them.
+    # Studies with the same motor and calibration share a column: their cases are the same.
     cards = list({(card.motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
     literal = bool(payload.literal)
@@ -115,13 +115,13 @@ def cases_table(payload: Payload) -> str:
             rows.append(row)
         parts.append(_table([f"{quantity}, {unit}", *names[1:]], rows))
     words = (
-        "What is simulated here compares with the front; the published figures do not, because the paper leaves losses "
-        "and contact open."
+        "The figures simulated here can be compared with the front; the published ones cannot, because the paper "
+        "leaves losses and contact open."
     )
     if literal:
         words += (
-            " The literal model follows the paper word for word and was fitted to its table; it reacts to the smallest "
-            "changes, so it is shown as the median over many of them."
+            " The paper-literal model follows the paper word for word and was fitted to its table. It reacts to the "
+            "smallest changes of a design, so the table gives the median over many of them."
         )
     parts.append(f'<p class="small">{words}</p>')
     return "\n".join(parts)
@@ -138,7 +138,7 @@ def published_link(payload: Payload) -> str:
 
 
 def comparison_tables(payload: Payload) -> str:
-    """Several studies side by side; empty for one."""
+    """Several studies side by side; an empty text for a single one."""
     comparison = payload.comparison
     if comparison is None:
         return ""
@@ -157,15 +157,15 @@ def comparison_tables(payload: Payload) -> str:
     ]
     corner = comparison.reference
     caption = (
-        f"All hypervolumes from {corner['height_m']:g} m and {corner['energy_j']:g} J, the first study's reference "
-        "point. Energy: least on the front for at least that height."
+        f"All hypervolumes are measured from {corner['height_m']:g} m and {corner['energy_j']:g} J, the first study's "
+        "reference point. Energy: the least on the front for at least that height."
     )
     chart = '<div id="attainment" class="chart"></div>' if comparison.surfaces else ""
     return f"<h3>Studies compared</h3>{_table(columns, rows, caption=caption)}{chart}"
 
 
 def provenance_tables(payload: Payload) -> str:
-    """Where everything comes from, and the command that makes it again."""
+    """Versions and settings of each study, and the command that runs it again."""
     parts = []
     for card in payload.studies:
         rows = "".join(

@@ -5,10 +5,10 @@ function answerHeight(wanted) {
   const at = front.findIndex((row) => columns.height_m[row] >= wanted);
   if (at < 0) {
     const highest = front.length ? shown("height_m", columns.height_m[front.at(-1)]) : null;
-    return { text: highest ? `The front ends at ${highest}: ask for less, or run the study longer.` : "There is no front to ask." };
+    return { text: highest ? `The front ends at ${highest}: ask for less, or run the study longer.` : "There is no front to search." };
   }
   const row = front[at];
-  return { row, text: `At least ${wanted} m: trial ${trial[row]}, ${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}, the least energy of ${front.length - at} designs that jump as high.` };
+  return { row, text: `At least ${wanted} m: trial ${trial[row]}, ${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}, the least energy among the ${front.length - at} designs that jump this high.` };
 }
 
 function answerEnergy(allowed) {
@@ -16,10 +16,10 @@ function answerEnergy(allowed) {
   const able = front.filter((row) => columns.energy_j[row] <= allowed);
   if (!able.length) {
     const least = front.length ? shown("energy_j", columns.energy_j[front[0]]) : null;
-    return { text: least ? `The front begins at ${least}: allow more, or run the study longer.` : "There is no front to ask." };
+    return { text: least ? `The front begins at ${least}: allow more, or run the study longer.` : "There is no front to search." };
   }
   const row = able.at(-1);
-  return { row, text: `On at most ${allowed} J: trial ${trial[row]}, ${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}, the highest of ${able.length} designs that need no more.` };
+  return { row, text: `On at most ${allowed} J: trial ${trial[row]}, ${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}, the highest jump among the ${able.length} designs that need no more.` };
 }
 
 function startAsk() {

@@ -135,7 +135,7 @@ function showMeasures(chosen) {
   const rows = page.quantities.filter((q) => !skip.has(q.name) && all[q.name] !== undefined && all[q.name] !== null && typeof all[q.name] === "number")
     .map((q) => [q.label, shown(q.name, all[q.name])]);
   box.append(rows.length ? table(null, rows) : make("p", { class: "small" }, "No jump, no measures."));
-  if (chosen.kind === "trial" && chosen.at < 0) box.append(make("p", { class: "small" }, "The other measures are on this page only for designs of the front."));
+  if (chosen.kind === "trial" && chosen.at < 0) box.append(make("p", { class: "small" }, "This page has the other measures only for designs on the front."));
 }
 
 function showAudit(chosen) {
@@ -143,7 +143,7 @@ function showAudit(chosen) {
   box.replaceChildren();
   const audit = chosen?.audit;
   if (!audit) {
-    box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: that is done when the study has ended." : chosen ? "Only designs of the front are audited." : "Nothing is selected."));
+    box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : chosen ? "Only designs on the front are audited." : "Nothing is selected."));
     return;
   }
   box.append(make("p", { class: `verdict${audit.good ? "" : " no"}` }, audit.good ? "Well-conditioned: its height and energy can be trusted." : `Ill-conditioned: ${audit.reason}.`));
@@ -151,7 +151,7 @@ function showAudit(chosen) {
   box.append(table(["what changes", "by"], rows));
 }
 
-// A word as a POSIX shell reads it.
+// A word, quoted for a POSIX shell where necessary.
 function quoted(word) { return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`; }
 
 function commandsOf(chosen) {
@@ -182,7 +182,7 @@ async function copied(line) {
     await navigator.clipboard.writeText(line);
     return true;
   } catch {
-    // A page opened as a file may have no clipboard: the old way still works there.
+    // A page opened as a file may have no clipboard; the older way still works there.
     const area = make("textarea", { style: "position: fixed; opacity: 0" });
     area.value = line;
     document.body.append(area);

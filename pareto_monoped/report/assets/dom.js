@@ -1,4 +1,4 @@
-// Small helpers: elements, numbers, colours. Text from a study only ever becomes textContent, never markup.
+// Small helpers: elements, numbers, colours. Text from a study becomes textContent, never markup.
 
 const SVG = "http://www.w3.org/2000/svg";
 const page = JSON.parse(document.getElementById("payload").textContent);
@@ -39,7 +39,7 @@ function shown(name, value, withUnit = true) {
 
 function round(value, digits = 3) { return Number(value).toFixed(digits); }
 
-// Plotly reads a few tags in its texts: with < escaped there are none.
+// Plotly interprets a few tags in its texts; escaping < removes them.
 function plain(text) { return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;"); }
 
 function extent(values) {

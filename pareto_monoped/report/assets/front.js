@@ -1,11 +1,11 @@
 // The front: energy to the right, height upward; click a point to select it.
 
-const CELL_PX = 3; // of the many trials in the cloud, one in each cell of this size is drawn
+const CELL_PX = 3; // cells of this size show at most one trial of the cloud
 const MOST_DRAWN = 4000;
 const show = { cloud: true, infeasible: false, front: true, published: true, simulated: true, floor: true, picks: true };
 const gd = byId("front-chart");
 const ring = make("div", { class: "ring", "aria-hidden": "true" });
-let points = []; // of each trace, what its points stand for: [study, row] or [study, case name]
+let points = []; // for each trace, what its points stand for: [study, row] or [study, case name]
 
 function startRange() {
   let energy = 0, low = Infinity, high = START_HEIGHT + 0.1;
@@ -34,7 +34,7 @@ function viewRange() {
   return full ? { x: full.xaxis.range, y: full.yaxis.range } : home;
 }
 
-// What is drawn over the cloud, with how many cells it reaches to each side of its own.
+// What is drawn over the cloud, and how many cells it covers to each side of its own.
 function marks() {
   return [...state.visible].flatMap((study) => {
     const { cases, front, trials: { columns: { energy_j: e, height_m: h } } } = page.studies[study];
@@ -44,7 +44,7 @@ function marks() {
   });
 }
 
-// One row for each small cell of the view, so that as many are drawn as can be told apart.
+// One row per small cell of the view: as many as can be told apart.
 function thinned(study, letter, skip) {
   const { state: letters, columns: { energy_j: e, height_m: h } } = page.studies[study].trials;
   const { x, y } = viewRange();
@@ -52,7 +52,7 @@ function thinned(study, letter, skip) {
   const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
   const seen = new Set();
   const cellAt = (u, v) => Math.floor(u * columns) * rows + Math.floor(v * rows);
-  // Under a mark nothing is drawn: a small point there would take the mark's clicks.
+  // Nothing is drawn under a mark: a small point there would take the mark's clicks.
   for (const mark of marks()) {
     const u = (mark.x - x[0]) / (x[1] - x[0]), v = (mark.y - y[0]) / (y[1] - y[0]);
     for (let i = -mark.cells; i <= mark.cells; i += 1) for (let j = -mark.cells; j <= mark.cells; j += 1) seen.add(cellAt(u + i / columns, v + j / rows));
@@ -168,7 +168,7 @@ function traces() {
       seen.add(key);
       for (const c of card.cases) {
         if (c.height_m === null || c.energy_j === null) continue;
-        // Names stand beside the first motor's only; the others have the same order and their study's colour.
+        // Only the first motor's have names; the others are in the same order and have their study's colour.
         entries.push({
           x: c.energy_j, y: c.height_m, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
           tint: seen.size === 1 ? colour("paper") : studyColour(study),
@@ -179,7 +179,7 @@ function traces() {
     paper(entries, "simulated", "diamond");
   }
   const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
-  let note = within > drawn ? `${drawn} of the ${within} dominated or infeasible designs in view are drawn, one in every ${CELL_PX} px; zoom in to see more.` : "";
+  let note = within > drawn ? `${drawn} of the ${within} dominated or infeasible designs in view are drawn, at most one per ${CELL_PX} px; zoom in to see more.` : "";
   if (left) note += ` ${left} dominated trials are left out of this page to keep it small; every count includes them.`;
   byId("front-note").textContent = note;
   return list;
@@ -192,7 +192,7 @@ function labels(list) {
   const lastPicks = list.findLast((t) => t.name === "picks");
   const marks = list.flatMap((one) => {
     if (one.name !== "picks" && !one.customdata) return [];
-    // Of several studies' knees, which lie close together, the last drawn has its name beside it.
+    // The knees of several studies lie close together: only the one drawn last has its name beside it.
     const name = (i) => (one.name !== "picks" ? one.customdata[i] : one === lastPicks ? "knee" : "");
     return one.x.map((value, i) => ({
       x: value, y: one.y[i], text: name(i),
@@ -221,7 +221,7 @@ function drawFront() {
   const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
   const shape = layout(x, y, {
     annotations: labels(list), dragmode: "zoom",
-    // The chart's buttons have the strip above it to themselves: under them no point could be clicked.
+    // The chart's buttons have a strip of their own above it: points under them could not be clicked.
     margin: { l: 58, r: 14, t: 26, b: 46 },
   });
   const done = Plotly.react(gd, list, shape, config);
@@ -230,7 +230,7 @@ function drawFront() {
   return done;
 }
 
-// The ring lies over the chart: moving it costs nothing, whereas redrawing thousands of points would.
+// The ring lies over the chart, so that a selection does not redraw thousands of points.
 function placeRing() {
   const chosen = subject();
   const full = gd._fullLayout;
@@ -324,7 +324,7 @@ function startSwitches() {
     const label = make("label", {}, input, symbol, text);
     if (key === "floor" && mass.length) {
       label.append(` of the lightest robot, ${round(Math.min(...mass), 2)} kg`);
-      label.title = "The work of raising that robot's weight. A leg that stretches in flight rises a little less than the base.";
+      label.title = "The work of lifting that robot's weight. A leg that stretches in flight rises a little less than the base.";
     }
     box.append(label);
   }

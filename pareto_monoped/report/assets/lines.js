@@ -1,4 +1,4 @@
-// Small line charts in plain SVG, light enough to be redrawn at every selection.
+// Small line charts in plain SVG, which are quick to redraw at every selection.
 
 // A chart of series {x, y, colour, dash, mark}; returns its node with functions from values to pixels.
 function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18, bottom = 30, x, y, xTitle, title, series = [], label }) {
@@ -107,13 +107,13 @@ function drawAlong() {
   dots = [];
   const shownStudies = [...state.visible].filter((i) => page.studies[i].front.length);
   if (!shownStudies.length) {
-    byId("along-note").textContent = "There is no front to follow.";
+    byId("along-note").textContent = "There is no front to show.";
     return;
   }
   const heights = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns.height_m[row])));
   const x = padded(heights, 0.03);
   const several = page.studies.length > 1;
-  const width = window.innerWidth <= 700 ? 180 : 300; // so that the words stay readable on a telephone
+  const width = window.innerWidth <= 700 ? 180 : 300; // keeps the words readable on a phone
   for (const variable of page.variables) {
     const q = quantity[variable.name];
     const joint = variable.name.endsWith("_ratio") ? variable.name.replace("_ratio", "_gearbox") : null;
@@ -145,7 +145,7 @@ function drawAlong() {
   byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
 }
 
-// Ratio from which on the external family has every interval; null if one family has them all.
+// The ratio from which on all gearboxes are external; null if all are of one family.
 function switchRatio() {
   const points = page.maps[current().map].points.filter((p) => p.gearbox !== null);
   const at = points.findLastIndex((p) => page.gearboxes[p.gearbox].family === "ISSPG");

@@ -1,4 +1,4 @@
-// Start: listeners first, then the first selection, then the charts, the front before all others.
+// Start: listeners first, then the first selection, then the charts, beginning with the front.
 
 function firstSelection() {
   const study = page.studies.findIndex((s) => s.front.length);
@@ -27,5 +27,5 @@ function start() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
 }
 
-// The words and tables are painted first: the charts wait for the frame after.
+// Text and tables are painted first; the charts wait for the next frame.
 requestAnimationFrame(() => setTimeout(start));

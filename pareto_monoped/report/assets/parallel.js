@@ -94,7 +94,7 @@ function drawLines() {
   context.globalAlpha = 1;
 }
 
-// The selected design's line lies on top, so that the many below need not be drawn again.
+// The selected design's line has a layer of its own, so that the many below are not drawn again.
 function drawSelected() {
   const { columns } = current().trials;
   const d = state.row === null ? "" : `M${AXES.map((name, i) => `${par.xs[i].toFixed(1)} ${axisY(name, columns[name][state.row] ?? par.limits[name][0]).toFixed(1)}`).join("L")}`;
@@ -201,7 +201,7 @@ function nearestLine(x, y) {
 }
 
 function startParallel() {
-  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line a design across its variables, mass, height and energy" });
+  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables, mass, height and energy" });
   par.svg = draw("svg", { "aria-hidden": "true" });
   par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
     draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--c1)", "stroke-width": 3, id: "parallel-selected" }));

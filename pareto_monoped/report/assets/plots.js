@@ -23,7 +23,7 @@ const CONFIG = {
   modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
 };
 
-// A chart that is drawn when it comes near the view, and again when the colours change.
+// Draws a chart when it comes near the view, and again when the colours change.
 function lazily(id, render) {
   const node = byId(id);
   let drawn = false;

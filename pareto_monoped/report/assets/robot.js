@@ -1,4 +1,4 @@
-// The robot to scale in the plane of its leg, moving as simulated.
+// The robot to scale in the plane of its leg; it moves as simulated.
 
 const stage = byId("stage");
 const player = { frame: 0, time: 0, playing: false, last: 0, jump: null, request: 0 };
@@ -12,7 +12,7 @@ function decoded(jump) {
   return result;
 }
 
-// Two discs and what lies between: the outline of a link that hangs down from the origin.
+// The outline of a link that hangs down from the origin: two discs and the bar between them.
 function linkPath(top, bottom, half, length) {
   const a = Math.sqrt(Math.max(top * top - half * half, 0)), b = Math.sqrt(Math.max(bottom * bottom - half * half, 0));
   return `M${-half} ${a} A${top} ${top} 0 1 1 ${half} ${a} L${half} ${length - b} A${bottom} ${bottom} 0 1 1 ${-half} ${length - b} Z`;
@@ -129,7 +129,7 @@ function startRobot() {
     if (chosen) buildStage(chosen);
     else stage.replaceChildren();
     if (player.jump) {
-      // At rest the picture shows the lift-off, which says most; a click plays the jump from its start.
+      // At rest the picture shows the lift-off; a click plays the jump from its start.
       const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
       if (how.byUser && !still) setPlaying(true);
       else setTime(chosen.jump.lift_off_s ?? 0);

@@ -1,4 +1,4 @@
-// What is selected, which studies and ranges are shown; everything else listens.
+// What is selected, and which studies and ranges are shown; everything else listens to it.
 
 const state = { study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {} };
 const listeners = { selection: [], view: [], time: [] };
@@ -21,7 +21,7 @@ function selectCase(study, name) {
   tell("selection", { byUser: true, other });
 }
 
-// Place of the selection on its study's front, -1 if it is not on it.
+// Place of the selection on its study's front, -1 if it is not there.
 function place() { return state.row === null ? -1 : current().front.indexOf(state.row); }
 
 function moveAlongFront(steps) {
@@ -29,7 +29,7 @@ function moveAlongFront(steps) {
   if (!front.length) return;
   let at = place();
   if (at < 0) {
-    // From off the front, to the first design on it that jumps at least as high.
+    // From a design off the front to the first one on it that jumps at least as high.
     const height = state.row === null ? 0 : trials.columns.height_m[state.row] ?? 0;
     at = front.findIndex((row) => trials.columns.height_m[row] >= height);
     if (at < 0) at = front.length - 1;
