@@ -26,6 +26,8 @@ def test_paper_is_literal():
     assert not paper.drive.voltage_limit
     assert paper.controller.gravity_feed_forward == 1.0
     assert paper.mass.link_mass_scale == 1.0
+    assert paper.drive.chain_efficiency == paper.drive.peak_torque_scale == 1.0
+    assert paper.joints.hip_stop is paper.joints.knee_stop is None
 
 
 def test_ideal_is_reference_without_losses():
@@ -71,6 +73,8 @@ def test_a_users_file_is_read_by_its_path(tmp_path):
         ("[controller]", "[controller]\nrest_lenght_m = 9.0", "rest_lenght_m"),
         ('integrator = "Euler"', 'integrator = "Leapfrog"', "simulation.integrator = 'Leapfrog'"),
         ("friction = 1.0\n", "", "friction is missing"),
+        ("chain_efficiency = 0.98", "chain_efficiency = 1.02", "drive.chain_efficiency = 1.02"),
+        ("impedance = 0.2", "impedance = 1.0", "impedance = 1.0"),
         ('rule = "fade"', 'rule = "latch"', "latch"),
         ("lower_rad = 0.2618", "lower_rad = 3.0", "lower_rad 3.0 must be below upper_rad"),
         ("[simulation]", "[simulation", "not valid TOML"),

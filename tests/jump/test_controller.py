@@ -12,7 +12,7 @@ STIFFNESS, DAMPING, TORSION = 20.0, 3.0, 15.0
 NO_LOAD, CORNER = 80.0, 60.0
 
 
-def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, record=None, latch=True):
+def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, record=None, **more):
     """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the record after one call."""
     if record is None:
         record = np.zeros(1, dtype=controller.RECORD)[0]
@@ -22,7 +22,7 @@ def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02,
         "step_limit": 3000,
         "stages": 1,
         "fade_length_m": fade,
-        "latch": latch,
+        "latch": True,
         "loss_speed_rad_per_s": 0.5,
         "voltage_limit": True,
         "thigh_length_m": THIGH,
@@ -37,7 +37,7 @@ def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02,
         "corner_speed_rad_per_s": CORNER,
         "loss": loss,
     }
-    for name, value in values.items():
+    for name, value in (values | more).items():
         record[name] = value
     foot = -THIGH * np.cos(hip) - SHANK * np.cos(hip + knee)
     qpos, qvel = np.array([0.0, clearance + RADIUS - foot, hip, knee]), np.array([0.0, 0.1, *speeds])
@@ -149,3 +149,76 @@ def test_a_state_that_is_not_finite_has_diverged():
     assert status == controller.DIVERGED
     _, status, _ = torques(-0.6, 1.2, speeds=(0.0, 2e4))
     assert status == controller.DIVERGED
+
+
+def test_the_gate_takes_its_share_of_the_limited_torque():
+    """A saturated motor fades too: the limit comes first."""
+    torque, _, _ = torques(-0.6, 1.2, clearance=0.01, peak=5.0)
+    assert torque[1] == pytest.approx(-2.5)
+
+
+def test_without_a_voltage_limit_only_the_peak_counts():
+    torque, _, _ = torques(-0.6, 1.2, speeds=(0.0, -NO_LOAD), peak=5.0, voltage_limit=False)
+    assert torque[1] == -5.0
+
+
+def test_a_gate_without_latch_gives_torque_again_when_the_foot_comes_down():
+    _, _, record = torques(-0.6, 1.2, latch=False)
+    torque, status, record = torques(-0.6, 1.2, clearance=0.03, record=record, latch=False)
+    assert (torque[1], status) == (0.0, controller.RUNNING)
+    torque, _, _ = torques(-0.6, 1.2, record=record, latch=False)
+    assert torque[1] != 0.0
+
+
+def test_a_lagging_contact_is_that_of_the_step_before():
+    torque, _, record = torques(-0.6, 1.2, fade=0.0, lags=True)
+    assert torque[1] != 0.0
+    torque, _, record = torques(-0.6, 1.2, fade=0.0, lags=True, clearance=0.01, record=record)
+    assert torque[1] != 0.0
+    torque, _, _ = torques(-0.6, 1.2, fade=0.0, lags=True, clearance=0.0, record=record)
+    assert torque[1] == 0.0
+
+
+@pytest.mark.parametrize(("clearance", "expected"), [(-0.05, controller.RUNNING), (-0.08, controller.SANK)])
+def test_a_base_below_a_tenth_of_a_metre_has_sunk(clearance, expected):
+    _, status, _ = torques(-1.4, 2.8, clearance=clearance)  # the folded leg is 0.136 m high, the foot's radius 0.03 m
+    assert status == expected
+
+
+@pytest.mark.parametrize(("clearance", "expected"), [(0.0, controller.NO_LIFT_OFF), (0.03, controller.TIMEOUT)])
+def test_a_jump_may_take_as_many_steps_as_its_limit_and_no_more(clearance, expected):
+    _, _, record = torques(-0.6, 1.2, latch=False)
+    record["steps"] = 2999
+    _, status, record = torques(-0.6, 1.2, clearance=clearance, latch=False, record=record)
+    assert (status, record["steps"]) == (controller.RUNNING, 3000)
+    _, status, _ = torques(-0.6, 1.2, clearance=clearance, latch=False, record=record)
+    assert status == expected
+
+
+@pytest.mark.parametrize("mean_speed", [True, False])
+def test_a_braking_motor_absorbs_work_and_spends_none(mean_speed):
+    """Torque of the first call times the mean of both speeds, or times the first."""
+    _, _, record = torques(-0.6, 1.2, speeds=(0.0, 2.0), loss=0.1, mean_speed=mean_speed)
+    torque, delivered = record["motor_torque_n_m"][1], record["joint_torque_n_m"][1]
+    assert torque < 0.0
+    _, _, record = torques(-0.6, 1.2, speeds=(0.0, 4.0), loss=0.1, mean_speed=mean_speed, record=record)
+    speed = 3.0 if mean_speed else 2.0
+    assert record["energy_j"][1] == 0.0
+    assert record["absorbed_j"][1] == pytest.approx(-torque * speed * 0.001)
+    assert record["drive_loss_j"][1] == pytest.approx((torque - delivered) * speed * 0.001)
+    assert record["drive_loss_j"][1] > 0.0
+    assert record["peak_power_w"][1] == pytest.approx(-torque * speed)
+    assert record["peak_torque_n_m"][1] == -torque
+    assert record["peak_speed_rad_per_s"][1] == 4.0
+
+
+def test_peak_speeds_and_clearance_are_those_of_the_flight_too():
+    _, _, record = torques(-0.6, 1.2)
+    _, status, record = torques(-0.6, 1.2, clearance=0.021, record=record)
+    _, status, record = torques(-0.6, 1.2, clearance=0.05, speeds=(7.0, -9.0), record=record)
+    assert status == controller.FLYING
+    assert record["peak_speed_rad_per_s"].tolist() == [7.0, 9.0]
+    qpos, qvel = np.array([0.0, 1.0, -0.6, 1.2]), np.array([0.0, -0.1, 0.0, 0.0])
+    controller.control(qpos, qvel, np.zeros(2), record)
+    assert record["status"] == controller.APEX
+    assert record["clearance_m"] == pytest.approx(1.0 + foot(-0.6, 1.2)[1] - RADIUS)

@@ -5,8 +5,10 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
+from pareto_monoped.jump import evaluate
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.evaluate import MEASURES, STATUSES, Evaluator, evaluate_robots
+from pareto_monoped.jump.evaluate import STATUSES, Evaluator, evaluate_robots
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
 from tests.jump.robots import random_designs
 
@@ -68,7 +70,7 @@ def test_failures_do_not_touch_their_neighbours(evaluator):
     alone = evaluator(GOOD[None])
     assert list(result.status[0::2]) == [status for _, status, _ in BAD.values()]
     assert set(result.status[1::2]) == {"ok"}
-    for name in MEASURES:
+    for name in MEASURE_NAMES:
         assert set(result.as_columns()[name][1::2]) == {alone.as_columns()[name][0]}
 
 
@@ -114,10 +116,49 @@ def test_bits_do_not_depend_on_batch_order_or_workers(evaluator):
     order = np.random.default_rng(1).permutation(25)
     shuffled = Evaluator(evaluator.actuator_map, evaluator.calibration, workers=2)(designs[order]).as_columns()
     one = evaluator(designs[17:18]).as_columns()
-    for name in MEASURES:
+    for name in MEASURE_NAMES:
         np.testing.assert_array_equal(shuffled[name], whole[name][order], err_msg=name)
         np.testing.assert_array_equal(one[name][0], whole[name][17], err_msg=name)
 
 
 def test_no_designs_give_no_rows(evaluator):
     assert len(evaluator(np.empty((0, 7)))) == 0
+
+
+def test_bounds_are_allowed_values(evaluator):
+    """The paper's lower bounds of damping and torsional stiffness are zero."""
+    result = evaluator(changed(damping_n_s_per_m=0.0, torsional_stiffness_n_m_per_rad=0.0)[None])
+    assert result.status[0] == "ok"
+    shortest = evaluator(np.array([changed(thigh_length_m=0.05), changed(thigh_length_m=0.049)]))
+    assert list(shortest.status) == ["cannot_stand", "bad_input"]
+    assert "must be at least 0.05" in shortest.reason[1]
+
+
+def test_mass_is_known_of_every_robot_that_can_be_built(evaluator):
+    result = evaluator(np.array([GOOD, changed(thigh_length_m=1.5), changed(knee_ratio=40.0)]))
+    assert list(result.status) == ["ok", "cannot_stand", "no_gearbox"]
+    assert 3.0 < result.mass_kg[0] < result.mass_kg[1] < 6.0
+    assert np.isnan(result.mass_kg[2])
+    assert np.isnan(result.efficiency[1])
+
+
+@pytest.mark.parametrize(
+    ("share", "status", "said"),
+    [(0.5, "no_lift_off", "the foot had not left the floor"), (1.5, "timeout", "the base had not come to its apex")],
+)
+def test_a_jump_that_takes_too_long_says_what_was_missing(evaluator, share, status, said):
+    """Time limits before lift-off, and between lift-off and apex; the limit itself is still allowed."""
+    usual = evaluator(GOOD[None])
+    assert 1.6 * usual.lift_off_s[0] < usual.apex_s[0]
+    limit = round(share * usual.lift_off_s[0], 3)
+    simulation = replace(evaluator.calibration.simulation, time_limit_s=limit)
+    result = Evaluator(evaluator.actuator_map, replace(evaluator.calibration, simulation=simulation))(GOOD[None])
+    assert result.status[0] == status
+    assert result.reason[0] == f"{said} after {limit:.3f} s"
+
+
+def test_long_batches_are_jumped_in_chunks(evaluator, monkeypatch):
+    designs = random_designs(10, seed=2)
+    whole = evaluator(designs)
+    monkeypatch.setattr(evaluate, "_CHUNK", 3)
+    np.testing.assert_array_equal(evaluator(designs).height_m, whole.height_m)

@@ -129,3 +129,31 @@ def test_a_joint_feels_its_motors_damping_times_the_ratio_squared(designs):
     assert hip != knee
     damping = _compiled(designs, calibration).dof_damping.reshape(3, -1)[:, 0]
     np.testing.assert_allclose(damping, [0.0, 0.3 + 0.05 * hip**2, 0.3 + 0.05 * knee**2], rtol=1e-12)
+
+
+def test_numbers_of_the_calibration_arrive(designs):
+    start = load_calibration()
+    calibration = replace(
+        start,
+        joints=replace(start.joints, friction_n_m=0.7),
+        drive=replace(start.drive, peak_torque_scale=1.25),
+        contact=replace(start.contact, friction=0.6, slip_ratio=4.0),
+        simulation=replace(start.simulation, integrator="implicitfast", timestep_s=0.0005),
+    )
+    robots, model = plausible_robots(designs), _compiled(designs, calibration)
+    assert model.dof_frictionloss.tolist() == [0.0, 0.0, 0.7, 0.7]
+    np.testing.assert_allclose(model.actuator_ctrlrange[:, 1], 1.25 * robots.peak_torque_n_m[0], rtol=1e-12)
+    assert model.geom("foot").friction[0] == 0.6
+    assert model.opt.impratio == 4.0
+    assert model.opt.timestep == 0.0005
+    assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    assert model.opt.gravity.tolist() == [0.0, 0.0, -9.81]
+    for joint in ("hip", "knee"):
+        stop = getattr(start.joints, f"{joint}_stop")
+        assert model.joint(joint).range.tolist() == [stop.lower_rad, stop.upper_rad]
+
+
+def test_a_comment_stands_at_the_head_and_cannot_end_itself(designs):
+    text = mjcf(plausible_robots(designs), load_calibration(), comment="design: a --> b")
+    assert text.startswith("<!-- design: a - -> b -->")
+    mujoco.MjModel.from_xml_string(text)

@@ -8,6 +8,7 @@ import pytest
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.population import first_records
 from pareto_monoped.jump.rows import take
 from tests.jump import oracle
 from tests.jump.robots import plausible_robots, random_designs
@@ -53,6 +54,53 @@ def test_literal_jump_agrees_where_rounding_does_not_decide():
             and found.energy_j[i] == pytest.approx(jump.energy, rel=1e-6)
         )
     assert agreed >= 12
+
+
+def test_first_records_hold_what_robot_and_calibration_say():
+    start, designs = load_calibration(), random_designs(2, seed=1)
+    calibration = replace(
+        start,
+        drive=replace(start.drive, chain_efficiency=0.9, peak_torque_scale=1.25, loss_speed_rad_per_s=0.7),
+        controller=replace(start.controller, rest_length_m=9.0, gravity_feed_forward=0.5),
+        simulation=replace(start.simulation, integrator="RK4", time_limit_s=2.0, work_speed="start"),
+    )
+    robots = plausible_robots(designs)
+    records = first_records(robots, designs[:, 4:], calibration)
+    hip, knee = robots.ratio[0]
+    assert hip != knee
+    expected = {
+        "rest_length_m": 9.0,
+        "timestep_s": 0.001,
+        "step_limit": 2000,
+        "stages": 4,
+        "fade_length_m": 0.01,
+        "latch": 1,
+        "loss_speed_rad_per_s": 0.7,
+        "voltage_limit": 1,
+        "mean_speed": 0,
+        "thigh_length_m": designs[0, 0],
+        "shank_length_m": designs[0, 1],
+        "foot_radius_m": 0.025,
+        "stiffness_n_per_m": designs[0, 4],
+        "damping_n_s_per_m": designs[0, 5],
+        "torsional_stiffness_n_m_per_rad": designs[0, 6],
+        "weight_n": 0.5 * 9.81 * robots.body_mass_kg[0].sum(),
+        "torque_limit_n_m": [1.25 * 5.5 * hip, 1.25 * 5.5 * knee],
+        "no_load_speed_rad_per_s": [502.65 / hip, 502.65 / knee],
+        # R i / k_t at the motor's shaft, with 1.25 times the peak current of 5.5 N m / k_t; divided by the ratio
+        "corner_speed_rad_per_s": [(502.65 - 0.06 * 1.25 * 5.5 / 0.0955**2) / ratio for ratio in (hip, knee)],
+        "loss": [1.0 - 0.97, 1.0 - 0.97 * 0.9],
+        "heat_w_per_n2_m2": [0.06 / (0.0955 * ratio) ** 2 for ratio in (hip, knee)],
+        "height_m": 0.5,
+    }
+    for name, value in expected.items():
+        np.testing.assert_allclose(records[0][name], value, rtol=1e-12, err_msg=name)
+    zero = set(records.dtype.names) - set(expected)
+    assert all(np.all(records[name] == 0.0) for name in zero)
+    ideal = first_records(robots, designs[:, 4:], load_calibration("ideal"))
+    assert np.all(ideal["loss"] == 0.0)
+    paper = first_records(robots, designs[:, 4:], load_calibration("paper"))
+    assert (paper["lags"][0], paper["fade_length_m"][0], paper["latch"][0], paper["voltage_limit"][0]) == (1, 0, 0, 0)
 
 
 @pytest.fixture(scope="module")

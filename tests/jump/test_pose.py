@@ -38,7 +38,13 @@ def test_foot_is_below_the_base_and_carries_the_weight(thigh, shank):
 
 @pytest.mark.parametrize(
     ("thigh", "shank", "reason"),
-    [(0.2, 0.2, "shorter than"), (1.2, 0.3, "cannot fold"), (2.0, 2.0, "the knee would stand at 16")],
+    [
+        (0.2, 0.2, "shorter than"),
+        (1.2, 0.3, "cannot fold"),
+        (2.0, 2.0, "the knee would stand at 16"),
+        (0.24, 0.238, "the knee would stand at 1"),
+        (0.2, 0.58, "the hip would stand at -11"),
+    ],
 )
 def test_what_cannot_stand_says_why(thigh, shank, reason):
     pose = start_pose(plausible_robots(_design(thigh, shank)), load_calibration())

@@ -6,7 +6,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.single import TRACE_COLUMNS, energy_balance, simulate
+from pareto_monoped.jump.single import TRACE_COLUMNS, EnergyBalance, energy_balance, simulate
 from pareto_monoped.robot.population import robot_arrays
 
 MAP = map_for("VT8020")
@@ -99,6 +99,8 @@ def test_trace_begins_at_rest_and_ends_at_the_apex(jump):
     assert trace["base_z_m_per_s"][0] == 0.0
     assert trace["base_z_m_per_s"][-1] <= 0.0 < trace["base_z_m_per_s"][-2]
     assert trace["contact_z_n"].min() >= 0.0
+    # The last state has no step, and so no torque.
+    assert all(trace[name][-1] == 0.0 for name in TRACE_COLUMNS if "torque" in name)
 
 
 def test_energy_and_momentum_of_the_flight_follow_gravity(jump):
@@ -135,6 +137,13 @@ def test_a_calibration_by_runge_kutta_has_a_true_trace_and_balance():
     assert np.all(trace["contact_z_n"][trace["foot_clearance_m"] > 1e-9] == 0.0)
     robots = robot_arrays(design.as_array(), map_for("VT8020"), calibration.mass)
     assert energy_balance(robots, design.as_array()[None, 4:7], calibration).error < 0.01
+
+
+def test_the_error_of_a_balance_is_the_share_of_the_work_that_is_not_explained():
+    terms = {"kinetic_j": 1.0, "potential_j": 2.0, "damping_j": 3.0, "friction_j": 4.0, "stops_j": 5.0}
+    balance = EnergyBalance(actuator_work_j=20.0, contact_j=6.0, **terms)
+    assert balance.residual_j == -1.0
+    assert balance.error == 0.05
 
 
 def test_without_losses_the_joints_lose_nothing():

@@ -32,6 +32,13 @@ def test_case_c_saves_what_the_paper_finds(rows):
     assert rows["C"].paper.energy_j <= 0.55 * rows["nominal"].paper.energy_j
 
 
+def test_reference_column_is_that_of_the_default_calibration(rows):
+    jumps = Evaluator(map_for("VT8020"), load_calibration())
+    found = jumps(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
+    assert [rows[name].reference.height_m for name in PAPER_CASES] == found.height_m.tolist()
+    assert [rows[name].reference.energy_j for name in PAPER_CASES] == found.energy_j.tolist()
+
+
 def test_reference_ranks_the_cases_as_the_paper_does_in_energy(rows):
     energies = [rows[name].reference.energy_j for name in ("nominal", "A", "B", "C")]
     assert energies == sorted(energies, reverse=True)
