@@ -18,17 +18,23 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("db", required=False, type=click.Path(path_type=Path))
 @selector_options
-@click.option("-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder to make.")
-@click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, without DB.")
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="FILE", help="The design.json of an export: make it again."
+    "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
 )
-@click.option("--front", "whole_front", is_flag=True, help="Every design on the front, each in DIR/trial_N.")
-@click.option("--every", type=click.IntRange(min=1), default=1, metavar="N", help="With --front: each N-th of them.")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [all cores]")
-@click.option("--formats", metavar="NAMES", help="Some of step,stl,3mf,dxf,glb,mjcf,urdf,png.  [all]")
-@click.option("--hip-deg", type=float, metavar="DEG", help="Hip angle of the assembly.  [start pose]")
-@click.option("--knee-deg", type=float, metavar="DEG", help="Knee angle of the assembly.  [start pose]")
+@click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
+@click.option(
+    "--record", type=click.Path(path_type=Path), metavar="FILE", help="Repeat the export that has this design.json."
+)
+@click.option("--front", "whole_front", is_flag=True, help="Export all designs of the front to DIR/trial_N.")
+@click.option(
+    "--every", type=click.IntRange(min=1), default=1, metavar="N", help="With --front: only every N-th design."
+)
+@click.option(
+    "--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [default: all cores]"
+)
+@click.option("--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,png.  [default: all]")
+@click.option("--hip-deg", type=float, metavar="DEG", help="Hip angle of the assembly.  [default: start pose]")
+@click.option("--knee-deg", type=float, metavar="DEG", help="Knee angle of the assembly.  [default: start pose]")
 @click.option("--force", is_flag=True, help="Replace an earlier export in DIR.")
 def export(
     db: Path | None,
@@ -46,9 +52,9 @@ def export(
 ) -> None:
     """Write CAD, drawings, models, pictures and parts list of a design.
 
-    The design is built with lengths of whole 0.1 mm and its gearboxes' real ratios, simulated again and checked;
-    nothing is written if a check fails. An export's design.json holds its motor and jump model too, so that --record
-    needs neither the study nor its files.
+    The design is built with lengths rounded to 0.1 mm and the real ratios of its gearboxes, then simulated again and
+    checked. Nothing is written if a check fails. The design.json of an export also contains its motor and jump model,
+    so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg)
     from pareto_monoped.cad.jobs import case_job, front_jobs, record_job, trial_job
@@ -115,8 +121,8 @@ def _one(job: "Job") -> None:
     for name in ("searched", "as_built"):
         jump = record["jumps"][name]
         height, energy = jump["height_m"], jump["energy_j"]
-        told = f"{height:.4f} m  {energy:.3f} J" if height is not None and energy is not None else jump["status"]
-        click.echo(f"{name.replace('_', ' '):<9} {told}")
+        result = f"{height:.4f} m  {energy:.3f} J" if height is not None and energy is not None else jump["status"]
+        click.echo(f"{name.replace('_', ' '):<9} {result}")
 
 
 def _many(jobs: "list[Job]", workers: int) -> None:
@@ -136,7 +142,7 @@ def _many(jobs: "list[Job]", workers: int) -> None:
         try:
             made = run_all(jobs, workers=workers, done=done)
         except KeyboardInterrupt:
-            bar.console.print("interrupted; the same command goes on from here")
+            bar.console.print("interrupted; the same command continues from here")
             raise
         bar.update(task, completed=len(jobs))
     click.echo(f"{made} made, {len(jobs) - made} there already")

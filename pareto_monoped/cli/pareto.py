@@ -1,4 +1,4 @@
-"""``pareto``: the main job, from the actuator map to the CAD of the knee design, as a chain of the other commands."""
+"""Command ``pareto``: the main job, from the actuator map to the CAD of the knee design, made of the other commands."""
 
 import contextlib
 import io
@@ -8,27 +8,25 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.errors import SelectionError
-
 if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
-
-_CASE = PAPER_CASES["C"]
 
 
 @click.command()
 @click.argument("study_file", metavar="[STUDY.toml]", type=click.Path(path_type=Path), default="studies/case_c.toml")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for what is made.  [reports/STUDY]")
-@click.option("--db", type=click.Path(path_type=Path), help="Study database.  [beside STUDY.toml]")
-@click.option("--evaluations", type=click.IntRange(min=1), help="Number of jumps, in place of the study's.")
-@click.option("--workers", type=click.IntRange(min=1), help="Threads that simulate.  [all cores]")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.  [default: reports/STUDY]"
+)
+@click.option("--db", type=click.Path(path_type=Path), help="Study database.  [default: beside STUDY.toml]")
+@click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
+@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
 def pareto(
     study_file: Path, output: Path | None, db: Path | None, evaluations: int | None, workers: int | None
 ) -> None:
     """Do the main job: actuator map, study, knee design, its CAD, report.
 
-    Safe to repeat: a finished study is not run again, and CAD and report that are up to date are not made again.
+    It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
+    out of date.
     """
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.made import is_made
@@ -62,11 +60,11 @@ def pareto(
         (report, "the front: open it in a browser"),
     ):
         click.echo(f"  {path!s:<32} {what}")
-    _compare(data, knee.trial)
+    _print_headline(data, knee.trial)
 
 
 def _step(number: int, command: str, *arguments: object, made: Callable[[], bool] = lambda: False) -> None:
-    """Run one of our own commands as a user would, show it, and keep its table off the screen."""
+    """Run one of our own commands as a user would. Show the command, but not what it prints to stdout."""
     from pareto_monoped.cli import cli
 
     words = [command, *map(str, arguments)]
@@ -83,36 +81,22 @@ def _newer(target: Path, *sources: Path) -> bool:
     return target.exists() and all(target.stat().st_mtime >= source.stat().st_mtime for source in sources)
 
 
-def _compare(data: "StudyData", knee: int) -> None:
-    """Print the paper's design beside the front's answers, all simulated with the study's motor and calibration."""
+def _print_headline(data: "StudyData", knee_trial: int) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
-    from pareto_monoped.jump.evaluate import Evaluator
-    from pareto_monoped.pareto.pick import MinHeight, pick
+    from pareto_monoped.study.headline import headline
 
-    study, front = data.study, data.front()
-    again = Evaluator(data.actuator_map, data.calibration)(_CASE.design.as_array())
-    height_m = float(again.height_m[0])
-    rows = [
-        ("paper's Case C, as published", _CASE.height_m, _CASE.energy_j),
-        ("paper's Case C, simulated here", height_m, float(again.energy_j[0])),
-    ]
-    for label, selector in (("front: at least that height", MinHeight(height_m=height_m)), ("front: knee", None)):
-        try:
-            trial = knee if selector is None else pick(front, selector).trial
-        except SelectionError:
-            continue
-        row = front.set_index("trial").loc[trial]
-        rows.append((f"{label}, trial {trial}", float(row["height_m"]), float(row["energy_j"])))
     table = Table(box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("design")
     table.add_column("height / m", justify="right")
     table.add_column("energy / J", justify="right")
-    for name, height, energy in rows:
-        table.add_row(name, f"{height:.3f}", f"{energy:.2f}")
+    for row in headline(data, knee_trial):
+        table.add_row(row.label, f"{row.height_m:.3f}", f"{row.energy_j:.2f}")
     Console(width=80).print(table)
+    study = data.study
     click.echo(
-        f"Simulated with motor {study.motor}, calibration {study.calibration}; {len(front)} designs on the front."
+        f"Simulated with motor {study.motor}, calibration {study.calibration}; "
+        f"{len(data.front())} designs on the front."
     )

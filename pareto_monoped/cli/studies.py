@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.design import HEADLINE_HEIGHT_M
+
 if TYPE_CHECKING:
     from pareto_monoped.study.run import RunSummary
     from pareto_monoped.study.session import Progress
@@ -19,6 +21,7 @@ _workers = click.option(
     "--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]"
 )
 _SECONDS_BETWEEN_LINES = 5.0
+_AT_HEIGHT = f"{HEADLINE_HEIGHT_M:g} m"
 _REASONS = {
     "budget": "the budget is used up",
     "wall_time": "the wall time is used up",
@@ -91,7 +94,7 @@ def status(db: Path, as_json: bool) -> None:
         "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",
         "hypervolume": f"{facts['hypervolume']:.4f} m J above "
         f"({facts['reference_point']['height_m']:g} m, {facts['reference_point']['energy_j']:g} J)",
-        "least energy at 0.8 m": f"{at_height:.2f} J" if at_height is not None else "not reached",
+        f"least energy at {_AT_HEIGHT}": f"{at_height:.2f} J" if at_height is not None else "not reached",
         "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
         "hash": facts["hash"][:16],
     }
@@ -164,7 +167,10 @@ def _line_reports() -> "Callable[[Progress], None]":
 
 
 def _described(progress: "Progress") -> str:
-    energy = f"{progress.least_energy_j:.2f} J at 0.8 m" if progress.least_energy_j is not None else "0.8 m not reached"
+    if progress.least_energy_j is None:
+        energy = f"{_AT_HEIGHT} not reached"
+    else:
+        energy = f"{progress.least_energy_j:.2f} J at {_AT_HEIGHT}"
     minutes, seconds = divmod(round(progress.seconds_left), 60)
     return (
         f"{progress.evaluations}/{progress.budget}, {progress.per_second:.0f}/s, {minutes}:{seconds:02d} left, "

@@ -88,7 +88,7 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
         told = running.communicate(timeout=120)[1]
     assert running.returncode == 130
     assert "Traceback" not in told
-    assert "the same command goes on from here" in told
+    assert "the same command continues from here" in told
     made = sorted(folder.iterdir())
     assert all((path / "design.json").is_file() for path in made)
     expected = -(-len(rows) // every)

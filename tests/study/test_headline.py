@@ -1,0 +1,40 @@
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.single import simulate
+from pareto_monoped.study.headline import headline
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    """Case C as the study below simulates it."""
+    return simulate(PAPER_CASES["C"].design, map_for("U8"), load_calibration("ideal")).measures
+
+
+def study(*front):
+    """A study with this front of trial, height and energy."""
+    table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"])
+    return SimpleNamespace(
+        front=lambda: table, actuator_map=map_for("U8"), calibration=load_calibration("ideal"), motor=None
+    )
+
+
+def test_the_papers_design_stands_beside_the_fronts(simulated):
+    height = simulated["height_m"]
+    rows = headline(study((7, 0.7, 10.0), (3, height + 0.01, 30.0), (9, height + 0.1, 50.0)), 7)
+    assert [(row.label, row.height_m, row.energy_j) for row in rows] == [
+        ("paper's Case C, as published", 0.8, 15.36),
+        ("paper's Case C, simulated here", height, simulated["energy_j"]),
+        ("front: at least that height, trial 3", height + 0.01, 30.0),
+        ("front: knee, trial 7", 0.7, 10.0),
+    ]
+
+
+def test_a_front_below_the_papers_height_has_no_design_for_it():
+    labels = [row.label for row in headline(study((7, 0.7, 10.0)), 7)]
+    assert labels[2:] == ["front: knee, trial 7"]
