@@ -19,7 +19,7 @@ from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
-    """A group of parts of one robot that sits in a body as a whole: a row of ``units.UNITS``, made.
+    """A group of parts of one robot that a body carries as a whole, made from a row of ``units.UNITS``.
 
     Attributes:
         name: as in the table of units.

@@ -1,4 +1,4 @@
-"""Many robots at once: what the simulation needs of a population of designs, as arrays."""
+"""Many robots at once: what the simulation needs to know about a population of designs, as arrays."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from pareto_monoped.robot.units import UNITS, ActuatorSized
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MassOptions:
-    """What a calibration may set in place of the part-by-part masses; None keeps the parts.
+    """Masses that a calibration may set in place of those of the parts; None keeps those of the parts.
 
     Attributes:
         base_structure_mass_kg: mass of the base frame, without the hip actuator.
@@ -45,7 +45,7 @@ PARTS_ONLY = MassOptions()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotArrays:
-    """What the simulation needs of n robots; the last axes are in the order of ``BODIES`` and ``JOINTS``.
+    """What the simulation needs to know about n robots; axis 1 has the order of ``BODIES`` or of ``JOINTS``.
 
     Body frames: ``base`` at the hip axis, ``thigh`` at the hip axis, ``shank`` at the knee axis; x forward, y to the
     left (the joint axes), z up; at zero joint angles both links hang straight down along -z.
@@ -86,17 +86,20 @@ class RobotArrays:
 
 
 def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOptions = PARTS_ONLY) -> RobotArrays:
-    """Weigh many robots at once, by the same part functions as ``build_robot``.
+    """Weigh many robots at once, from the same table of units as ``build_robot``.
 
-    Links between 0.25 and 0.55 m come from tables of these functions, equal to 12 digits and many times as fast.
+    Links of 0.25 to 0.55 m are interpolated, which gives the same to 12 digits and is many times as fast.
 
     Args:
-        designs: shape (n, 7), in the order of ``design.NAMES``; finite, with links longer than zero.
+        designs: shape (n, number of variables), in the order of ``design.NAMES``; finite, with links longer than 0 m.
         actuator_map: the gearboxes.
-        options: what stands in for part-by-part masses.
+        options: what replaces the masses of the parts.
 
     Returns:
-        A row a design. Rows with a ``reason`` (no gearbox of that ratio) hold the numbers of some other gearbox.
+        One row per design. A row with a ``reason`` has no gearbox of its ratio and holds the numbers of another one.
+
+    Raises:
+        DesignError: the map has no actuator.
     """
     values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
     table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
@@ -133,12 +136,12 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
 def _unit_masses(
     table: ActuatorTable, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
 ) -> dict[str, MassProperties]:
-    """Name -> mass properties of every unit in its body frame, a row per design.
+    """Name -> mass properties of every unit in its body frame, one row per design.
 
     Args:
         table: the actuators.
         leg: dimensions.
-        values: designs, shape (n, 7).
+        values: designs, shape (n, number of variables).
         rows: joint -> row of each design's actuator in the table, shape (n,).
     """
     masses: dict[str, MassProperties] = {}
@@ -151,7 +154,7 @@ def _unit_masses(
 
 
 def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list[MassProperties]:
-    """Each body's units together, in the order of ``BODIES``, with what a calibration sets in their place."""
+    """The units of each body together, in the order of ``BODIES``, after the options have replaced what they name."""
     masses = dict(units)
     for name, mass_kg in (("base_frame", options.base_structure_mass_kg), ("foot", options.foot_mass_kg)):
         if mass_kg is not None:

@@ -23,7 +23,7 @@ class ActuatorTable:
 
     Attributes:
         row: row of each interval's actuator, shape (intervals,); any row where the interval has none.
-        units: name -> mass properties of each ``ActuatorSized`` unit in its body frame, a row per actuator.
+        units: name -> mass properties of each ``ActuatorSized`` unit in its body frame, one row per actuator.
         ratio: real ratio of the gearbox.
         armature_kg_m2: reflected inertia at the joint.
         peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``.
@@ -41,7 +41,7 @@ class ActuatorTable:
 
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
-    """Weigh every actuator of a map once; kept for the next call."""
+    """Weigh every actuator of a map. The result is kept, as a map is asked for many times."""
     actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
     leg = leg_dimensions(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
@@ -72,7 +72,7 @@ def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
 
 
 def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassProperties]:
-    """The units of one link length in their body frames, part by part, a row per length."""
+    """The units of one link length in their body frames, part by part, one row per length."""
     return [
         unit.in_body(total(part.mass_properties() for part in unit.parts(lengths_m, leg)), leg)
         for unit in link_units(length)
@@ -90,7 +90,7 @@ def _link_table(length: str, leg: LegDimensions) -> Tabulated:
 
 
 def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, MassProperties]:
-    """Name -> mass properties of the units that depend on a link length, in their body frames, a row per length.
+    """Name -> mass properties of the units that depend on a link length, in their body frames, one row per length.
 
     Lengths within the table are interpolated to 12 digits; those beyond its ends are weighed part by part.
 

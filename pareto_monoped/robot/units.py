@@ -31,8 +31,8 @@ class UnitKind:
         body: the body that carries it, one of ``BODIES``.
         turn: rotation from the unit's frame to the body's part frame.
         z_mm: where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg.
-        weighed_last: added to its body's mass after the units that are not. Floating-point sums depend on their order,
-            and the results of stored studies on this one.
+        weighed_last: added to the mass of its body after all other units. The last bit of a sum depends on its order,
+            and so do the results of stored studies.
     """
 
     name: str
