@@ -19,6 +19,10 @@ RATIO_STEP = 0.1
 """The map covers the half-open intervals [4.0, 4.1) to [14.9, 15.0) (paper, section III-A)."""
 
 
+_EDGE_DECIMALS = 8
+"""To which decimal ten times a ratio is rounded, so that 0.1 x 87, a hair below 8.7, is 8.7."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
     """A gear set in a family, weighed."""
@@ -99,13 +103,9 @@ class ActuatorMap:
     entries: tuple[MapEntry, ...]
 
     def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
-        """Index into ``entries`` for each ratio, shape (n,) -> (n,); -1 where the map has no gearbox.
-
-        A ratio within 1e-9 below an interval's end counts to the next one: 8.7 is what a user means by 8.7.
-        """
+        """Index into ``entries`` for each ratio, shape (n,) -> (n,); -1 where the map has no gearbox."""
         values = np.asarray(ratios, dtype=np.float64)
-        tenths = np.floor(np.round(10.0 * np.where(np.isfinite(values), values, -1.0), 8))
-        index = tenths.astype(np.intp) - 10 * RATIO_LOW
+        index = _tenths(np.where(np.isfinite(values), values, -1.0)) - 10 * RATIO_LOW
         inside = (index >= 0) & (index < len(self.entries))
         present = np.array([entry.actuator is not None for entry in self.entries])
         return np.where(inside & present[np.where(inside, index, 0)], index, -1)
@@ -149,7 +149,7 @@ class ActuatorMap:
             return (
                 f"outside the map of {self.motor.name}, which covers {RATIO_LOW} up to but not including {RATIO_HIGH}"
             )
-        index = int(np.floor(np.round(10.0 * ratio, 8))) - 10 * RATIO_LOW
+        index = int(_tenths(np.asarray(ratio))) - 10 * RATIO_LOW
         return f"{self.motor.name} has {self.entries[min(index, len(self.entries) - 1)].why_not()}"
 
     def _existing(self) -> str:
@@ -163,3 +163,11 @@ class ActuatorMap:
             else:
                 runs.append([low, low + 1])
         return " or ".join(f"[{start / 10:.1f}, {stop / 10:.1f})" for start, stop in runs)
+
+
+def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Lower end of each ratio's interval, in tenths.
+
+    A ratio within 5e-10 below an interval's end counts to the next interval.
+    """
+    return np.floor(np.round(10.0 * ratios, _EDGE_DECIMALS)).astype(np.intp)

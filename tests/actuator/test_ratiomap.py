@@ -26,6 +26,24 @@ def test_every_lower_end_belongs_to_its_own_interval(vt_map, tenths):
         assert vt_map.interval_index([ratio]).tolist() == [tenths - 40]
 
 
+@pytest.mark.parametrize("tenths", range(41, 88))
+def test_the_interval_below_ends_5e_10_before_its_upper_end(vt_map, tenths):
+    """The documented rounding at an interval's edges: closer than that, a ratio counts to the next interval."""
+    edge = tenths / 10
+    ratios = [edge - 1e-3, edge - 1e-6, edge - 6e-10, edge - 4e-10, edge, edge + 4e-10, edge + 1e-3]
+    below, above = tenths - 41, tenths - 40
+    assert vt_map.interval_index(ratios).tolist() == [below] * 3 + [above] * 4
+
+
+def test_the_ends_of_the_map_are_rounded_in_the_same_way(vt_map):
+    assert vt_map.interval_index([4.0 - 4e-10, 4.0 - 6e-10]).tolist() == [0, -1]
+    assert vt_map.interval_index([8.8 - 6e-10, 8.8 - 4e-10]).tolist() == [47, -1]
+    with pytest.raises(DesignError, match=r"no gearbox in \[9\.3, 9\.4\)"):
+        vt_map.lookup(9.3 - 4e-10)
+    with pytest.raises(DesignError, match=r"no gearbox in \[9\.2, 9\.3\)"):
+        vt_map.lookup(9.3 - 6e-10)
+
+
 @given(ratio=st.floats(4.0, 8.7999))
 def test_the_real_ratio_lies_in_the_interval_asked_for(ratio):
     found = map_for("VT8020")
