@@ -1,6 +1,7 @@
-"""The jump written a second time: a plain loop over ``mj_step``, from the equations, knowing only the exported MJCF.
+"""A second, independent implementation of the jump: a plain loop over ``mj_step`` on the exported MJCF.
 
-Kinematics and the Jacobian are those of MuJoCo, torque limits are read from the model, and none of our code is called.
+It is written from the equations and calls none of the package's code. Kinematics and the Jacobian are MuJoCo's, torque
+limits are read from the model.
 """
 
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ REST_LENGTH = 10.0
 
 @dataclass
 class Motor:
-    """What the MJCF cannot say of one joint's drive, in SI at the joint."""
+    """Properties of one joint's drive that the MJCF does not contain, in SI units at the joint."""
 
     no_load_speed: float = np.inf
     corner_speed: float = np.inf
@@ -130,7 +131,7 @@ def jump(
 
 
 def motors_of(robots: RobotArrays, i: int, calibration: Calibration) -> list[Motor]:
-    """The drives of robot ``i``, from its data sheet numbers."""
+    """The drives of robot ``i``, from its motor's data sheet."""
     drive, motors = calibration.drive, []
     for j, transmission in enumerate((1.0, drive.chain_efficiency)):
         motor = Motor(loss=1.0 - (robots.efficiency[i, j] if drive.mesh_losses else 1.0) * transmission)

@@ -1,4 +1,4 @@
-"""Plausible robots that need neither the actuator search nor the part models."""
+"""Plausible robots, made without actuator search and part models."""
 
 import numpy as np
 
