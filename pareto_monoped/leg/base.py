@@ -23,11 +23,9 @@ _TOP_RADIUS, _TOP_RISE = 40.0, 6.0  # round upper end, its centre above the lowe
 _FAR_WALL = 10.0  # of the far cheek around its bearing
 _BORE_PLAY = 1.0  # of the near cheek around the hip's output flange
 _RELIEF_RADIUS, _RELIEF_PITCH_RADIUS = 9.0, 31.0  # lighten the near cheek: 4.5 mm of metal to its bore
-_SLOT_RADIUS, _SLOT_LENGTH, _SLOT_RISE = (
-    10.0,
-    14.0,
-    16.0,
-)  # a slot, its top above the lower rods
+# A slot between the rods that lightens both cheeks, 10 mm or more from the rods' holes.
+_SLOT_RADIUS, _SLOT_LENGTH = 10.0, 14.0
+_SLOT_RISE = 16.0  # of the centre of its upper end above the lower rods
 
 
 def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:

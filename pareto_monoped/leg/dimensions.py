@@ -42,17 +42,18 @@ class LegDimensions:
         bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base.
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
-        gap_mm: distance between the thigh's plates.
-        play_mm: lateral distance between thigh and shank.
+        gap_mm: distance between the thigh's plates: both knee bearings and the sprocket between them fit in.
+        play_mm: lateral distance between thigh and shank, for the spacers on the knee's axle.
         hip_play_mm: lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.
-        thigh_half_width_mm, thigh_window_half_width_mm, thigh_core_half_width_mm: the thigh's bar.
-        knee_radius_mm: of the thigh plates at the knee; covers the chain.
+        thigh_half_width_mm, thigh_window_half_width_mm: the bar of the thigh's plates.
+        thigh_core_half_width_mm: the thigh's printed core, at least 2.2 mm inside the strands of the chain.
+        knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 30.1 mm.
         shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates.
         shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core.
         fork_mm: free depth of the shank's fork below the knee axis, enough for ``joint_ranges.KNEE_RANGE_RAD``.
         foot_radius_mm: of the rubber ball.
         cheek_mm: thickness of the base's near cheek.
-        far_cheek_mm: thickness of the base's far cheek.
+        far_cheek_mm: thickness of the base's far cheek: the bearing's seat and a lip of 1 mm.
     """
 
     mount_pitch_radius_mm: float
