@@ -22,7 +22,7 @@ PENDULUM = """<mujoco><size nuserdata="{user}"/><worldbody><body><joint name="j"
 
 
 def swing(user):
-    """The angle of a pendulum of somebody else after 50 steps under a torque."""
+    """Angle and control of another user's pendulum after 50 steps under a torque."""
     model = mujoco.MjModel.from_xml_string(PENDULUM.format(user=user))
     data = mujoco.MjData(model)
     data.ctrl[0] = 0.05

@@ -1,4 +1,4 @@
-"""What is kept on disk of compiled functions, and what it depends on."""
+"""Which change makes numba compile a C function again instead of loading it from disk."""
 
 import ctypes
 import gc

@@ -54,7 +54,7 @@ def test_every_failure_has_a_name_and_a_reason(evaluator, name):
 
 
 def test_a_hop_without_work_is_no_jump():
-    """A damper beyond all numbers lets the literal model's foot chatter off the floor for nothing."""
+    """With an absurd damper the foot of the literal model chatters off the floor although no motor works."""
     calibration = load_calibration("paper")
     robots = robot_arrays(GOOD, map_for("VT8020"), calibration.mass)
     result = evaluate_robots(robots, np.array([[GOOD[4], 1e160, GOOD[6]]]), calibration)
@@ -155,6 +155,14 @@ def test_a_jump_that_takes_too_long_says_what_was_missing(evaluator, share, stat
     result = Evaluator(evaluator.actuator_map, replace(evaluator.calibration, simulation=simulation))(GOOD[None])
     assert result.status[0] == status
     assert result.reason[0] == f"{said} after {limit:.3f} s"
+
+
+def test_a_leg_without_torque_sinks(evaluator):
+    controller = replace(evaluator.calibration.controller, gravity_feed_forward=0.0)
+    calibration = replace(evaluator.calibration, controller=controller)
+    result = Evaluator(evaluator.actuator_map, calibration)(changed(stiffness_n_per_m=0.0)[None])
+    assert result.status[0] == "no_lift_off"
+    assert result.reason[0].startswith("the base sank to 0.1 m after 0.")
 
 
 def test_long_batches_are_jumped_in_chunks(evaluator, monkeypatch):

@@ -119,7 +119,7 @@ def test_end_stops_push_like_the_documented_bumper(designs, joint):
 
 
 def test_a_joint_feels_its_motors_damping_times_the_ratio_squared(designs):
-    """The power b w^2 lost at the motor's shaft, w = g times the joint's speed; the slides have no friction."""
+    """A motor's shaft turns g times as fast as its joint and loses the power b w^2; the slides have no friction."""
     start = load_calibration("paper")
     calibration = replace(
         start, joints=replace(start.joints, damping_n_m_s_per_rad=0.3, motor_damping_n_m_s_per_rad=0.05)

@@ -15,7 +15,7 @@ from tests.jump.robots import plausible_robots, random_designs
 
 
 def test_plain_mj_step_on_the_exported_model_agrees():
-    """To 1e-9 on all of 100 random designs: the reference amplifies rounding by less than a thousand."""
+    """To 1e-9 on all of 100 random designs, as `reference` hardly amplifies rounding."""
     calibration, designs = load_calibration(), random_designs(100, seed=7)
     robots = plausible_robots(designs)
     found = evaluate_robots(robots, designs[:, 4:], calibration)
@@ -142,7 +142,7 @@ def test_inputs_are_not_changed(many):
 
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
 def test_torque_is_held_during_a_step_whatever_the_integrator(integrator):
-    """A Runge-Kutta step asks the callback four times; the oracle sets the torque once."""
+    """A Runge-Kutta step calls the callback four times; the oracle sets the torque once."""
     calibration, designs = load_calibration(), random_designs(8, seed=12)
     calibration = replace(calibration, simulation=replace(calibration.simulation, integrator=integrator))
     robots = plausible_robots(designs)

@@ -26,7 +26,7 @@ def robot_of(jump):
 
 
 def during_steps(jump, joint):
-    """Motor torque, joint torque and booked speed of each step, and the step."""
+    """Motor torque, joint torque and speed of each step, as the work of the step is booked, and the step in s."""
     trace = jump.trace
     speed = trace[f"{joint}_rad_per_s"]
     booked = speed[:-1] if jump.calibration.startswith("paper") else 0.5 * (speed[1:] + speed[:-1])
@@ -127,7 +127,7 @@ def test_energy_balance_closes_within_one_percent(case):
 
 
 def test_a_calibration_by_runge_kutta_has_a_true_trace_and_balance():
-    """MuJoCo leaves the last stage's forces and positions behind such a step, not those of its start."""
+    """After such a step MuJoCo's data holds forces and positions of the last stage, not of the step's start."""
     calibration, design = load_calibration(), PAPER_CASES["C"].design
     calibration = replace(calibration, simulation=replace(calibration.simulation, integrator="RK4"))
     trace = simulate(design, map_for("VT8020"), calibration, trace=True).trace
