@@ -25,11 +25,15 @@ _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
 _REL_TOLERANCE = 1e-9
 
 
-def is_made(job: Job) -> bool:
+def is_made(job: Job, *, any_pose: bool = False) -> bool:
     """Whether the job's folder holds this very export: same version, design, motor, calibration, source and pose.
 
     Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
     have the job's formats, and every file that it lists must be there and not empty.
+
+    Args:
+        job: what is asked for.
+        any_pose: whether the assembly may stand in another pose than the job's.
     """
     try:
         record = json.loads((job.folder / RECORD).read_text(encoding="utf-8"))
@@ -37,6 +41,8 @@ def is_made(job: Job) -> bool:
             return False
         found = {key: value for key, value in record.items() if key not in _NOT_COMPARED}
         expected = _expected(job)
+        if any_pose:
+            expected["pose"] = found["pose"]
         return all(found[key] == expected[key] for key in _GIVEN) and _same(found, expected)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, DesignError):
         # No record, or none of ours; or a design that cannot be built, which the export itself will explain.

@@ -32,7 +32,7 @@ def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exp
     from pareto_monoped.files import write_text
     from pareto_monoped.report.page import page, payload_of
 
-    payload = payload_of(dbs, exports=exports)
+    payload = payload_of(dbs, exports=exports, note=lambda text: click.echo(f"note: {text}", err=True))
     if output is not None:
         write_text(output, page(payload))
         click.echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)

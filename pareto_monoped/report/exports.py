@@ -1,18 +1,17 @@
 """Exported designs -> triangles for the page's 3D view, few enough for the page to carry."""
 
 import base64
-import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.write.design_record import json_values
+from pareto_monoped.cad.jobs import trial_job
+from pareto_monoped.cad.made import is_made
 from pareto_monoped.cad.write.folder import RECORD
-from pareto_monoped.design import NAMES
 from pareto_monoped.errors import OutputError
 from pareto_monoped.report.schema import Model3D
 from pareto_monoped.study.reader import StudyData
@@ -24,41 +23,52 @@ MOST_TRIANGLES = 60_000
 _LEAST = 24  # triangles that even the smallest body keeps
 _FINEST_MM = 0.1
 _GREY = (170, 176, 184)
+_MODEL = "assembly.glb"
 _FOLDER = re.compile(r"^trial_(\d+)$")
 
 
-def read_models(folder: Path, data: StudyData) -> Mapping[int, Model3D]:
-    """The exported designs of a study: folders ``trial_N`` with a GLB file.
+def read_models(
+    folder: Path, studies: Sequence[StudyData], *, note: Callable[[str], None] = lambda _: None
+) -> list[Mapping[int, Model3D]]:
+    """The exported designs of some studies: per study, models by trial.
 
-    Trials that the study does not have are passed over, and so are exports whose record names another design or motor:
-    such an export is out of date or belongs to another study.
+    A folder ``trial_N`` counts for a study if it is an up-to-date export of its trial N, in any pose, or has a GLB file
+    but no record.
+
+    Args:
+        folder: holds the folders ``trial_N``.
+        studies: whose trials may have been exported.
+        note: called with a line of text for each export that is left out.
 
     Raises:
         OutputError: the folder does not exist.
     """
     if not folder.is_dir():
         raise OutputError(f"exports folder {str(folder)!r}: does not exist; give the folder that holds trial_N folders")
-    designs = data.trials.set_index("trial")[list(NAMES)]
-    found = {}
-    for path in sorted(folder.iterdir()):
-        match = _FOLDER.match(path.name)
-        files = sorted(path.glob("*.glb")) if match else []
-        trial = int(match[1]) if match else -1
-        if files and trial in designs.index and not _is_of_another(path, designs.loc[trial].to_dict(), data):
-            found[trial] = files[0]
-    share = MOST_TRIANGLES // max(len(found), 1)
-    return {trial: read_glb(path, share) for trial, path in found.items()}
+    exported = {
+        int(match[1]): path
+        for path in sorted(folder.iterdir())
+        if (match := _FOLDER.match(path.name)) and (path / _MODEL).is_file()
+    }
+    found = [[trial for trial, path in exported.items() if _is_export(path, data, trial)] for data in studies]
+    for trial in sorted(exported.keys() - {trial for trials in found for trial in trials}):
+        note(
+            f"{str(exported[trial])!r} is left out: it is no up-to-date export of trial {trial} of this study; "
+            "export it again with --force"
+        )
+    return [
+        {trial: read_glb(exported[trial] / _MODEL, MOST_TRIANGLES // len(trials)) for trial in trials}
+        for trials in found
+    ]
 
 
-def _is_of_another(folder: Path, design: Mapping[str, float], data: StudyData) -> bool:
-    """Whether the export's record says that it shows another design or motor; without a record nothing says so."""
-    try:
-        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-        return bool(record["searched"] != design or record["motor_data"] != json_values(data.motor))
-    except FileNotFoundError:
+def _is_export(folder: Path, data: StudyData, trial: int) -> bool:
+    """Whether a folder holds an up-to-date export of a trial; a GLB file without a record is taken for one."""
+    if not (data.trials["trial"] == trial).any():
         return False
-    except (OSError, ValueError, KeyError, TypeError):
+    if not (folder / RECORD).exists():
         return True
+    return is_made(trial_job(data, trial, folder=folder, formats=["glb"]), any_pose=True)
 
 
 def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:

@@ -3,7 +3,7 @@
 import base64
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, is_dataclass
 from functools import lru_cache
 from importlib import resources
@@ -44,13 +44,15 @@ def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None)
     write_text(out, page(payload_of(dbs, exports=exports)))
 
 
-def payload_of(dbs: Sequence[Path], *, exports: Path | None = None) -> Payload:
-    """Read the studies and simulate what the page shows beyond them."""
+def payload_of(
+    dbs: Sequence[Path], *, exports: Path | None = None, note: Callable[[str], None] = lambda _: None
+) -> Payload:
+    """Read the studies and simulate what the page shows beyond them; ``note`` hears of exports that are left out."""
     if not dbs:
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
     # Everything is read before anything is simulated, so that a wrong name is reported at once.
     studies = [read_study(db) for db in dbs]
-    models = [read_models(exports, data) if exports is not None else {} for data in studies]
+    models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
     sources = [
         Source(data=data, resimulation=resimulate(data), models=found)
         for data, found in zip(studies, models, strict=True)

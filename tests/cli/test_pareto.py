@@ -89,6 +89,17 @@ class TestMainJob:
         changed = {path.name for path in before if before[path] != after[path]}
         assert changed <= {"actuators.csv"}
 
+    def test_a_stale_export_of_the_knee_is_made_again(self, job):
+        folder, _ = job
+        (design,) = (folder / "reports" / "quick" / "cad").iterdir()
+        text = (design / "design.json").read_text()
+        (design / "design.json").write_text(text.replace('"kv_rpm_per_v": ', '"kv_rpm_per_v": 1'))
+        again = pareto(folder)
+        assert again.returncode == 0, again.stderr
+        (step,) = [line for line in again.stderr.splitlines() if line.startswith("[3/4]")]
+        assert step.endswith(" --force")
+        assert (design / "design.json").read_text() == text
+
 
 def test_a_missing_study_is_one_line(tmp_path):
     done = pareto(tmp_path)

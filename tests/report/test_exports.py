@@ -1,12 +1,10 @@
 import base64
-import json
 
 import numpy as np
 import pytest
 import trimesh
 
-from pareto_monoped.cad.write.design_record import json_values
-from pareto_monoped.design import NAMES
+from pareto_monoped.report import exports
 from pareto_monoped.report.exports import coarser, model_of, read_models
 
 
@@ -46,39 +44,58 @@ def test_large_bodies_keep_more_of_their_triangles():
     assert min(shares) > 100
 
 
-def export_of(folder, trial, record):
-    """An export of a trial, as far as the report reads it."""
-    path = folder / f"trial_{trial}"
-    path.mkdir()
-    trimesh.Scene(trimesh.creation.box(extents=(0.1, 0.1, 0.1))).export(path / "assembly.glb")
-    if record is not None:
-        (path / "design.json").write_text(json.dumps(record))
-
-
-def test_an_export_of_another_design_or_motor_is_not_shown(tmp_path, data, source_u12):
-    """A folder's name once was enough: an export that was out of date or of another study passed for the trial's."""
-    designs = data.trials.set_index("trial")[list(NAMES)]
-    own = {"searched": designs.loc[1].to_dict(), "motor_data": json_values(data.motor)}
-    export_of(tmp_path, 1, own)
-    export_of(tmp_path, 2, own)
-    export_of(tmp_path, 3, {"searched": designs.loc[3].to_dict(), "motor_data": json_values(source_u12.data.motor)})
-    export_of(tmp_path, 4, None)
-    export_of(tmp_path, 5, ["damaged"])
-    assert list(read_models(tmp_path, data)) == [1, 4]
-
-
-def test_models_are_read_from_folders_of_known_trials_and_stand_upright(tmp_path, data):
+@pytest.fixture
+def exported(tmp_path, data, monkeypatch):
+    """Folders with a rod 0.6 m tall: one of them is an export of the study's trial, by the test for that."""
     trial = int(data.trials["trial"].iloc[5])
-    for name in (f"trial_{trial}", "trial_99999999", "elsewhere"):
+    for name in (f"trial_{trial}", f"trial_{trial + 1}", "trial_99999999", "elsewhere"):
         (tmp_path / name).mkdir()
-        # GLB: metres, y up. A rod 0.6 m tall.
+        # GLB: metres, y up.
         rod = trimesh.creation.box(extents=(0.1, 0.6, 0.2))
         rod.visual = trimesh.visual.TextureVisuals(
             material=trimesh.visual.material.PBRMaterial(baseColorFactor=[200, 100, 50, 255])
         )
         trimesh.Scene(rod).export(tmp_path / name / "assembly.glb")
-    models = read_models(tmp_path, data)
+        (tmp_path / name / "design.json").write_text("{}")
+
+    def is_made(job, *, any_pose):
+        assert any_pose
+        assert job.formats == ("glb",)
+        assert job.folder == tmp_path / f"trial_{job.source['trial']}"
+        assert job.source["study"] == data.study.name
+        return job.source["trial"] == trial
+
+    monkeypatch.setattr(exports, "is_made", is_made)
+    return tmp_path, trial
+
+
+def test_models_are_read_from_up_to_date_exports_and_stand_upright(exported, data):
+    folder, trial = exported
+    (models,) = read_models(folder, [data])
     assert list(models) == [trial]
     size = np.ptp(corners_of(models[trial]).reshape(-1, 3), axis=0)
     np.testing.assert_allclose(size, (200.0, 100.0, 600.0), atol=0.1)
     assert base64.b64decode(models[trial].colours)[:3] == bytes([200, 100, 50])
+
+
+def test_exports_that_are_left_out_are_named(exported, data):
+    folder, trial = exported
+    notes = []
+    read_models(folder, [data], note=notes.append)
+    assert len(notes) == 2
+    assert any(f"trial_{trial + 1}' is left out: it is no up-to-date export of trial {trial + 1}" in n for n in notes)
+    assert any("trial_99999999' is left out" in note for note in notes)
+
+
+def test_an_export_that_is_stale_or_of_another_study_is_not_shown(tmp_path, data):
+    """A folder's name once was enough: an export that was out of date or of another study passed for the trial's."""
+    for trial, record in {1: "{}", 2: "[]", 3: "damaged", 4: None}.items():
+        path = tmp_path / f"trial_{trial}"
+        path.mkdir()
+        trimesh.Scene(trimesh.creation.box()).export(path / "assembly.glb")
+        if record is not None:
+            (path / "design.json").write_text(record)
+    notes = []
+    (models,) = read_models(tmp_path, [data], note=notes.append)
+    assert list(models) == [4]  # no record says that it is another
+    assert len(notes) == 3
