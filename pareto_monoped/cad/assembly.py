@@ -4,7 +4,7 @@ Frames are 4 x 4 matrices in millimetres. The assembly's frame has its origin on
 leg, x forward, y to the left (the joint axes), z up, as the body frames of ``robot`` at zero joint angles.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,11 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 
+ACTUATOR_UNITS: Mapping[str, str] = {"hip_actuator": "hip", "knee_actuator": "knee"}
+"""The units that are actuators, each with the joint that it drives."""
+_TURNED_BY: Mapping[str, str] = {**ACTUATOR_UNITS, "thigh": "knee"}
+"""The joint with which the moving parts of a unit turn; in the thigh these are the chain's sprocket and its axle."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:
@@ -28,6 +33,10 @@ class Pose:
 
     hip_rad: float
     knee_rad: float
+
+    def angle_rad(self, joint: str) -> float:
+        """Angle of a joint, ``hip`` or ``knee``."""
+        return {"hip": self.hip_rad, "knee": self.knee_rad}[joint]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,9 +67,11 @@ def instances(robot: Robot, pose: Pose) -> tuple[Instance, ...]:
     frames = body_frames(robot, pose)
     found = []
     for unit in robot.units:
+        joint = _TURNED_BY.get(unit.name)
+        output_rad = 0.0 if joint is None else pose.angle_rad(joint)
         for part in unit.parts:
             rest = list(_places(robot, unit, part, 0.0))
-            turned = list(_places(robot, unit, part, _angle(unit, pose)))
+            turned = list(_places(robot, unit, part, output_rad))
             for k, (at_rest, at_pose) in enumerate(zip(rest, turned, strict=True)):
                 number = f"_{k + 1}" if len(rest) > 1 else ""
                 found.append(
@@ -122,17 +133,12 @@ def shift(x: float, y: float, z: float) -> Matrix:
     return matrix
 
 
-def _angle(unit: Unit, pose: Pose) -> float:
-    """Angle of a unit's output about +y relative to its housing: of the joint that it drives."""
-    return {"hip_actuator": pose.hip_rad, "knee_actuator": pose.knee_rad, "thigh": pose.knee_rad}.get(unit.name, 0.0)
-
-
 def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator[Matrix]:
     """From the frame of each instance of a part to the unit's body frame, with the output turned by ``output_rad``."""
     frame = unit_frame(unit)
     # The joint axis is the unit's z axis up to its sign.
     theta = output_rad * float(frame[1, 2])
-    actuator = {"hip_actuator": robot.hip, "knee_actuator": robot.knee}.get(unit.name)
+    actuator = {"hip": robot.hip, "knee": robot.knee}.get(ACTUATOR_UNITS.get(unit.name, ""))
     whole, spin = turns(actuator, part, theta)
     for place in part.places_mm:
         at = frame @ shift(*(float(v) for v in place))

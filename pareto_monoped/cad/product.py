@@ -8,7 +8,7 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.assembly import Instance, Pose, instances
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS, Instance, Pose, instances
 from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly, StepPlacement, solid_facts
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_of, placed
 from pareto_monoped.geometry.parts import Part
@@ -17,7 +17,7 @@ from pareto_monoped.robot.build import Robot
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UniquePart:
-    """One kind of part: made once, used ``count`` times in the robot.
+    """A part that is made once and used ``count`` times in the robot.
 
     Attributes:
         name: unique in the product and safe as a file name.
@@ -40,10 +40,10 @@ class Product:
 
     Attributes:
         robot, pose: what and how.
-        unique: every kind of part, in the order of the assembly.
+        unique: every part that differs from all others, in the order of the assembly.
         instances: every part in its place.
-        kinds: for each instance the index of its kind in ``unique``.
-        solids: what the kernel finds about the solid of each kind, once it has built them.
+        kinds: for each instance, the index of its part in ``unique``.
+        solids: what the kernel finds about the solid of each unique part, once it has built them.
     """
 
     robot: Robot
@@ -54,19 +54,19 @@ class Product:
     solids: Future[list[SolidFacts]]
 
     def placed(self) -> Iterator[tuple[Instance, UniquePart]]:
-        """Every instance with its kind."""
-        for instance, kind in zip(self.instances, self.kinds, strict=True):
-            yield instance, self.unique[kind]
+        """Every instance with its unique part."""
+        for instance, index in zip(self.instances, self.kinds, strict=True):
+            yield instance, self.unique[index]
 
     def world_bodies(self) -> list[m3.Manifold]:
         """The mesh of every instance in the assembly's frame."""
-        return [placed(kind.mesh.body, instance.world) for instance, kind in self.placed()]
+        return [placed(unique.mesh.body, instance.world) for instance, unique in self.placed()]
 
 
 def build_product(robot: Robot, pose: Pose) -> Product:
     """Make every part of a robot once and place it."""
     found = instances(robot, pose)
-    # The hip and knee actuators of one gear ratio are the same records, and then the same parts.
+    # Two actuators of one gear ratio share their part records, so each of those parts is made once for both.
     order: dict[int, list[Instance]] = {}
     for instance in found:
         order.setdefault(id(instance.part), []).append(instance)
@@ -109,11 +109,11 @@ def step_assembly(product: Product, name: str) -> StepAssembly:
 
 
 def part_file_name(units: tuple[str, ...], part_name: str) -> str:
-    """Name of a part over all units: an actuator's parts carry its joint, those of two like actuators do not."""
-    joints = [unit for unit in units if unit.endswith("_actuator")]
-    if not joints:
+    """Name of a part over all units: that of an actuator's part begins with the unit, or just ``actuator`` for both."""
+    actuators = [unit for unit in units if unit in ACTUATOR_UNITS]
+    if not actuators:
         return part_name
-    return f"{joints[0] if len(joints) == 1 else 'actuator'}_{part_name}"
+    return f"{actuators[0] if len(actuators) == 1 else 'actuator'}_{part_name}"
 
 
 def extent_mm(mesh: Mesh) -> NDArray[np.float64]:

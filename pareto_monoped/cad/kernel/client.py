@@ -68,12 +68,12 @@ class StepAssembly:
 
 
 def start() -> None:
-    """Let the kernel load while other things are done."""
+    """Start the kernel, which then loads while this process does other things."""
     _process()
 
 
 def solid_facts(parts: Sequence[Part]) -> "Future[list[SolidFacts]]":
-    """What the solids of some parts are like."""
+    """Facts of the solids of some parts, in their order."""
     return _process().ask("solid_facts", list(parts))
 
 
@@ -115,7 +115,7 @@ class _Process:
         return answer
 
     def close(self) -> None:
-        """It ends when its input does."""
+        """End the process: it ends when its input does."""
         self.line.shutdown(cancel_futures=True)
         for stream in (self.process.stdin, self.process.stdout):
             if stream is not None and not stream.closed:

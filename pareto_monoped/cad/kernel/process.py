@@ -21,7 +21,7 @@ from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 
 def solid_facts(parts: list[Part]) -> list[SolidFacts]:
-    """What the solids of some parts are like."""
+    """Facts of the solids of some parts, in their order."""
     return [_facts(part.prisms, part.balls) for part in parts]
 
 
@@ -35,7 +35,7 @@ def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
     )
 
 
-# As many as there are solids kept.
+# As many as ``solid_from`` keeps.
 @lru_cache(maxsize=256)
 def _facts(prisms: tuple[Prism, ...], balls: tuple[Ball, ...]) -> SolidFacts:
     solid = solid_from(prisms, balls)
@@ -55,7 +55,7 @@ _ANSWERS: dict[str, Callable[[Any], Any]] = {"solid_facts": solid_facts, "step_f
 
 
 def serve(questions: BinaryIO, answers: BinaryIO) -> None:
-    """Answer until the questions end; what goes wrong is an answer too."""
+    """Answer questions until their stream ends; an exception is sent back as the answer."""
     while True:
         try:
             question, argument = pickle.load(questions)  # noqa: S301 - from the process that started this one
@@ -71,15 +71,15 @@ def serve(questions: BinaryIO, answers: BinaryIO) -> None:
 
 def main() -> None:
     """Serve the process that started this one."""
-    # An interrupt is that one's to handle; it then closes our input.
+    # The parent handles interrupts and then closes our input.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # The kernel may print: not between the answers.
+    # The kernel may print; send that to stderr, away from the answers.
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     try:
         serve(sys.stdin.buffer, answers)
     except BrokenPipeError:
-        # Nobody listens any more.
+        # The parent has gone.
         os._exit(0)
 
 

@@ -1,6 +1,6 @@
-"""Part -> solid: a face with holes and one extrusion for every prism, then one fusion of what touches. Millimetres.
+"""Part -> solid: one extruded face with holes per prism, then one fusion of all prisms that touch. Millimetres.
 
-The kernel (Open CASCADE) is called without a layer above it: it takes a fifth of the time to import.
+Open CASCADE is called directly, as importing it takes a fifth of the time that a library above it takes.
 """
 
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line
 
 _UP = gp_Dir(0.0, 0.0, 1.0)
-_FIT_MM = 1e-6  # how exactly splines go through their points
+_FIT_MM = 1e-6  # distance of splines from their points
 
 
 def solid_of(part: Part) -> TopoDS_Shape:
@@ -39,14 +39,14 @@ def solid_of(part: Part) -> TopoDS_Shape:
 
 @lru_cache(maxsize=256)
 def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...]) -> TopoDS_Shape:
-    """The same from the part's geometry; kept, as designs of one study share most of their 70 kinds of parts."""
+    """The same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so parts."""
     pieces = [piece for prism in regrouped(prisms) for piece in _extruded(prism)]
     pieces += [_ball(ball) for ball in balls]
     return pieces[0] if len(pieces) == 1 else _fused(pieces)
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    """The solids that a shape is made of, itself if it is one."""
+    """The solids that a shape consists of: itself if it is one."""
     explorer, found = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID), []
     while explorer.More():
         found.append(explorer.Current())
@@ -117,7 +117,7 @@ def _ball(ball: Ball) -> TopoDS_Shape:
 
 
 def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
-    """Everything that touches as one solid; the pieces share faces but no volume, so that glueing is enough."""
+    """Everything that touches as one solid; the pieces share faces but no volume, so glueing suffices."""
     arguments, tools = List_TopoDS_Shape(), List_TopoDS_Shape()
     arguments.Append(pieces[0])
     for piece in pieces[1:]:

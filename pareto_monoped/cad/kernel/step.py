@@ -1,7 +1,7 @@
-"""STEP files (ISO 10303-21) with names, colours and a fixed time stamp, so that the same robot gives the same bytes.
+"""STEP files (ISO 10303-21) with names and colours; the time stamp is fixed, so the same robot gives the same bytes.
 
-The kernel writes geometry and names; it would write colours in an order that changes from run to run, so that the
-styles (ISO 10303-46) are added here.
+The kernel writes geometry and names. It would write colours in an order that changes from run to run, so the styles
+(ISO 10303-46) are added here.
 """
 
 import re
@@ -32,7 +32,7 @@ from pareto_monoped.cad.kernel.client import StepAssembly
 Colour = tuple[float, float, float]
 
 TIMESTAMP = datetime(2025, 1, 1)
-"""Written into every STEP file: a real time would make each export differ."""
+"""The time in every STEP file: the real time would make each export differ."""
 _METRES = 1e-3  # the documents' unit: millimetres
 _USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
 
@@ -87,7 +87,7 @@ class _Document:
         header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP.isoformat()))
         header.SetOriginatingSystem(TCollection_HAsciiString("pareto-monoped"))
         STEPCAFControl_Controller.Init_s()
-        # Curves on surfaces would double time and size, and nobody needs them for planes and cylinders.
+        # Curves on surfaces would double time and size; planes and cylinders do not need them.
         Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
         writer.Transfer(self.document, STEPControl_StepModelType.STEPControl_AsIs)
         stream = BytesIO()
@@ -121,7 +121,7 @@ def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:
 
 
 def _renumbered(text: bytes) -> bytes:
-    """Number the usages of parts from 1: the kernel goes on counting from file to file."""
+    """Number the usages of parts from 1, as the kernel's own count continues from file to file."""
     count = 0
 
     def usage(found: re.Match[bytes]) -> bytes:
@@ -133,7 +133,7 @@ def _renumbered(text: bytes) -> bytes:
 
 
 def _coloured(text: bytes, colours: Mapping[str, Colour]) -> bytes:
-    """Add a colour to the solid of each named product, as the kernel would: one style a solid."""
+    """Add a colour to the solid of each named product, as the kernel would: one style per solid."""
     links: dict[bytes, bytes] = {}
     shapes = []
     for number, kind, arguments in _LINK.findall(text):

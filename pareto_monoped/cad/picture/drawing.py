@@ -1,7 +1,6 @@
 """Pictures without a display: shaded triangles, and a PNG writer.
 
-Parallel projection, light from the viewer's shoulder, dark lines where parts or their depth change. Needs no
-graphics library display.
+Parallel projection, light from over the viewer's shoulder, and dark lines where the part or the depth changes.
 """
 
 import struct
@@ -19,7 +18,7 @@ _LIGHTS = (((-0.35, 0.55, 0.75), 0.75), ((0.7, 0.1, 0.4), 0.25))  # directions i
 _AMBIENT = 0.28
 _LINE = np.array([0.10, 0.11, 0.13])
 _PAPER = np.array([1.0, 1.0, 1.0])
-_LINE_DEPTH_MM = 1.5  # a line is drawn where the depth jumps by more, beyond a slope
+_LINE_DEPTH_MM = 1.5  # a line is drawn where the depth jumps by more than this, beyond what a slope explains
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +32,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """From where to look: ``towards`` points from the viewer to the scene, ``up`` is upward in the picture."""
+    """The direction of view: ``towards`` points from the viewer to the scene, ``up`` is upward in the picture."""
 
     towards: tuple[float, float, float]
     up: tuple[float, float, float] = (0.0, 0.0, 1.0)
@@ -52,7 +51,7 @@ def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin:
     from pareto_monoped.cad.picture import raster
 
     axes = view.axes()
-    # Two by two pixels are drawn for each of the picture, which smooths it.
+    # Two by two pixels are drawn per pixel of the picture, which smooths edges.
     w, h = 2 * width, 2 * height
     points = [body.points_mm @ axes.T for body in bodies]
     low = np.min([p[:, :2].min(axis=0) for p in points], axis=0)
@@ -103,7 +102,7 @@ def png(image: NDArray[np.uint8]) -> bytes:
 
 
 def _lit(normal: Floats) -> Floats:
-    """Brightness of faces by their normals in the view."""
+    """Brightness of faces with the given normals in the view, shape (n,)."""
     light = np.full(len(normal), _AMBIENT)
     for direction, strength in _LIGHTS:
         unit = np.asarray(direction) / np.linalg.norm(direction)

@@ -17,19 +17,19 @@ from pareto_monoped.geometry.roles import Visibility
 Image = NDArray[np.uint8]
 
 _FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
-"""Over the knee actuator's side, from in front and above."""
+"""From the side of the knee actuator, from in front and above."""
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """What a picture is drawn from, apart from the product, so that another thread can draw it.
+    """All that a picture is drawn from; it refers to nothing of the product, so another thread can draw it.
 
     Attributes:
         bodies: what to draw.
-        view: from where.
+        view: the direction of view.
         width, height: of the picture, in pixels, without the legend.
-        legend: name, count and colour, a row a part.
+        legend: name, count and colour, one row per part.
     """
 
     bodies: tuple[Body, ...]
@@ -47,22 +47,22 @@ class Scene:
 def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
     """The robot in its pose."""
     bodies = []
-    for instance, kind in product.placed():
+    for instance, unique in product.placed():
         if instance.part.visibility is Visibility.INSIDE:
             continue
-        points = kind.mesh.points_mm @ instance.world[:3, :3].T + instance.world[:3, 3]
-        bodies.append(Body(points_mm=points, triangles=kind.mesh.triangles, colour=kind.part.material.colour))
+        points = unique.mesh.points_mm @ instance.world[:3, :3].T + instance.world[:3, 3]
+        bodies.append(Body(points_mm=points, triangles=unique.mesh.triangles, colour=unique.part.material.colour))
     return Scene(bodies=tuple(bodies), view=_FROM_THE_RIGHT, width=width, height=height)
 
 
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
-    """An actuator with a quarter cut away, its output to the left, every part in a colour of its own."""
+    """An actuator with a quarter cut away, its output to the left, each part in its own colour."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
     upright = _to_section_frame() @ np.linalg.inv(unit_frame(unit))
     parts: dict[str, list[m3.Manifold]] = {}
-    for instance, kind in product.placed():
+    for instance, unique in product.placed():
         if instance.unit == unit_name:
-            parts.setdefault(instance.part.name, []).append(placed(kind.mesh.body, upright @ instance.in_body))
+            parts.setdefault(instance.part.name, []).append(placed(unique.mesh.body, upright @ instance.in_body))
     bodies, legend = [], []
     for k, (name, members) in enumerate(parts.items()):
         colour = _colour(k, len(parts))
@@ -84,14 +84,14 @@ def _to_section_frame() -> NDArray[np.float64]:
 
 
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:
-    """Without what lies towards the viewer and above the axis."""
+    """The body without the quarter that lies towards the viewer and above the axis."""
     far = body.trim_by_plane((0.0, 1.0, 0.0), 0.0)
     near_low = body.trim_by_plane((0.0, -1.0, 0.0), 0.0).trim_by_plane((0.0, 0.0, -1.0), 0.0)
     return m3.Manifold.compose([far, near_low])
 
 
 def _colour(k: int, count: int) -> tuple[float, float, float]:
-    """Colours that neighbours in the list do not share."""
+    """The k-th of ``count`` colours; neighbours in the list differ clearly."""
     hue = (k * 0.381966) % 1.0  # golden section
     return colorsys.hsv_to_rgb(hue, 0.34 if k % 2 else 0.52, 0.95 if k % 3 else 0.80)
 

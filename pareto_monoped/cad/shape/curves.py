@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pareto_monoped.geometry.shapes import Arc, Circle, Line
 
 Points = NDArray[np.float64]
-_COARSEST_STEP = 2.0 * np.pi / 48  # keeps thin bolts within 0.3 percent of their volume
+_COARSEST_STEP = 2.0 * np.pi / 48  # keeps the volume of thin bolts within 0.3 percent
 
 
 @dataclass(frozen=True, slots=True)

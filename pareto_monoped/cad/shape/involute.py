@@ -1,8 +1,8 @@
 """Outlines of involute spur gears with root fillets and backlash. Millimetres, radians.
 
 Geometry after ISO 21771 (involute function, tooth thickness at any radius). The root is an arc tangent to the root
-circle and to the flank, of 0.38 module by default, the root radius of the basic rack of ISO 53. It uses that a curve
-parallel to an involute is the same involute turned by (distance / base radius).
+circle and to the flank, of 0.38 module by default, the root radius of the basic rack of ISO 53. A curve
+parallel to an involute is the same involute turned by (distance / base radius), which places the fillet's centre.
 """
 
 from dataclasses import dataclass

@@ -10,7 +10,7 @@ from pareto_monoped.geometry.shapes import Circle, Path, Pattern, Shape
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
-    """The closed curves that bound a shape, one for each separate region.
+    """The closed curves that bound a shape, one per separate region.
 
     Raises:
         TypeError: a kind of shape that has no outline here.
@@ -28,7 +28,7 @@ def contours(shape: Shape) -> tuple[Contour, ...]:
 
 
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:
-    """Polygons of every contour of several shapes."""
+    """One polygon per contour of the shapes."""
     return [polygon(contour, tolerance_mm) for shape in shapes for contour in contours(shape)]
 
 

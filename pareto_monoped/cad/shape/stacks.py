@@ -1,4 +1,4 @@
-"""Prisms of a part regrouped so that uniting them is cheap."""
+"""Other prisms for the same part, chosen so that uniting them is cheap."""
 
 from collections.abc import Sequence
 
@@ -9,10 +9,10 @@ _TOUCH_MM = 1e-9
 
 
 def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
-    """The same body from other prisms: what stands on itself becomes one tall prism.
+    """The same body from other prisms: slices of one outline that stand on each other become one tall prism.
 
-    Slices of a gear would have to be united along all their flanks. Where slices of one outline stand on each other and
-    each has one central hole, the widest hole is left open through all of them and filled with rings.
+    Slices of a gear would have to be united along all their flanks. Where each slice has one central hole, the tall
+    prism gets the widest of these holes, and rings fill it where the hole is narrower.
     """
     result = []
     for stack in _stacks(prisms):

@@ -1,4 +1,4 @@
-"""The folder of an export: whole or not there, nothing outside it, and only its own files replaced."""
+"""The folder of an export: it is whole or not there, nothing is written outside it, foreign files stay."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from pareto_monoped.errors import OutputError
 from pareto_monoped.files import current_umask, unwritable
 
 RECORD = "design.json"
-"""Lists the files of an export; written last."""
+"""Name of the file that lists all files of an export; it is written last."""
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
 
 

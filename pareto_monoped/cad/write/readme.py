@@ -1,6 +1,6 @@
 """``README.md`` of an export: what this is, what each file is for, how each part is made, what was checked."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pareto_monoped.cad.check.checks import Check
@@ -18,52 +18,85 @@ _HOW = {
 
 
 def readme(record: Mapping[str, Any], product: Product, checks: Sequence[Check], formats: Sequence[str]) -> str:
-    """One page: what this is, what each file is for, how each part is made, what was checked."""
-    lines = ["# Monoped", ""]
-    lines += [f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", ""]
-    lines += ["| variable | searched | as built |", "|---|---|---|"]
-    for variable in VARIABLES:
-        searched, built = record["searched"][variable.name], record["as_built"][variable.name]
-        lines.append(f"| {variable.name} | {searched:.6g} | {built:.6g} |")
-    for key, label in (("height_m", "jump height, m"), ("energy_j", "mechanical energy, J")):
-        values = [record["jumps"][name][key] for name in ("searched", "as_built")]
-        shown = [f"{value:.4g}" if value is not None else "-" for value in values]
-        lines.append(f"| {label} | {shown[0]} | {shown[1]} |")
-    lines += [
-        "",
-        "As built means lengths rounded to 0.1 mm and the gearboxes' real ratios, simulated again with calibration "
-        f"{record['calibration']}.",
-        "",
+    """The page as Markdown.
+
+    Args:
+        record: the content of ``design.json``, see ``design_record``.
+        product: the parts.
+        checks: all checks that were run.
+        formats: what was written.
+    """
+    lines = [
+        *_design(record),
+        *_actuators(record),
+        *_files(formats),
+        *_making(product),
+        *_checks(checks),
     ]
-    for joint, actuator in record["actuators"].items():
-        teeth = f"{actuator['sun_teeth']}/{actuator['planet_teeth']}/{actuator['ring_teeth']}"
-        lines.append(
-            f"- {joint}: {actuator['family']}, {actuator['ratio']:.3f} to 1, teeth {teeth}, module "
-            f"{actuator['module_mm']:g} mm, {actuator['planets']} planets, {actuator['peak_torque_n_m']:.1f} N m peak"
-        )
-    lines += ["", "## Files", "", "| file | for |", "|---|---|"]
-    for name in formats:
-        lines += [f"| `{path}` | {purpose} |" for path, purpose in FILES[name]]
-    lines += [
-        "| `bom.csv` | parts list: count, material, process, mass, size |",
-        "| `design.json` | the design with its motor and jump model, to make this folder again: "
-        "`pareto-monoped export --record design.json -o DIR` |",
-        "| `checks.json` | what was checked, in full |",
-        "",
-        "Part frames have z along the joint axis; the assembly has x forward, y left, z up and its origin on the hip "
-        "axis. Model frames stand at the joint axes.",
-        "",
-        "## Making the parts",
-        "",
-    ]
-    for process, how in _HOW.items():
-        names = [_counted(kind) for kind in product.unique if kind.part.process == process]
-        if names:
-            lines += [f"**{process[0].upper()}{process[1:]}.** {how}", "", ", ".join(names) + ".", ""]
-    lines += ["## Checks", "", "| check | looked at | worst |", "|---|---|---|"]
-    lines += [f"| {check.name} | {check.looked_at} | {check.worst} |" for check in checks]
     return "\n".join(lines) + "\n"
 
 
-def _counted(kind: UniquePart) -> str:
-    return f"{kind.name} ({kind.count})" if kind.count > 1 else kind.name
+def _design(record: Mapping[str, Any]) -> Iterator[str]:
+    """Variables and jumps, as searched and as built."""
+    yield from ("# Monoped", "")
+    yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
+    yield from ("| variable | searched | as built |", "|---|---|---|")
+    for variable in VARIABLES:
+        searched, built = record["searched"][variable.name], record["as_built"][variable.name]
+        yield f"| {variable.name} | {searched:.6g} | {built:.6g} |"
+    for key, label in (("height_m", "jump height, m"), ("energy_j", "mechanical energy, J")):
+        values = [record["jumps"][name][key] for name in ("searched", "as_built")]
+        shown = [f"{value:.4g}" if value is not None else "-" for value in values]
+        yield f"| {label} | {shown[0]} | {shown[1]} |"
+    yield ""
+    yield (
+        "As built means lengths rounded to 0.1 mm and the gearboxes' real ratios, simulated again with calibration "
+        f"{record['calibration']}."
+    )
+    yield ""
+
+
+def _actuators(record: Mapping[str, Any]) -> Iterator[str]:
+    for joint, actuator in record["actuators"].items():
+        teeth = f"{actuator['sun_teeth']}/{actuator['planet_teeth']}/{actuator['ring_teeth']}"
+        yield (
+            f"- {joint}: {actuator['family']}, {actuator['ratio']:.3f} to 1, teeth {teeth}, module "
+            f"{actuator['module_mm']:g} mm, {actuator['planets']} planets, {actuator['peak_torque_n_m']:.1f} N m peak"
+        )
+    yield ""
+
+
+def _files(formats: Sequence[str]) -> Iterator[str]:
+    yield from ("## Files", "", "| file | for |", "|---|---|")
+    for name in formats:
+        yield from (f"| `{path}` | {purpose} |" for path, purpose in FILES[name])
+    yield "| `bom.csv` | parts list: count, material, process, mass, size |"
+    yield (
+        "| `design.json` | the design with its motor and jump model, to make this folder again: "
+        "`pareto-monoped export --record design.json -o DIR` |"
+    )
+    yield "| `checks.json` | what was checked, in full |"
+    yield ""
+    yield (
+        "Part frames have z along the joint axis; the assembly has x forward, y left, z up and its origin on the hip "
+        "axis. Model frames stand at the joint axes."
+    )
+    yield ""
+
+
+def _making(product: Product) -> Iterator[str]:
+    """Per process: how it is done, and the parts that it makes."""
+    yield from ("## Making the parts", "")
+    for process, how in _HOW.items():
+        names = [_counted(unique) for unique in product.unique if unique.part.process == process]
+        if names:
+            yield from (f"**{process[0].upper()}{process[1:]}.** {how}", "", ", ".join(names) + ".", "")
+
+
+def _checks(checks: Sequence[Check]) -> Iterator[str]:
+    yield from ("## Checks", "", "| check | looked at | worst |", "|---|---|---|")
+    yield from (f"| {check.name} | {check.looked_at} | {check.worst} |" for check in checks)
+
+
+def _counted(unique: UniquePart) -> str:
+    return f"{unique.name} ({unique.count})" if unique.count > 1 else unique.name

@@ -51,12 +51,12 @@ def visuals(product: Product) -> tuple[Visual, ...]:
     """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
     shown: dict[tuple[str, str], list[tuple[Mesh, Floats]]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
-    for instance, kind in product.placed():
+    for instance, unique in product.placed():
         if instance.part.visibility is not Visibility.OUTSIDE:
             continue
-        key = (instance.body, kind.part.material.name.replace(" ", "_"))
-        shown.setdefault(key, []).append((mesh_of(kind.part, VISUAL_TOLERANCE_MM), instance.in_body))
-        colours.setdefault(key, kind.part.material.colour)
+        key = (instance.body, unique.part.material.name.replace(" ", "_"))
+        shown.setdefault(key, []).append((mesh_of(unique.part, VISUAL_TOLERANCE_MM), instance.in_body))
+        colours.setdefault(key, unique.part.material.colour)
     return tuple(
         Visual(
             name=f"{body}_{material}",
