@@ -26,7 +26,7 @@ LEVELS = [
     {"files"},
     {"errors", "__init__"},
 ]
-# Rooms of one level that may know each other all the same: the report and the CAD read what a study stored.
+# Rooms that may import from another room of their level: the report and the CAD read what a study stored.
 BESIDE = {("report", "study"), ("cad", "study"), ("report", "cad"), ("design", "config")}
 HEAVY = {"mujoco": "jump", "OCP": "cad/kernel", "optuna": "study", "pymoo": "study", "cma": "study", "plotly": "report"}
 
@@ -79,7 +79,7 @@ def test_heavy_libraries_stay_in_their_room(path):
         home = HEAVY.get(library)
         if home is None:
             continue
-        # A version number or a model file may be asked for elsewhere, inside a function.
+        # Other rooms may need a version number or a model file, and import the library inside a function.
         at_home = path.is_relative_to(PACKAGE / home)
         assert at_home or not (at_top or library in ANYWHERE), f"{library} belongs into {home}/"
 

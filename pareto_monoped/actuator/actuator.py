@@ -36,7 +36,6 @@ class MountInterface:
 
     Attributes:
         housing_radius_mm: largest radius of the housing.
-        opening_radius_mm: radius inside which the face at z = 0 is not the housing's but turns or is open.
         bolts: M3 threads in the face at z = 0, the first on the x axis.
         thread_depth_mm: of those.
         back_bolts: the motor's own mounting pattern in the backplate: threads in the ISSPG's; in the ESSPG's, clearance
@@ -45,7 +44,6 @@ class MountInterface:
     """
 
     housing_radius_mm: float
-    opening_radius_mm: float
     bolts: HolePattern
     thread_depth_mm: float
     back_bolts: HolePattern
@@ -190,7 +188,6 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
     radius = 0.5 * body.outer_diameter_mm
     return MountInterface(
         housing_radius_mm=radius + casing.flange_width_mm,
-        opening_radius_mm=radius + casing.motor_clearance_mm,
         bolts=HolePattern(
             pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
             diameter_mm=2.0 * M3.shank,

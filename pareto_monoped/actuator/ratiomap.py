@@ -88,7 +88,7 @@ class MapEntry:
         return f"no gearbox in [{self.ratio_low:.1f}, {self.ratio_high:.1f}), forbidden by " + "; ".join(reasons)
 
 
-# Compared by identity: a map is made once a motor and settings, and keys what is derived from it.
+# Compared by identity: there is one map per motor and settings, and results derived from it are cached under it.
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ActuatorMap:
     """Ratio -> lightest actuator, for one motor.

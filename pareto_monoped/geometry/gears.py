@@ -62,7 +62,7 @@ def _teeth_integrals(
 
 
 def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers, outwards: float) -> Numbers:
-    """Area of the rounded corners between flanks and root circle, two a tooth.
+    """Area of the rounded corners between flanks and root circle, two per tooth.
 
     Exact for radial flanks: the fillet's centre lies rho off the root circle, and rho off the flank. Where the flank is
     an involute it leans by the pressure angle there; a corner of angle theta with straight sides keeps

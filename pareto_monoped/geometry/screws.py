@@ -157,7 +157,7 @@ def screw_part(
         # A disc of the hexagon's area.
         radius = HEXAGON_FLATS_MM[size] * np.sqrt(np.sqrt(3.0) / 2.0 / np.pi)
         drawn = (cylinder(float(radius), seat_mm - direction * HEXAGON_HEIGHT_MM[size], seat_mm), *drawn)
-    # In a population the lengths differ, and nobody reads the note.
+    # In a population the lengths differ; notes are used only for single parts.
     long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
     standard = _STANDARDS.get(head) or (_COMMON if np.min(length) >= 8.0 and size >= 3.0 else _SMALL)
     part = Part(

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Numbers = float | NDArray[np.float64]
-"""A float, or an array of shape (n,) with a value a design."""
+"""A float, or an array of shape (n,) with one value per design."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +181,7 @@ def _added(moments: Moments) -> Moments:
 def _triangles(
     x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
 ) -> Moments:
-    """Triangles between the origin and straight lines, a row a line."""
+    """Triangles between the origin and straight lines, one row per line."""
     twice = x0 * y1 - x1 * y0
     return Moments(
         twice / 2.0,

@@ -17,9 +17,9 @@ from pareto_monoped.geometry.parts import MassProperties
 
 Floats = NDArray[np.float64]
 Weigh = Callable[[Floats], Sequence[MassProperties]]
-"""Lengths in metres, shape (n,) -> the mass properties of each of the m units, a row a length."""
+"""Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
 
-_EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, far below what a jump can tell
+_EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show
 _MOST_NODES = 128
 # Upper triangle of the second moments, which are symmetric.
 _ROWS, _COLUMNS = np.triu_indices(3)

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 # Body numbers in the model; the world is 0.
 BASE, THIGH, SHANK = 1, 2, 3
-FLOOR_GEOM, FOOT_GEOM = 0, 1
+FOOT_GEOM = 1
 # Midpoint and power of MuJoCo's impedance curve: a straight line, and its default sigmoid.
 _LINEAR, _SIGMOID = (0.5, 1.0), (0.5, 2.0)
 

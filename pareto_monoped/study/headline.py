@@ -10,7 +10,7 @@ from pareto_monoped.pareto.pick import MinHeight, pick
 from pareto_monoped.study.reader import StudyData
 
 CASE = PAPER_CASES["C"]
-"""The case of Table I in which all variables are free, as in a study of one's own."""
+"""The case of Table I in which all variables are free, as in the study of the main job."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
