@@ -1,1 +1,1 @@
-"""The height-energy front: dominance, indicators, and picking one design."""
+"""The height-energy front: dominance, indicators, picking one design."""

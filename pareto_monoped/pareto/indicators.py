@@ -1,6 +1,6 @@
-"""How good a front is, by moocore: hypervolume, additive epsilon, IGD+.
+"""How good a front is: hypervolume, additive epsilon and IGD+, computed by moocore.
 
-Heights and energies come in their natural directions; the change to minimisation that moocore expects stays here.
+All functions take height and energy as they are. moocore minimises, so the sign of the height changes here.
 """
 
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferencePoint:
-    """The corner from which the hypervolume is measured: designs lower or dearer than it add nothing."""
+    """The corner from which the hypervolume is measured: designs with less height or more energy add nothing."""
 
     height_m: float
     energy_j: float
 
 
 def hypervolume(points: Points, reference: ReferencePoint) -> float:
-    """Area in m J that ``points`` dominate above ``reference``; larger is better.
+    """Area that ``points`` dominate, bounded by ``reference``, in m J; larger is better.
 
     Source: Zitzler and Thiele 1998; exact algorithm of moocore.
     """
@@ -34,7 +34,7 @@ def hypervolume(points: Points, reference: ReferencePoint) -> float:
 
 
 def epsilon(points: Points, reference_front: Points) -> float:
-    """Least shift, as a share of the reference front's extent, after which ``points`` weakly dominate all of it.
+    """Smallest shift after which ``points`` weakly dominate the whole reference front, as a share of its extent.
 
     Additive epsilon indicator (Zitzler et al. 2003) on objectives normalised to the reference front; 0 is best.
     """
@@ -60,6 +60,6 @@ def _minimised(points: Points) -> Points:
 def _normalised(points: Points, reference_front: Points) -> tuple[Points, Points]:
     reference = _minimised(reference_front)
     low, high = reference.min(axis=0), reference.max(axis=0)
-    # A reference front of a single point has no extent; then distances stay in metres and joules.
+    # A reference front of a single point has no extent; distances then stay in metres and joules.
     extent = np.where(high > low, high - low, 1.0)
     return (_minimised(points) - low) / extent, (reference - low) / extent

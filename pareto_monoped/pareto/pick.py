@@ -1,4 +1,4 @@
-"""Pick one design off the front, and say why that one."""
+"""Pick one design from the front and say why."""
 
 from dataclasses import dataclass
 
@@ -11,26 +11,26 @@ from pareto_monoped.errors import SelectionError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MinHeight:
-    """The cheapest design that jumps at least ``height_m``."""
+    """The design of least energy that jumps at least ``height_m``."""
 
     height_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaxEnergy:
-    """The highest jump on at most ``energy_j``."""
+    """The design with the highest jump on at most ``energy_j``."""
 
     energy_j: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Knee:
-    """The design where the front bends most: farthest from the chord between its two ends."""
+    """The knee of the front: the design farthest from the chord between its two ends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Weights:
-    """The best weighted sum of height and energy, each scaled to the front's extent."""
+    """The design with the best weighted sum of height and energy, each scaled to the extent of the front."""
 
     height: float
     energy: float
@@ -38,7 +38,7 @@ class Weights:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """One trial by its number."""
+    """The trial with this number."""
 
     number: int
 
@@ -55,14 +55,14 @@ class Pick:
 
 
 def pick(front: DataFrame, selector: Selector) -> Pick:
-    """The design of ``front`` that ``selector`` asks for.
+    """Pick the design of ``front`` that ``selector`` asks for.
 
     Args:
-        front: one row a design, columns ``trial, height_m, energy_j``, in any order.
-        selector: what is asked for.
+        front: one row per design, in any order, with the columns ``trial, height_m, energy_j``.
+        selector: which design.
 
     Raises:
-        SelectionError: the front is empty, or none of its designs answers.
+        SelectionError: the front is empty, or none of its designs fits.
     """
     if len(front) == 0:
         raise SelectionError(
@@ -119,8 +119,8 @@ def _max_energy(height_m: NDArray[np.float64], energy_j: NDArray[np.float64], al
 def _knee(height_m: NDArray[np.float64], energy_j: NDArray[np.float64]) -> tuple[int, str]:
     """Das 1999 (On characterizing the "knee" of the Pareto curve): the greatest distance from the chord.
 
-    With both objectives scaled to the front's extent the chord runs from (0, 0) to (1, 1), and the distance of a
-    point towards low energy and great height is (height - energy) / sqrt 2.
+    With both objectives scaled to the extent of the front, the chord runs from (0, 0) to (1, 1). The distance of a
+    point from it, positive towards more height and less energy, is (height - energy) / sqrt 2.
     """
     distance = (_scaled(height_m) - _scaled(energy_j)) / np.sqrt(2.0)
     row = int(np.argmax(distance))

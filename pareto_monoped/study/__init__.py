@@ -1,1 +1,1 @@
-"""Studies: the study file, the search algorithms behind one ask-and-tell face, the run loop, storage and resume."""
+"""Studies: study file, search algorithms behind one ask-and-tell interface, run loop, storage, resume."""

@@ -1,4 +1,4 @@
-"""The settings of each algorithm, as they stand in a study file's ``[algorithm]`` table."""
+"""The settings of each search algorithm, as in the ``[algorithm]`` table of a study file."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 class EvolutionSettings:
     """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
 
-    The population was chosen by measurement on Case C (benchmarks/search_algorithms.md); the operators are pymoo's.
+    The default population was chosen by measurement on Case C (benchmarks/search_algorithms.md).
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -31,9 +31,10 @@ class EvolutionSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptunaSettings:
-    """Optuna's NSGA-II and TPE samplers; ``population`` designs are asked for at a time.
+    """Optuna's NSGA-II and TPE samplers, which are asked for ``population`` designs at a time.
 
-    For NSGA-II it is the population (Optuna's default 50). TPE models one design at a time, so its batches are small.
+    For NSGA-II this is the population (default 50, Optuna's own). TPE chooses one design at a time without knowing the
+    scores of the others in its batch, so its batches are small.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -43,13 +44,13 @@ class OptunaSettings:
 
     @property
     def batch(self) -> int:
-        """Designs asked for at a time."""
+        """Number of designs asked for at a time."""
         return self.population or {"optuna_nsga2": 50, "optuna_tpe": 8}[self.name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomSettings:
-    """Designs drawn evenly over the bounds: the yardstick that every search must beat."""
+    """Designs drawn uniformly within the bounds: the yardstick that every other search must beat."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -62,17 +63,17 @@ _NOMINAL = PAPER_CASES["nominal"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeightedSettings:
-    """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run a weight, one after the other.
+    """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run per weight, one after the other.
 
     Attributes:
         height_weights: lambda1 of each run, with lambda2 = 1 - lambda1.
-        population: designs an iteration (paper: N = 8).
-        sigma: first step size in variables scaled to their bounds (paper: 0.1).
-        iterations: at most so many a run (paper: M = 200).
-        start: start of each run by variable name; variables left out start at the paper's nominal design, which is
-            the start vector the paper gives, [0.4, 0.4, 6, 6, 50, 2.5, 10].
-        height_scale_j: Kh. The paper chooses it "to ensure that the order of both terms is similar"; the default
-            makes both terms equal at the published nominal design, E exp(h) = 31.44 J exp(0.887).
+        population: designs per iteration (paper: N = 8).
+        sigma: first step size, in variables scaled to their bounds (paper: 0.1).
+        iterations: greatest number of iterations per run (paper: M = 200).
+        start: where each run starts, by variable name. Other variables start at the paper's nominal design, which is
+            its start vector [0.4, 0.4, 6, 6, 50, 2.5, 10].
+        height_scale_j: Kh. The paper chooses it "to ensure that the order of both terms is similar". The default makes
+            both terms equal at the published nominal design: E exp(h) = 31.44 J exp(0.887).
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -99,4 +100,4 @@ ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
     "random": RandomSettings,
     "weighted_cmaes": WeightedSettings,
 }
-"""Name in a study file -> its settings."""
+"""Name of an algorithm in a study file -> its settings."""

@@ -1,4 +1,4 @@
-"""Audits of the front: is each of its points a property of the design, or an accident of the simulation?"""
+"""Audits of a study's front: whether each point is a property of its design or an accident of the simulation."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,14 +9,14 @@ from pareto_monoped.study.simulator import Simulator
 from pareto_monoped.study.store import Store
 
 _CHUNK = 64
-"""Designs audited and stored at a time: an interrupt loses no more than that."""
+"""Designs that are audited and stored together; an interrupt loses at most this many audits."""
 
 
 def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
-    """Audit every design of the front that has no audit yet, and store the audits.
+    """Audit every design on the front that has no audit yet, and store the audits.
 
-    What fails its audit leaves the front, and what it dominated comes up; so it goes on until all of the front is
-    audited.
+    A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore
+    repeats until every design on the front has passed.
     """
     from pareto_monoped.jump.audit import audit
 

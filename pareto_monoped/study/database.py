@@ -1,7 +1,7 @@
-"""Opening study databases: is it one, is it whole, may it be written; SQLite's errors become ours.
+"""Open study databases: check that a file is one, and turn SQLite's errors into ours.
 
-A database may come from a stranger. It is read with plain SELECTs on known tables, with SQLite's own defences on
-(no trusted schema, no views or triggers, no extensions), and everything in it is numbers, text and JSON.
+A database may come from a stranger. It is read with plain SELECTs on known tables and with SQLite's defences switched
+on (no trusted schema, no views or triggers, no extensions). It holds only numbers, text and JSON.
 """
 
 import sqlite3
@@ -12,10 +12,10 @@ from pathlib import Path
 from pareto_monoped.errors import DatabaseError
 
 FORMAT = 1
-"""Version of our tables; a reader refuses a later one."""
+"""Version of our tables. Readers refuse later versions."""
 
 READ_TIMEOUT_S = 10.0
-"""How long a reader waits for another program that has locked the whole file; runs never do that for long."""
+"""How long a reader waits while another program has locked the whole file. A run locks it only for moments."""
 
 TABLES = ("monoped_meta", "monoped_checkpoint", "monoped_history", "monoped_trials", "monoped_audits")
 _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
@@ -54,7 +54,7 @@ def _explained(error: sqlite3.Error) -> str:
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
-    """A read-only connection to a study database, all reads of which see the same moment.
+    """A read-only connection to a study database. All its reads see the database as it was at one moment.
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
@@ -80,8 +80,8 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
 def _address(path: Path) -> str:
     address = f"{path.resolve().as_uri()}?mode=ro"
     wal = Path(f"{path}-wal")
-    # A database in WAL mode on a medium that cannot be written has no shared memory file; without a log there is
-    # nothing in it but the file itself, and SQLite may take it as unchanging.
+    # SQLite opens a database in WAL mode only if it can create a shared-memory file beside it. In a folder that cannot
+    # be written it cannot; if there is no log either, the file is complete and may be declared immutable.
     if not (wal.exists() and wal.stat().st_size) and not _folder_writable(path):
         address += "&immutable=1"
     return address
@@ -94,7 +94,7 @@ def _folder_writable(path: Path) -> bool:
 
 
 def check(connection: sqlite3.Connection, path: Path) -> None:
-    """Refuse what is not a study database of a version that this package knows.
+    """Check that a database is a study database of a known version.
 
     Raises:
         DatabaseError: not a study, or of a newer version.

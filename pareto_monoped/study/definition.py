@@ -1,4 +1,4 @@
-"""What a study is, read from its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
+"""The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -20,7 +20,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bounds:
-    """A free variable's range."""
+    """Range of a free variable."""
 
     lower: float
     upper: float
@@ -28,9 +28,10 @@ class Bounds:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constraints:
-    """What a design must hold to be feasible; None switches a limit off.
+    """Limits that a feasible design keeps; None switches a limit off.
 
-    ``min_height_m`` keeps robots that only stand off the front (they spend nothing): 0.55 m is a jump of 5 cm.
+    ``min_height_m`` keeps robots that only stand, and therefore spend no energy, off the front. 0.55 m is a jump of
+    5 cm.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -43,7 +44,7 @@ class Constraints:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Objectives:
-    """Both objectives and their directions, which are what this package is about; the table documents them."""
+    """Both objectives and their directions. They cannot be changed; the table in a study file documents them."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -53,12 +54,12 @@ class Objectives:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
-    """When to end before the budget is used up.
+    """Conditions that end a study before its budget is used up.
 
     Attributes:
-        wall_time_s: running time over all sessions.
-        plateau_evaluations: end when over this many evaluations ...
-        plateau_growth: ... the hypervolume has grown by less than this share.
+        wall_time_s: longest running time, over all sessions.
+        plateau_evaluations, plateau_growth: end when the hypervolume has grown by less than the share
+            ``plateau_growth`` during the last ``plateau_evaluations`` evaluations.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -72,14 +73,14 @@ class Stop:
 class _Reference:
     __pydantic_config__ = ConfigDict(extra="forbid")
 
-    # The least height of the default constraint, and more than the hungriest designs of the VT8020 spend.
+    # The default of min_height_m, and more energy than any design with the VT8020 spends.
     height_m: Annotated[float, Field(ge=0.0, le=10.0)] = 0.55
     energy_j: Positive = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _File:
-    """The study file's keys but for the tables that are read apart."""
+    """Keys of a study file; ``variables`` and ``algorithm`` are checked separately."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -101,9 +102,9 @@ class _File:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """One study, complete: every variable is free within ``Bounds`` or fixed to a number, in the order of ``NAMES``.
+    """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
 
-    ``audit`` says whether the front is audited when the study ends, and ill-conditioned designs leave it.
+    ``audit`` says whether the front is audited when the study ends; ill-conditioned designs then leave it.
     """
 
     name: str
@@ -128,12 +129,12 @@ class Study:
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        """Lower bounds of all seven variables, shape (7,); a fixed variable's value."""
+        """Lower bound of each variable, or its fixed value; shape (7,), in the order of ``NAMES``."""
         return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        """Upper bounds of all seven variables, shape (7,); a fixed variable's value."""
+        """Upper bound of each variable, or its fixed value; shape (7,), in the order of ``NAMES``."""
         return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
 
     def _ordered(self) -> list[Bounds | float]:
@@ -153,14 +154,14 @@ def load_study(path: Path, *, evaluations: int | None = None, seed: int | None =
 
     Args:
         path: the file.
-        evaluations: a budget that replaces the file's.
-        seed: a seed that replaces the file's.
+        evaluations: budget to use instead of the one in the file.
+        seed: seed to use instead of the one in the file.
 
     Raises:
         StudyError: an unknown key, a wrong type, impossible bounds, or no readable TOML.
     """
     values = read_toml(path, what="study file", error=StudyError)
-    # The file has to stand alone: a motor or calibration file is named relative to the study that uses it.
+    # Paths in a study file are relative to that file, so that a folder with both can be moved.
     for key in ("motor", "calibration"):
         name = values.get(key)
         if isinstance(name, str) and name.endswith(".toml"):
@@ -262,7 +263,7 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
 
 
 _LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0)}
-"""Unit -> range beyond which a length or a ratio is a slip of the pen; controller gains may be any from 0 up."""
+"""Unit -> allowed range. Lengths and ratios beyond it are typing errors; controller gains may be any number from 0."""
 
 
 def _number(key: str, name: str, given: Any) -> float:

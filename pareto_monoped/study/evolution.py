@@ -1,4 +1,4 @@
-"""pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2 behind the ask-and-tell face."""
+"""pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2 behind the ask-and-tell interface."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -19,8 +19,8 @@ from pareto_monoped.study.random_state import generator_state, set_generator_sta
 class Evolution:
     """A genetic algorithm of pymoo.
 
-    All three keep nothing between generations but the population with its ranks and crowding distances, the
-    generation count and the random generator, so that is the state.
+    Between generations, all three keep only the population with its ranks and crowding distances, the number of
+    generations and the random generator. These are the state.
     """
 
     def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
@@ -30,7 +30,7 @@ class Evolution:
         self._asked: Population = Population.empty()
 
     def ask(self) -> Proposal | None:
-        """The first population, or the offspring of the present one; None if pymoo finds no new offspring."""
+        """The first population, later the offspring of the current one; None if pymoo finds no new offspring."""
         asked = self._algorithm.ask()
         if asked is None:
             return None
@@ -38,13 +38,13 @@ class Evolution:
         return Proposal(values=self._asked.get("X").astype(float))
 
     def tell(self, scores: Scores) -> None:
-        """Let the fittest survive; designs that violate constraints rank behind all others, by their violation."""
+        """Select the survivors. Infeasible designs rank behind all feasible ones, in the order of their violation."""
         self._asked.set("F", scores.minimised())
         self._asked.set("G", scores.violation[:, None])
         self._algorithm.tell(infills=self._asked)
 
     def state(self) -> dict[str, Any]:
-        """Population, ranks, crowding distances, generation count, random generator."""
+        """Population, ranks, crowding distances, number of generations, random generator."""
         state: dict[str, Any] = {"generator": generator_state(self._algorithm.random_state)}
         if self._algorithm.is_initialized:
             population = self._algorithm.pop
@@ -52,12 +52,13 @@ class Evolution:
             for key in ("X", "F", "G"):
                 state[key] = population.get(key).astype(float).tolist()
             for key in ("rank", "crowding"):
-                # Infeasible survivors have neither rank nor crowding; JSON has no infinity, the ends' crowding.
+                # Infeasible survivors have neither rank nor crowding distance. The ends of the front have an infinite
+                # crowding distance, which JSON cannot hold as a number.
                 state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
         return state
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Set all of the state; the history is not needed."""
+        """Set the whole state; the history is not needed."""
         algorithm = self._algorithm
         set_generator_state(algorithm.random_state, state["generator"])
         if "X" not in state:
@@ -88,7 +89,7 @@ def _algorithm(settings: EvolutionSettings, seed: int) -> GeneticAlgorithm:
     from pymoo.algorithms.moo.sms import SMSEMOA
 
     kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
-    # pymoo's default operators are shared between instances; own ones keep two studies of one process apart.
+    # pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
     return kind(
         pop_size=settings.population,
         crossover=SBX(prob=settings.crossover_probability, eta=settings.crossover_eta),

@@ -1,4 +1,4 @@
-"""What a run stores at a time."""
+"""What a run stores in one transaction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,18 +14,18 @@ from pareto_monoped.study.scoring import Judgement
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Generation:
-    """What one transaction stores.
+    """A simulated generation, or the part of it that one session simulated.
 
     Attributes:
         number: of the generation.
-        first_trial: number of its first trial here.
+        first_trial: number of the first of these trials.
         designs: shape (n, 7).
         evaluations, judgement: of these designs.
-        height_weight: of a weighted search.
-        state: the algorithm's state after it has been told the whole generation; None while part of it is missing.
-        hypervolume: of all trials so far.
-        seconds: running time so far, over all sessions.
-        started, ended: when the generation was simulated.
+        height_weight: lambda1 of a weighted search; None for other searches.
+        state: the algorithm's state once it knows the scores of the whole generation; None while some are missing.
+        hypervolume: of all trials up to here.
+        seconds: running time up to here, over all sessions.
+        started, ended: when these designs were simulated.
     """
 
     number: int

@@ -7,9 +7,9 @@ from types import FrameType
 
 
 class Interrupt:
-    """Catches the first SIGINT while it is entered; ``asked`` then is true.
+    """A context that catches the first SIGINT and sets ``asked``.
 
-    Outside the main thread, where Python allows no handlers, it does nothing.
+    Outside the main thread, where Python allows no signal handlers, it does nothing.
     """
 
     def __init__(self, notify: Callable[[str], None]) -> None:

@@ -1,4 +1,4 @@
-"""One writer a study: a lock that dies with its process."""
+"""At most one writer per study: a lock that ends with its process."""
 
 import fcntl
 import os
@@ -11,9 +11,9 @@ from pareto_monoped.errors import DatabaseError, OutputError
 
 @contextmanager
 def locked(db: Path) -> Iterator[None]:
-    """Hold the study for this process; a file ``DB-lock`` beside it carries the process id.
+    """Lock the study for this process. The file ``DB-lock`` beside the database holds the process id.
 
-    The kernel drops the lock when its process ends, however it ends, so a killed run never blocks the next one.
+    The kernel releases the lock when the process ends in any way, so a killed run never blocks the next one.
 
     Raises:
         DatabaseError: another process holds the study.
@@ -37,8 +37,8 @@ def locked(db: Path) -> Iterator[None]:
                     f"study database {str(db)!r}: is being run by process {holder}; wait for it, stop it, "
                     "or give another --db"
                 ) from None
-            # Whoever held the lock last removed the file; if that was between our opening and locking it, our lock
-            # is on a file that nobody else will find.
+            # The previous holder removes the file. If that happened between our opening and our locking it, we have
+            # locked a file that nobody else can find, and must try again.
             if not _same_file(descriptor, path):
                 continue
             os.ftruncate(descriptor, 0)
@@ -53,7 +53,7 @@ def locked(db: Path) -> Iterator[None]:
 
 
 def holder(db: Path) -> int | None:
-    """Process id of the run that holds the study now, or None."""
+    """Process id of the run that holds the study, or None."""
     try:
         descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC)
     except OSError:

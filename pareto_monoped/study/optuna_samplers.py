@@ -1,4 +1,4 @@
-"""Optuna's NSGA-II and TPE samplers behind the ask-and-tell face."""
+"""Optuna's NSGA-II and TPE samplers behind the ask-and-tell interface."""
 
 import warnings
 from collections.abc import Iterable, Iterator
@@ -15,9 +15,9 @@ from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 class OptunaSampler:
     """A sampler of Optuna on a study in memory.
 
-    Optuna keeps what its samplers learn in the study's trials, and only the random generator in the sampler. So each
-    generation gets a new sampler whose seed follows from the study's seed and the generation's number: then the trials
-    are the whole state, and a study rebuilt from them goes on exactly.
+    Optuna keeps what its samplers learn in the trials of its study; a sampler itself holds only a random generator.
+    Each generation therefore gets a new sampler, whose seed follows from the study's seed and the number of the
+    generation. The trials are then the whole state, and a study rebuilt from them continues exactly.
     """
 
     def __init__(self, space: Space, settings: OptunaSettings, seed: int) -> None:
@@ -41,7 +41,7 @@ class OptunaSampler:
         return Proposal(values=np.array(values, dtype=np.float64))
 
     def tell(self, scores: Scores) -> None:
-        """Complete the asked trials; the violation is told as Optuna's constraint."""
+        """Complete the trials of the last ``ask``; the violation becomes Optuna's constraint."""
         objectives = scores.minimised()
         with _quiet():
             for trial, (minus_height, energy), violation in zip(
@@ -56,15 +56,15 @@ class OptunaSampler:
         return {"generation": self._generation}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Add the trials as they were."""
+        """Add the trials of the history."""
         self._generation = int(state["generation"])
         with _quiet():
             for generation, (values, scores) in enumerate(history):
                 self._add(generation, values, scores)
             sampler = self._study.sampler
             if isinstance(sampler, optuna.samplers.NSGAIISampler):
-                # Optuna notes the parents of a generation when it first needs them, and finds them from the note of
-                # the generation before. Without the notes the next one would recurse through all generations.
+                # Optuna caches the parents of a generation when it first needs them, and derives them from the parents
+                # of the generation before. With an empty cache it would recurse through all generations.
                 for generation in range(self._generation):
                     sampler.get_parent_population(self._study, generation)
 
@@ -77,7 +77,7 @@ class OptunaSampler:
                 distributions=self._distributions,
                 values=[-minus_height, energy],
                 constraints={"violation": violation},
-                # Where NSGAIISampler notes a trial's generation; other samplers pass it over.
+                # NSGAIISampler reads the generation of a trial here; other samplers ignore it.
                 system_attrs={"NSGAIISampler:generation": generation},
             )
             self._study.add_trial(trial)
@@ -86,14 +86,14 @@ class OptunaSampler:
         seed = int(np.random.SeedSequence([self._seed, self._generation]).generate_state(1)[0])
         if self._settings.name == "optuna_nsga2":
             return optuna.samplers.NSGAIISampler(population_size=self._settings.batch, seed=seed)
-        # The whole batch is asked for before any of it is told: pending trials count as bad (constant liar), so that
-        # the designs of a batch keep apart.
+        # All designs of a batch are asked for before any score is known. The constant liar counts pending trials as
+        # bad, which keeps the designs of a batch apart.
         return optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """No log line a trial, and no warning that an option is experimental: both are choices made here."""
+    """Silence Optuna's log line per trial and its warnings about experimental options, which are used on purpose."""
     verbosity = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     try:

@@ -12,15 +12,15 @@ from pareto_monoped.study.definition import Bounds, Study
 from pareto_monoped.study.generation import Generation
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
-"""Revisions of Optuna's schema whose tables are written directly; with any other, Optuna writes its own."""
+"""Revisions of Optuna's schema that are written directly. For any other, Optuna writes its tables itself."""
 
 
 def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> None:
-    """Let Optuna make a new database with an empty study.
+    """Let Optuna create a new database with an empty study.
 
     Args:
         path: where; must not exist.
-        study: names it.
+        study: gives the name.
         attributes: the study's user attributes, JSON values.
     """
     import optuna
@@ -32,7 +32,7 @@ def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> No
         study_id = storage.create_new_study(
             [optuna.study.StudyDirection.MAXIMIZE, optuna.study.StudyDirection.MINIMIZE], study.name
         )
-        # What optuna.study.Study.set_metric_names writes; the method itself warns that it is experimental.
+        # This is what optuna.study.Study.set_metric_names writes; calling it would warn that it is experimental.
         storage.set_study_system_attr(study_id, "study:metric_names", ["height_m", "energy_j"])
         for key, value in attributes.items():
             storage.set_study_user_attr(study_id, key, value)
@@ -46,13 +46,13 @@ def _optuna_storage(path: Path) -> Any:
     import optuna
     from sqlalchemy.engine import URL
 
-    # A path with a question mark or a percent sign would be taken apart by a plain "sqlite:///..." text.
+    # In a plain "sqlite:///..." text, a question mark or percent sign in the path would get a meaning.
     url = URL.create("sqlite", database=str(path)).render_as_string(hide_password=False)
     return optuna.storages.RDBStorage(url)
 
 
 class OptunaTables:
-    """Writes trials into an existing study: directly, or, where the schema is not known, by Optuna's public call."""
+    """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
     def __init__(self, path: Path, study_id: int, study: Study) -> None:
         self._path = path
@@ -70,12 +70,12 @@ class OptunaTables:
         }
 
     def insert(self, connection: sqlite3.Connection, generation: Generation) -> None:
-        """Write a generation's rows, within the connection's transaction."""
+        """Insert a generation's rows within the transaction that the connection has open."""
         executemany = connection.executemany
         evaluations, judgement = generation.evaluations, generation.judgement
         n = len(generation.designs)
         numbers = range(generation.first_trial, generation.first_trial + n)
-        # One study a file and no other writer: Optuna's primary key is the trial's number plus one.
+        # With one study per file and no other writer, Optuna's primary key is the number of the trial plus one.
         ids = [number + 1 for number in numbers]
         failed = (judgement.state == "failed").tolist()
         started, ended = (
@@ -102,7 +102,7 @@ class OptunaTables:
             "INSERT INTO trial_values (trial_id, objective, value, value_type) VALUES (?, ?, ?, 'FINITE')",
             [(i, k, v) for i, bad, *values in objectives if not bad for k, v in enumerate(values)],
         )
-        # The list under one key is the form that both Optuna and its dashboard read.
+        # Both Optuna and its dashboard read the constraints as one list under this key.
         executemany(
             "INSERT INTO trial_system_attributes (trial_id, key, value_json) VALUES (?, 'constraints', ?)",
             [(i, json.dumps(row)) for i, row in zip(ids, judgement.constraints.tolist(), strict=True)],
@@ -117,10 +117,10 @@ class OptunaTables:
         )
 
     def add_by_optuna(self, generation: Generation) -> None:
-        """Let Optuna write trials into a schema that is not known here.
+        """Let Optuna write the trials into a schema that is not known here.
 
-        That is a transaction a trial, so a kill may leave trials that our checkpoint does not know yet. They come
-        again, the same, after a resume; then they are not added twice.
+        Optuna commits each trial on its own, so a kill may leave trials that our checkpoint does not know yet. After a
+        resume the same trials come again; those that are already there are skipped.
         """
         import optuna
 
@@ -152,7 +152,7 @@ class OptunaTables:
 
 
 def _attributes(generation: Generation, k: int) -> dict[str, Any]:
-    """What Optuna's dashboard shows of a trial besides its values."""
+    """What Optuna's dashboard shows of trial ``k`` besides its values."""
     attributes: dict[str, Any] = {}
     if generation.judgement.reason[k]:
         attributes["status"] = str(generation.evaluations.status[k])

@@ -1,4 +1,4 @@
-"""What the run loop and the search algorithms say to each other: ask for designs, tell their scores, save, restore.
+"""The interface between run loop and search algorithms: ask for designs, tell their scores, save, restore.
 
 An algorithm never simulates and never stores. It sees the free variables only, in their own units.
 """
@@ -27,8 +27,8 @@ class Proposal:
     """Designs to evaluate.
 
     Attributes:
-        values: the free variables, shape (n, d).
-        height_weight: lambda1 of a weighted search, None for others; stored with each of these trials.
+        values: values of the free variables, shape (n, d).
+        height_weight: lambda1 of a weighted search, stored with each of these trials; None for other searches.
     """
 
     values: Floats
@@ -37,11 +37,11 @@ class Proposal:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scores:
-    """What a search may know of n evaluated designs.
+    """What a search algorithm may know about n evaluated designs.
 
     Attributes:
         height_m, energy_j: the objectives, shape (n,); NaN where the jump failed.
-        violation: how far the constraints are missed, shape (n,); 0 where all hold, large where the jump failed.
+        violation: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed.
     """
 
     height_m: Floats
@@ -49,28 +49,28 @@ class Scores:
     violation: Floats
 
     def minimised(self) -> Floats:
-        """Both objectives to be minimised, shape (n, 2); failed jumps, told apart by their violation, get zeros."""
+        """Both objectives as minimisation, shape (n, 2). Failed jumps get zeros; their violation tells them apart."""
         return np.nan_to_num(np.column_stack((-self.height_m, self.energy_j)), nan=0.0)
 
 
 class Algorithm(Protocol):
     """What the run loop asks of a search algorithm.
 
-    ``state`` is called after ``tell`` (or before the first ``ask``) and gives plain JSON values. A fresh algorithm of
-    the same settings and seed that is restored from it goes on exactly as the saved one would have.
+    The loop calls ``state`` after ``tell`` or before the first ``ask``. A new algorithm with the same settings and
+    seed, restored from that state, continues exactly as the saved one would have.
     """
 
     def ask(self) -> Proposal | None:
-        """The next designs to evaluate, or None if the search has come to its own end."""
+        """The next designs to evaluate; None if the search has ended by itself."""
 
     def tell(self, scores: Scores) -> None:
-        """Take the scores of all the designs asked for last, in their order."""
+        """Take the scores of all designs of the last ``ask``, in their order."""
 
     def state(self) -> dict[str, Any]:
-        """What is needed to go on, as plain JSON values."""
+        """Everything needed to continue, as plain JSON values."""
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Go on from ``state``.
+        """Continue from a saved state.
 
         Args:
             state: what ``state`` returned.

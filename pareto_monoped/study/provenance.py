@@ -1,4 +1,4 @@
-"""What decides a study's results: settings, contents of motor and calibration, versions; their hash and differences."""
+"""What decides a study's results (settings, motor, calibration, versions), its hash, and the difference of two."""
 
 import hashlib
 import json
@@ -12,11 +12,11 @@ from pareto_monoped.study.algorithm_settings import EvolutionSettings, OptunaSet
 from pareto_monoped.study.definition import Study
 
 _NOT_RESULTS = ("audit", "description", "evaluations", "stop")
-"""Keys of a study that say when it ends or what follows, not which trials it has."""
+"""Keys of a study that decide when it ends or what follows, but not which trials it has."""
 
 
 def versions(study: Study) -> dict[str, str]:
-    """Versions of the packages that decide the trials of ``study``."""
+    """Versions of the packages that decide the trials of ``study``; of search libraries, only the one in use."""
     names = ["mujoco", "numba", "numpy"]
     match study.algorithm:
         case EvolutionSettings():
@@ -29,14 +29,20 @@ def versions(study: Study) -> dict[str, str]:
 
 
 def environment() -> dict[str, str]:
-    """Where it runs; for the record, not part of the hash."""
+    """Python, system and machine; stored for the record, not part of the hash."""
     return {"python": platform.python_version(), "system": platform.system(), "machine": platform.machine()}
 
 
 def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mapping[str, str]) -> dict[str, Any]:
-    """Everything that changes results, as JSON values."""
+    """Everything that changes results, as JSON values.
+
+    Args:
+        study: its settings.
+        contents: values of ``motor`` and ``calibration``.
+        package_versions: of the packages in use.
+    """
     settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
-    # Names of files are no results, their contents are: they stand beside the settings.
+    # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
     settings = {key: value for key, value in settings.items() if key not in ("motor", "calibration")}
     plain: dict[str, Any] = json.loads(json.dumps({"study": settings, **contents, "versions": dict(package_versions)}))
     return plain
@@ -49,7 +55,7 @@ def digest(values: Mapping[str, Any]) -> str:
 
 
 def differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between two sets of JSON values, as ``key: old -> new``."""
+    """The differences between two sets of JSON values, each as ``key: old -> new``."""
     old, new = _flat(before), _flat(now)
     keys = [*old, *(key for key in new if key not in old)]
     absent = "(none)"

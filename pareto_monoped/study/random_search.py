@@ -11,7 +11,7 @@ from pareto_monoped.study.random_state import generator_state, set_generator_sta
 
 
 class RandomSearch:
-    """Designs drawn evenly over the bounds."""
+    """Draws designs uniformly within the bounds."""
 
     def __init__(self, space: Space, settings: RandomSettings, seed: int) -> None:
         self._space = space
@@ -19,17 +19,17 @@ class RandomSearch:
         self._generator = np.random.default_rng(seed)
 
     def ask(self) -> Proposal:
-        """``population`` designs, each independent of all others."""
+        """``population`` designs, independent of each other and of all scores."""
         unit = self._generator.random((self._batch, len(self._space.names)))
         return Proposal(values=self._space.lower + unit * (self._space.upper - self._space.lower))
 
     def tell(self, scores: Scores) -> None:
-        """Nothing is learned."""
+        """Ignore the scores: random search does not learn."""
 
     def state(self) -> dict[str, Any]:
-        """The random generator's state."""
+        """State of the random generator."""
         return {"generator": generator_state(self._generator)}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Set the random generator."""
+        """Set the random generator; the history is not needed."""
         set_generator_state(self._generator, state["generator"])

@@ -12,5 +12,5 @@ def generator_state(generator: np.random.Generator) -> dict[str, Any]:
 
 
 def set_generator_state(generator: np.random.Generator, state: dict[str, Any]) -> None:
-    """Set a generator to a state that ``generator_state`` gave; NumPy checks it."""
+    """Set a generator to a state from ``generator_state``; NumPy refuses a damaged one."""
     generator.bit_generator.state = state

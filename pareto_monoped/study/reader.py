@@ -1,4 +1,4 @@
-"""Reading a study: everything that report, CAD and the command line want to know, by plain SELECTs."""
+"""Read a study database: everything that report, CAD and command line need, by plain SELECTs."""
 
 import json
 from dataclasses import dataclass
@@ -113,8 +113,8 @@ class StudyData:
         """The non-dominated feasible trials, from the lowest jump to the highest.
 
         Args:
-            include_ill_conditioned: whether trials that failed their audit may be on the front; without them, what
-                they dominated comes up.
+            include_ill_conditioned: whether trials that failed their audit may be on the front. Without them, trials
+                that they dominate may enter.
         """
         eligible = (self.trials["state"] == "feasible").to_numpy()
         if not include_ill_conditioned:
@@ -149,6 +149,7 @@ def read_study(db: Path) -> StudyData:
             {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
             for trial, good, measures in audit_rows
         ]
+        history = pd.DataFrame(history_rows, columns=list(_HISTORY)).astype(_HISTORY)
     except (KeyError, TypeError, ValueError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
@@ -158,7 +159,7 @@ def read_study(db: Path) -> StudyData:
         study=study,
         meta=meta,
         trials=trials,
-        history=pd.DataFrame(history_rows, columns=list(_HISTORY)).astype(_HISTORY),
+        history=history,
         audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=checkpoint,
     )

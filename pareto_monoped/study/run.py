@@ -1,4 +1,4 @@
-"""Running a study into its database and going on with it: checks before, the loop, the audit after."""
+"""Run a study into its database, or continue it: checks before, one session, the audit after."""
 
 import os
 from collections.abc import Callable
@@ -24,15 +24,15 @@ from pareto_monoped.study.store import Store, create_database
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """What a run came to.
+    """The result of a run.
 
     Attributes:
         db: the study's database.
-        evaluations, new_evaluations: in all, and in this session.
-        front_size: designs on the front.
-        ill_conditioned: designs that their audit took off the front.
-        hypervolume: in m J.
-        seconds: of this session.
+        evaluations, new_evaluations: number of trials in all, and of this session.
+        front_size: number of designs on the front.
+        ill_conditioned: number of designs that failed their audit.
+        hypervolume: of the front, in m J.
+        seconds: duration of this session.
         stop_reason: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or
             ``interrupted``.
     """
@@ -48,11 +48,11 @@ class RunSummary:
 
 
 def _silent(_: Any) -> None:
-    """Report to nobody."""
+    """Ignore a report."""
 
 
 def default_workers() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -66,20 +66,20 @@ def run(
     progress: Callable[[Progress], None] | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> RunSummary:
-    """Run a study into a database, or go on with it where it stopped.
+    """Run a study into a database, or continue it where it stopped.
 
     Args:
-        study: what to search.
-        db: its database; made if missing.
-        evaluations: total number of jumps, in place of the study's.
-        seed: in place of the study's.
-        workers: threads that simulate; all cores if None. They do not change the trials.
+        study: the definition.
+        db: its database; created if missing.
+        evaluations: total number of trials, instead of the study's.
+        seed: instead of the study's.
+        workers: number of threads that simulate, all cores if None. It does not change the trials.
         progress: called after each stored generation.
-        notify: called with a line for the user, such as on Ctrl-C.
+        notify: called with a line for the user, for example on Ctrl-C.
 
     Raises:
-        StudyError: the database's study has other settings; the message shows the difference.
-        DatabaseError: no study, damaged, in use by another process, or not writable.
+        StudyError: the study in the database has other settings; the message shows the difference.
+        DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     if seed is not None:
         study = replace(study, seed=seed)
@@ -104,18 +104,18 @@ def resume(
     progress: Callable[[Progress], None] | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> RunSummary:
-    """Go on with a study from its database alone.
+    """Continue a study from its database alone.
 
     Args:
         db: the database.
-        evaluations: the new total; without it, what it was last run for.
-        workers: threads that simulate; all cores if None.
+        evaluations: the new total; by default the total of the last run.
+        workers: number of threads that simulate, all cores if None.
         progress: called after each stored generation.
         notify: called with a line for the user.
 
     Raises:
-        StudyError: this machine would go on with other results than the study began with.
-        DatabaseError: no study, damaged, in use by another process, or not writable.
+        StudyError: this code or machine computes other results than the study began with.
+        DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     read_study(db)
     with locked(db):
@@ -170,7 +170,7 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> No
 
 
 def _nothing_left(data: StudyData, study: Study, budget: int) -> bool:
-    """Whether the study ended by itself and would end at once again."""
+    """Whether the study has ended and would end again at once."""
     same = data.meta.finished and study == data.study
     return same and (len(data.trials) >= budget or data.meta.stop_reason != "budget")
 

@@ -1,4 +1,4 @@
-"""Evaluations -> feasible, infeasible or failed, with a graded violation and a reason."""
+"""Judge evaluations by a study's constraints: feasible, infeasible or failed, with a graded violation and a reason."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,7 +11,7 @@ from pareto_monoped.study.definition import Constraints
 from pareto_monoped.study.protocol import Scores
 
 FAILED_VIOLATION = 100.0
-"""Violation of a jump that failed: beyond any that a real jump can have, whose limits are missed by shares of them."""
+"""Violation of a failed jump in each constraint: so large that it ranks behind jumps that only miss a limit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,14 +45,14 @@ CONSTRAINTS: tuple[Constraint, ...] = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
-    """How n evaluations stand to the constraints.
+    """How well n evaluations keep the constraints.
 
     Attributes:
         state: ``feasible``, ``infeasible`` or ``failed``, shape (n,).
-        reason: why it is not feasible, n strings; empty where it is.
-        constraints: each constraint's value as a share of its limit, feasible at <= 0, shape (n, k); a failed jump
-            has ``FAILED_VIOLATION`` in all.
-        violation: sum of the positive ones, shape (n,).
+        reason: n strings that say why a design is not feasible; empty where it is.
+        constraints: how far each of k constraints is missed, as a share of its limit, feasible at <= 0, shape (n, k);
+            ``FAILED_VIOLATION`` for a failed jump.
+        violation: sum of the positive ``constraints``, shape (n,).
     """
 
     state: NDArray[np.str_]
@@ -64,8 +64,8 @@ class Judgement:
 def judge(evaluations: Evaluations, constraints: Constraints) -> Judgement:
     """Judge evaluations by a study's constraints.
 
-    The violation is graded, (limit - value) / limit for a least value and (value - limit) / limit for a greatest one,
-    so that a search can see which of two failing designs is nearer.
+    The violation is graded: (limit - value) / limit for a lower limit, (value - limit) / limit for an upper one. A
+    search can thus see which of two infeasible designs is closer to being feasible.
     """
     n = len(evaluations.height_m)
     failed = (evaluations.status != "ok") | ~np.isfinite(evaluations.height_m) | ~np.isfinite(evaluations.energy_j)
@@ -88,5 +88,5 @@ def judge(evaluations: Evaluations, constraints: Constraints) -> Judgement:
 
 
 def scores(evaluations: Evaluations, judgement: Judgement) -> Scores:
-    """What a search algorithm may know."""
+    """What a search algorithm may know about these evaluations."""
     return Scores(height_m=evaluations.height_m, energy_j=evaluations.energy_j, violation=judgement.violation)

@@ -1,4 +1,4 @@
-"""Ask, simulate, tell, store: one session of a study, the one place that knows all three rooms together."""
+"""One session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -27,14 +27,14 @@ from pareto_monoped.study.store import Store
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far a run is, all of it already stored.
+    """How far a run is; everything it counts is already stored.
 
     Attributes:
-        evaluations, budget: designs evaluated, and to be evaluated in all.
-        per_second: designs a second in this session.
-        seconds_left: until the budget is used up, at this rate.
+        evaluations, budget: number of designs evaluated so far, and to be evaluated in all.
+        per_second: designs evaluated per second in this session.
+        seconds_left: time until the budget is used up, at this rate.
         hypervolume: of the front so far, in m J.
-        least_energy_j: of the designs that reach ``HEADLINE_HEIGHT_M``; None while there are none.
+        least_energy_j: least energy of the designs that reach ``HEADLINE_HEIGHT_M``; None while there are none.
     """
 
     evaluations: int
@@ -80,16 +80,16 @@ class Session:
             raise DatabaseError(
                 f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
             ) from None
-        # Trials of a generation that the last budget cut short: the algorithm has not been told of them yet.
+        # Trials of a generation that the last budget cut short; the algorithm does not know their scores yet.
         self._designs, self._scores = _rows(data, data.checkpoint.evaluations, len(data.trials))
 
     @property
     def elapsed(self) -> float:
-        """Seconds of this session."""
+        """Seconds since this session began."""
         return time.monotonic() - self._started
 
     def go(self, interrupt: Interrupt) -> str:
-        """Run until something says stop; return what."""
+        """Run until a condition ends the session; return it, one of the stop reasons of ``RunSummary``."""
         writing: Future[Progress] | None = None
         with ThreadPoolExecutor(1, thread_name_prefix="store") as writer:
             while (reason := self._stop_reason(interrupt)) is None:
@@ -119,7 +119,10 @@ class Session:
         return None
 
     def _simulate(self) -> Generation | None:
-        """Ask for a generation, simulate what is missing of it, and tell it if it is complete."""
+        """Ask for a generation, simulate the part that is missing, and tell the scores once it is complete.
+
+        Returns None if the algorithm has no more designs.
+        """
         proposal = self._algorithm.ask()
         if proposal is None:
             return None
@@ -208,7 +211,7 @@ def _history(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray
 
 
 def _joined(before: Scores, new: Scores | None) -> Scores:
-    """Both one after the other; of ``before`` nothing if ``new`` is None."""
+    """Both, one after the other; empty scores if ``new`` is None."""
     if new is None:
         return Scores(height_m=before.height_m[:0], energy_j=before.energy_j[:0], violation=before.violation[:0])
     return Scores(

@@ -1,4 +1,4 @@
-"""How far a study is."""
+"""Progress and settings of a study."""
 
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,10 @@ from pareto_monoped.study.reader import read_study
 
 
 def status(db: Path) -> dict[str, Any]:
-    """What there is to know about a study's progress and settings, as JSON values.
+    """Progress and settings of a study, as JSON values.
 
     Raises:
-        DatabaseError: no study, damaged, or of a newer version.
+        DatabaseError: not a study, damaged, or of a newer version.
     """
     data = read_study(db)
     front = data.front()

@@ -1,7 +1,7 @@
-"""Writing a study: trials, checkpoint and history of a generation in one transaction, in Optuna's schema and ours.
+"""Write a study: trials, checkpoint and history of a generation in one transaction, into Optuna's tables and ours.
 
-Optuna's own tables hold what Optuna and its dashboard show; ours hold every measure in one wide table, which is read
-a hundred times faster, and the optimiser's state as JSON.
+Optuna's tables hold what Optuna and its dashboard show. Ours hold every measure in one wide table, which is read a
+hundred times faster, and the state of the search algorithm as JSON.
 """
 
 import json
@@ -33,13 +33,13 @@ CREATE TABLE monoped_trials ({columns});
 
 
 def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
-    """A new study database without trials, whole or not at all.
+    """Create a study database without trials; after an error there is no file.
 
     Args:
-        path: where; must not exist.
-        study: the study.
-        meta: what is known about it.
-        state: the fresh algorithm's state.
+        path: where to; must not exist.
+        study: the definition.
+        meta: everything else that is known about the study.
+        state: state of the algorithm before its first ``ask``.
 
     Raises:
         DatabaseError: it cannot be written.
@@ -65,22 +65,22 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
 
 
 class Store:
-    """An open study database that trials are added to. Use as a context manager."""
+    """A study database that is open for writing. Use it as a context manager."""
 
     def __init__(self, path: Path, study: Study, *, known_schemas: Sequence[str] = KNOWN_SCHEMAS) -> None:
         """Open an existing study for writing.
 
         Raises:
-            DatabaseError: not a study, damaged, read-only, or of another version.
+            DatabaseError: not a study, damaged, read-only, or of a newer version.
         """
         self.path = path
-        # SQLite would ask the system, which lets root write to anything; a file marked read-only is meant to stay.
+        # A file marked read-only is meant to stay as it is. SQLite would ask the system, which lets root write anyway.
         if not path.stat().st_mode & 0o222:
             raise DatabaseError(
                 f"study database {str(path)!r}: is read-only; allow writing (chmod u+w), or run on a copy"
             )
         with translated(path):
-            # Generations are written by a thread of their own, one at a time; the run loop waits for it.
+            # One other thread writes the generations, one at a time, and the run loop waits for it.
             self._connection = sqlite3.connect(path, isolation_level=None, timeout=30.0, check_same_thread=False)
             try:
                 self._open(study, known_schemas)
@@ -103,37 +103,37 @@ class Store:
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
         connection.execute("PRAGMA journal_mode = WAL")
-        # Not only a killed process but a power cut, too, keeps what was acknowledged.
+        # What was acknowledged must survive a power cut too, not only a killed process.
         connection.execute("PRAGMA synchronous = FULL")
 
     def __enter__(self) -> "Store":
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Close; the log is folded into the file, so that a study at rest is one file."""
+        """Close, and merge the write-ahead log into the file, so that a study at rest is a single file."""
         try:
             self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
             self._connection.execute("PRAGMA journal_mode = DELETE")
         except sqlite3.Error:
-            # A reader is still there, or the disk is full: then the log stays beside the file, as good.
+            # While a reader is open or the disk is full, the log stays beside the file, which is equally valid.
             pass
         finally:
             self._connection.close()
 
     def set_meta(self, values: Mapping[str, Any]) -> None:
-        """Replace what is known about the study under some keys."""
+        """Replace the values of some fields of ``StudyMeta``."""
         with translated(self.path), _transaction(self._connection):
             rows = [(key, strict_json(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
-        """Store audits of trials: number, whether it is well-conditioned, the audit's measures."""
+        """Store audits of trials: number of the trial, whether it is well-conditioned, measures of the audit."""
         with translated(self.path), _transaction(self._connection):
             rows = [(trial, int(good), json.dumps(dict(measures))) for trial, good, measures in audits]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_audits VALUES (?, ?, ?)", rows)
 
     def add(self, generation: Generation) -> None:
-        """Store a generation; when this returns, its trials are safe.
+        """Store a generation. When this returns, its trials are safe.
 
         Raises:
             DatabaseError: the disk is full, or the file cannot be written.
@@ -166,7 +166,7 @@ class Store:
 
 
 class _transaction:  # noqa: N801
-    """BEGIN IMMEDIATE ... COMMIT, or ROLLBACK; a commit that fails rolls back, too."""
+    """A context: BEGIN IMMEDIATE, then COMMIT, or ROLLBACK after an error. A commit that fails is rolled back too."""
 
     def __init__(self, connection: sqlite3.Connection) -> None:
         self._connection = connection

@@ -1,4 +1,4 @@
-"""The paper's search: CMA-ES on a weighted cost of height and energy, one run for each weight of a sweep."""
+"""The paper's search: CMA-ES on a weighted cost of height and energy, one run per weight."""
 
 from collections.abc import Iterable
 from itertools import islice
@@ -14,9 +14,10 @@ from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 class WeightedSearch:
     """CMA-ES (Hansen's ``cma``) on lambda1 Kh exp(-h) + lambda2 E, with lambda2 = 1 - lambda1.
 
-    Cost: paper, section III-B and its commented-out passage on C_h. The runs of a sweep follow each other; a run ends
-    after ``iterations`` or when CMA-ES finds that it has converged. On restore the present run is told its own
-    history again, which is exact because it has its own random generator, and takes a fraction of a second.
+    Cost: paper, section III-B, and the commented-out passage on C_h in its source. The runs follow one another. A run
+    ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run is
+    replayed from its history. This is exact because each run has its own random generator, and it takes a fraction of
+    a second.
     """
 
     def __init__(self, space: Space, settings: WeightedSettings, start: Floats, seed: int) -> None:
@@ -31,7 +32,7 @@ class WeightedSearch:
         self._asked: list[Floats] = []
 
     def ask(self) -> Proposal | None:
-        """The present run's next designs, or None after the last run."""
+        """The next designs of the current run; None after the last run."""
         if self._run == len(self._settings.height_weights):
             return None
         self._asked = self._strategy.ask()
@@ -43,7 +44,7 @@ class WeightedSearch:
         )
 
     def tell(self, scores: Scores) -> None:
-        """Update the run's distribution; go over to the next run when this one is at its end."""
+        """Update the distribution of the current run; when this run has ended, start the next one."""
         self._strategy.tell(self._asked, self.cost(scores).tolist())
         self._iteration += 1
         if self._iteration == self._settings.iterations or self._strategy.stop():
@@ -55,19 +56,19 @@ class WeightedSearch:
     def cost(self, scores: Scores) -> Floats:
         """Cost of each design, shape (n,).
 
-        A design that violates a constraint costs more than any that holds them, the more the farther it is off;
-        CMA-ES uses the ranks only.
+        An infeasible design costs more than any feasible one, and more the larger its violation. CMA-ES uses only the
+        ranks.
         """
         weight, scale = self._settings.height_weights[self._run], self._settings.height_scale_j
         feasible = weight * scale * np.exp(-scores.height_m) + (1.0 - weight) * scores.energy_j
         return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)
 
     def state(self) -> dict[str, Any]:
-        """Which run it is in and how far; the designs and scores are in the database."""
+        """Number of the current run and of its iterations; the designs and scores are in the database."""
         return {"run": self._run, "iteration": self._iteration}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Tell the present run its history again."""
+        """Replay the history of the current run."""
         generations = list(history)
         self._run = int(state["run"])
         self._iteration = 0
@@ -88,7 +89,7 @@ class WeightedSearch:
             {
                 "popsize": self._settings.population,
                 "bounds": [[0.0] * dimensions, [1.0] * dimensions],
-                # With its own normal deviates and no seed, cma leaves NumPy's global generator alone.
+                # With these normal deviates and no seed, cma does not touch NumPy's global generator.
                 "randn": lambda *shape: generator.standard_normal(shape),
                 "seed": np.nan,
                 "verbose": -9,

@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -73,6 +75,12 @@ def test_nothing_can_be_picked_off_an_empty_front(selector):
 
 def test_a_front_of_one_design_has_that_as_its_knee():
     assert pick(_front([0.7], [3.0]), Knee()).trial == 10
+
+
+def test_the_knee_says_how_far_it_is_from_the_chord():
+    # Row 2 of FRONT: scaled height 2/3, scaled energy 0.375; the chord is the diagonal of the unit square.
+    distance = (2.0 / 3.0 - 0.375) / math.sqrt(2.0)
+    assert f"farthest ({distance:.3f} of the scaled front) from the chord" in pick(FRONT, Knee()).why
 
 
 def test_the_knee_of_a_right_angle_is_its_corner():

@@ -56,6 +56,7 @@ def test_a_study_without_trials(tmp_path):
         "UPDATE monoped_trials SET energy_j = x'80049500'",
         "ALTER TABLE monoped_trials DROP COLUMN energy_j",
         "INSERT INTO monoped_audits VALUES (1, 1, 'x')",
+        "UPDATE monoped_history SET seconds = 'long'",
     ],
 )
 def test_damaged_contents_are_said_to_be_damaged(tmp_path, statement):

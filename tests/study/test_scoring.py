@@ -43,7 +43,8 @@ def test_failed_jumps_keep_their_reason_and_are_farther_off_than_any_real_one():
 
 
 def test_an_ok_status_without_numbers_is_still_a_failure():
-    assert judge(made_evaluations([np.inf], [1.0]), Constraints()).state.tolist() == ["failed"]
+    evaluations = made_evaluations([np.inf, 1.0, 1.0], [1.0, np.inf, np.nan])
+    assert judge(evaluations, Constraints()).state.tolist() == ["failed"] * 3
 
 
 @pytest.mark.parametrize(
