@@ -76,10 +76,6 @@ class Evaluations:
         return values | {"reason": np.array(self.reason, dtype=np.str_)}
 
 
-MEASURES: tuple[str, ...] = MEASURE_NAMES
-"""Names of the numeric columns; new code imports ``measures.MEASURE_NAMES``."""
-
-
 class Evaluator:
     """Evaluates designs with the actuators of one motor under one calibration.
 

@@ -4,7 +4,8 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from pareto_monoped.jump.evaluate import MEASURES, Evaluations
+from pareto_monoped.jump.evaluate import Evaluations
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import study_from_dict
@@ -25,7 +26,7 @@ def made_evaluations(height_m, energy_j, status=None, seed=0):
     height_m, energy_j = np.asarray(height_m, float), np.asarray(energy_j, float)
     status = np.array(status if status is not None else ["ok"] * len(height_m))
     generator = np.random.default_rng(seed)
-    columns = {name: generator.standard_normal(len(height_m)) for name in MEASURES}
+    columns = {name: generator.standard_normal(len(height_m)) for name in MEASURE_NAMES}
     columns |= {"height_m": height_m, "energy_j": energy_j}
     for values in columns.values():
         values[status != "ok"] = np.nan

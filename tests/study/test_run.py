@@ -14,7 +14,7 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError, StudyError
-from pareto_monoped.jump.evaluate import MEASURES
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.definition import Bounds, Constraints, Stop, study_from_dict
@@ -46,7 +46,7 @@ def test_stores_what_the_evaluator_gives(whole):
     assert summary.evaluations == summary.new_evaluations == len(data.trials) == 60
     assert summary.stop_reason == "budget"
     again = load_simulator(made(), workers=1).evaluator(data.trials[list(NAMES)].to_numpy())
-    for name in MEASURES:
+    for name in MEASURE_NAMES:
         assert np.array_equal(data.trials[name].to_numpy(), getattr(again, name), equal_nan=True), name
     assert data.trials["status"].tolist() == again.status.tolist()
 

@@ -11,7 +11,7 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.jump.evaluate import MEASURES
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
@@ -30,7 +30,7 @@ def test_every_number_comes_back_to_the_last_bit(tmp_path):
     assert trials["trial"].tolist() == [0, 1, 2, 3, 4, 5]
     assert trials["generation"].tolist() == [0, 0, 0, 0, 1, 1]
     assert np.array_equal(trials[list(NAMES)].to_numpy(), np.vstack([g.designs for g in generations]))
-    for name in MEASURES:
+    for name in MEASURE_NAMES:
         stored = np.concatenate([getattr(g.evaluations, name) for g in generations])
         assert np.array_equal(trials[name].to_numpy(), stored, equal_nan=True), name
     assert trials["state"].tolist() == ["feasible", "infeasible", "failed", "feasible", "feasible", "feasible"]
