@@ -26,7 +26,7 @@ from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.protocol import Algorithm
+from pareto_monoped.study.protocol import Algorithm, Scores
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Evaluate, load_simulator
@@ -104,7 +104,7 @@ def search(
             break
         result = evaluate(np.vstack([proposal.values for _, proposal in alive]))
         judgement = judge(result, alive[0][0][2].constraints)
-        told = scores(result, judgement)
+        all_scores = scores(result, judgement)
         points = np.column_stack((result.height_m, result.energy_j))
         first = 0
         for (algorithm, archive, _), proposal in alive:
@@ -112,7 +112,11 @@ def search(
             first = rows.stop
             began = time.perf_counter()
             algorithm.tell(
-                type(told)(height_m=told.height_m[rows], energy_j=told.energy_j[rows], violation=told.violation[rows])
+                Scores(
+                    height_m=all_scores.height_m[rows],
+                    energy_j=all_scores.energy_j[rows],
+                    violation=all_scores.violation[rows],
+                )
             )
             thinking += time.perf_counter() - began
             archive.add(points[rows], judgement.state[rows] == "feasible")
@@ -194,7 +198,7 @@ def main() -> None:
     results: dict[str, Any] = {"rows": {}}
     if arguments.full and kept.exists():
         results = json.loads(kept.read_text())
-    # A change of the simulator makes all that was kept worthless.
+    # Results that were kept are of no use once the simulator has changed.
     if results.get("probe") != simulator.probe():
         results = {"probe": simulator.probe(), "machine": platform.machine(), "rows": {}}
     if "reference" not in results:

@@ -71,7 +71,7 @@ def assembly_pose(
     Args:
         arrays: the robot as it is simulated.
         calibration: the jump model, which sets the start pose.
-        hip_rad: angle of the hip, in place of the start pose's.
+        hip_rad: angle of the hip, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
     """
     start = start_pose(arrays, calibration)

@@ -32,7 +32,7 @@ def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[s
 def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = lambda _: None) -> int:
     """Export designs in parallel; the first failure stops the rest and is raised, as does an interrupt.
 
-    Exports in progress are finished then, so that every folder is whole; the same call goes on with the rest.
+    Exports in progress are finished then, so that every folder is complete; the same call continues with the rest.
 
     Args:
         jobs: what to export; what is made already is left alone.

@@ -34,7 +34,7 @@ class Job:
         formats: of ``FORMATS``, in its order.
         force: replace an export of something else.
         source: where the design comes from.
-        hip_rad: angle of the hip in the assembly, in place of the start pose's.
+        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
     """
 
@@ -65,7 +65,7 @@ def case_job(
         folder: where to.
         formats: some of ``FORMATS``; default all.
         force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, in place of the start pose's.
+        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
 
     Raises:
@@ -102,7 +102,7 @@ def trial_job(
         folder: where to.
         formats: some of ``FORMATS``; default all.
         force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, in place of the start pose's.
+        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
 
     Raises:

@@ -145,4 +145,4 @@ def _many(jobs: "list[Job]", workers: int) -> None:
             bar.console.print("interrupted; the same command continues from here")
             raise
         bar.update(task, completed=len(jobs))
-    click.echo(f"{made} made, {len(jobs) - made} there already")
+    click.echo(f"{made} made, {len(jobs) - made} already there")

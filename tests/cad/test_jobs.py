@@ -120,7 +120,7 @@ def put(value, *keys):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         (lambda _: "", "no record of an export"),
         (lambda _: "{", "no record of an export"),
@@ -148,12 +148,12 @@ def put(value, *keys):
         (put("x", "source"), "no record of an export"),
     ],
 )
-def test_a_damaged_or_hostile_record_is_one_line_and_writes_nothing(original, tmp_path, capsys, change, told):
+def test_a_damaged_or_hostile_record_is_one_line_and_writes_nothing(original, tmp_path, capsys, change, message):
     path = damaged(change)(original, tmp_path / "design.json")
     code, out, err = export(capsys, "--record", path, "-o", tmp_path / "out")
     assert code == 2
     assert out == ""
-    assert told in err
+    assert message in err
     assert len([line for line in err.splitlines() if not line.endswith(" ...")]) == 1
     assert [entry.name for entry in tmp_path.iterdir()] == ["design.json"]
 

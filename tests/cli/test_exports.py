@@ -21,7 +21,7 @@ def run(capsys, *words):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("export", "-o", "x"), "no DB given"),
         (("export", "--case", "C", "--knee", "-o", "x"), "--case C takes no DB and no selector"),
@@ -31,12 +31,12 @@ def run(capsys, *words):
         (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format 'dwg'"),
     ],
 )
-def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypatch, words, told):
+def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypatch, words, message):
     monkeypatch.chdir(tmp_path)
     code, out, err = run(capsys, *words)
     assert code == 2
     assert out == ""
-    assert told in err
+    assert message in err
     assert len(err.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
 
@@ -59,7 +59,7 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
 
 @pytest.mark.long
 def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
-    """Ctrl-C reaches the whole group of processes, as from a terminal; folders are whole or not there."""
+    """Ctrl-C reaches the whole group of processes, as from a terminal; folders are complete or absent."""
     words = [sys.executable, "-m", "pareto_monoped"]
     study = Path(__file__).parent.parent.parent / "studies" / "quick.toml"
     db, folder = tmp_path / "quick.db", tmp_path / "front"
@@ -85,16 +85,16 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
             assert running.poll() is None
             time.sleep(0.1)
         os.killpg(running.pid, signal.SIGINT)
-        told = running.communicate(timeout=120)[1]
+        message = running.communicate(timeout=120)[1]
     assert running.returncode == 130
-    assert "Traceback" not in told
-    assert "the same command continues from here" in told
+    assert "Traceback" not in message
+    assert "the same command continues from here" in message
     made = sorted(folder.iterdir())
     assert all((path / "design.json").is_file() for path in made)
     expected = -(-len(rows) // every)
     assert 1 <= len(made) < expected
     before = {path.name: (path / "design.json").stat().st_mtime_ns for path in made}
     again = subprocess.run(export, check=True, capture_output=True, text=True)
-    assert again.stdout == f"{expected - len(made)} made, {len(made)} there already\n"
+    assert again.stdout == f"{expected - len(made)} made, {len(made)} already there\n"
     assert len(list(folder.iterdir())) == expected
     assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
