@@ -68,19 +68,19 @@ def energy_at(front: Floats, heights_m: Floats) -> Floats:
 def _surface(fronts: Sequence[Floats], labels: Sequence[str]) -> dict[str, Any]:
     """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half and all of the runs reached.
 
-    For two objectives, a surface is an order statistic of the runs' least energies at each height.
+    For two objectives, a surface is an order statistic of the runs' least energies at each height. The median of an
+    even number of runs is the upper one of the middle two, so that at least half of the runs reach it.
     """
     everything = np.concatenate(fronts)
     if len(everything) == 0:
         return {"labels": list(labels), "height_m": [], "best": [], "median": [], "worst": []}
     heights = np.linspace(everything[:, 0].min(), everything[:, 0].max(), _POINTS)
     ranked = np.sort(np.stack([energy_at(front, heights) for front in fronts]), axis=0)
-    middle = (len(fronts) - 1) // 2 if len(fronts) % 2 else len(fronts) // 2
     return {
         "labels": list(labels),
         "height_m": [round(h, 4) for h in heights.tolist()],
         "best": [number(v) for v in ranked[0]],
-        "median": [number(v) for v in ranked[middle]],
+        "median": [number(v) for v in ranked[len(fronts) // 2]],
         "worst": [number(v) for v in ranked[-1]],
     }
 

@@ -87,6 +87,45 @@ def test_a_click_on_the_papers_diamond_shows_that_case(tab, payload):
     assert "simulate --case nominal" in tab.text("#commands")
 
 
+def test_the_efficiency_and_the_floor_are_work_against_gravity_from_the_start_height(tab, data):
+    best = data.front().iloc[0]
+    share = best["mass_kg"] * 9.81 * (best["height_m"] - 0.5) / best["energy_j"]
+    assert share == pytest.approx(best["efficiency"], rel=1e-6)
+    assert f"{100 * share:.1f} %" in tab.text("#headline")
+    x, y = tab.page.evaluate(
+        "(({ x, y }) => [x, y])(document.getElementById('front-chart').data.find((t) => t.name === 'floor'))"
+    )
+    lightest_kg = data.trials.loc[data.trials["state"] == "feasible", "mass_kg"].min()
+    assert (x[0], y[0]) == (0, 0.5)
+    assert y[1] == pytest.approx(0.5 + x[1] / (lightest_kg * 9.81), rel=1e-4)
+    assert f"floor m g (H \N{MINUS SIGN} 0.5 m) of the lightest robot, {lightest_kg:.2f} kg" in tab.text("#switches")
+
+
+def test_a_case_has_the_gearboxes_of_its_ratios(tab, data):
+    tab.click_point("simulated", 1)
+    tab.expects("#subject", "Case A")
+    hip, knee = (data.actuator_map.lookup(ratio).gears for ratio in (4.0, 7.9))
+    row = " ".join(f"{g.sun_teeth}/{g.planet_teeth}/{g.ring_teeth}" for g in (hip, knee))
+    assert row in " ".join(tab.text("#gears").split())
+
+
+def test_the_drawn_robot_has_the_dimensions_of_its_own_motor(source, source_u12, folder, open_tab):
+    """The page once drew the default motor's leg, whatever the motor."""
+    tab = open_tab(written(folder, "both.html", [source, source_u12]))
+    for study, here in enumerate((source, source_u12)):
+        tab.click_point("front", 0) if study == 0 else tab.page.uncheck("[data-study='0']")
+        tab.click_point("front", 0)
+        tab.expects("#subject", f"{here.data.study.name}")
+        radius_m = float(tab.page.get_attribute("#stage g circle[fill='var(--metal)']", "r"))
+        actuator = here.data.actuator_map.lookup(4.05)
+        assert radius_m == pytest.approx(1e-3 * actuator.mount.housing_radius_mm)
+    tab.scroll_through()
+    lines = tab.page.evaluate("document.getElementById('link-chart').data.map((t) => t.name)")
+    assert lines == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12", "published link"]
+    published = tab.page.evaluate("(({ x, y }) => [x[0], y[0]])(document.getElementById('link-chart').data.at(-1))")
+    assert published == pytest.approx([150.0, 0.235 + 0.828 * 0.150])
+
+
 def test_arrow_keys_move_along_the_front(tab, payload):
     (card,) = payload.studies
     tab.page.focus("#front-chart")

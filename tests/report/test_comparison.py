@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -5,7 +7,7 @@ from hypothesis import strategies as st
 
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.comparison import compare, energy_at
+from pareto_monoped.report.comparison import _held, _surface, compare, energy_at, group_of
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.reader import read_study
@@ -46,6 +48,36 @@ def test_seeds_of_one_study_are_a_group_with_ordered_surfaces(both):
     (growth,) = compare(both, ["a", "b"], (0.8,)).growth
     assert growth["evaluations"][-1] == min(len(d.trials) for d in both)
     assert all(low <= high for low, high in zip(growth["low"], growth["high"], strict=True))
+
+
+def fronts_of(energies):
+    """Fronts of one design each, all of 1 m."""
+    return [np.array([[1.0, energy]]) for energy in energies]
+
+
+@pytest.mark.parametrize(("energies", "median"), [((30.0, 10.0, 20.0), 20.0), ((30.0, 10.0, 20.0, 40.0), 30.0)])
+def test_the_median_of_an_even_number_of_runs_is_the_upper_middle_one(energies, median):
+    surface = _surface(fronts_of(energies), [str(e) for e in energies])
+    assert (surface["best"][0], surface["median"][0], surface["worst"][0]) == (10.0, median, max(energies))
+
+
+def test_growth_holds_the_last_value_until_the_next_generation():
+    history = np.array([[10.0, 1.0], [20.0, 3.0]])
+    np.testing.assert_array_equal(_held(history, np.array([5.0, 10.0, 19.0, 20.0, 30.0])), [0.0, 1.0, 1.0, 3.0, 3.0])
+
+
+def test_rows_give_the_energy_at_each_height(both):
+    for row, data in zip(compare(both, ["a", "b"], (0.7, 0.8)).rows, both, strict=True):
+        for height, energy in zip((0.7, 0.8), row["energy_j"], strict=True):
+            front = data.front()
+            assert energy == round(front.loc[front["height_m"] >= height, "energy_j"].min(), 4)
+
+
+def test_another_calibration_is_no_seed_of_it(data, other_seed):
+    other = read_study(other_seed)
+    contents = other.meta.contents | {"calibration": {"name": "another"}}
+    changed = replace(other, meta=replace(other.meta, contents=contents))
+    assert group_of(data) == group_of(other) != group_of(changed)
 
 
 def test_other_algorithms_are_no_seeds_of_it(data, weighted):

@@ -1,9 +1,13 @@
 import xml.etree.ElementTree as ElementTree
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import write_figures
+from pareto_monoped.report.figures import _front, _links, write_figures
+from pareto_monoped.report.payload import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
 
@@ -29,6 +33,45 @@ def test_svg_has_readable_text_and_the_width_of_a_column(figures):
     assert root.get("width") == "252pt"  # 3.5 in
     words = {node.text for node in root.iter("{http://www.w3.org/2000/svg}text")}
     assert {"energy (J)", "height (m)", "nominal", "paper, published"} <= words
+
+
+@pytest.fixture
+def front_axes(payload):
+    figure = Figure()
+    assert _front(payload, figure)
+    (axes,) = figure.axes
+    return axes
+
+
+def test_the_front_figure_shows_front_cases_and_floor(front_axes, payload, data):
+    lines = {line.get_label(): np.column_stack(line.get_data()) for line in front_axes.lines}
+    (card,) = payload.studies
+    np.testing.assert_allclose(lines[card.label], data.front()[["energy_j", "height_m"]], rtol=1e-4)
+    np.testing.assert_allclose(lines["paper, simulated here"], [(c.energy_j, c.height_m) for c in card.cases])
+    published = [(case.energy_j, case.height_m) for case in PAPER_CASES.values()]
+    np.testing.assert_allclose(lines["paper, published"], published)
+    (_, low), (energy, height) = lines["m g (H - 0.5 m)"]
+    assert low == 0.5
+    assert height == pytest.approx(0.5 + energy / (card.floor_mass_kg * 9.81))
+    dominated = front_axes.collections[0].get_offsets()
+    assert len(dominated) == card.counts["feasible"] - len(card.front)
+
+
+def test_the_front_figure_begins_at_the_start_height_and_holds_every_mark(front_axes, payload):
+    (card,) = payload.studies
+    energies = [card.trials.columns["energy_j"][row] for row in card.front]
+    heights = [card.trials.columns["height_m"][row] for row in card.front]
+    energies += [case.energy_j for case in (*card.cases, *PAPER_CASES.values())]
+    heights += [case.height_m for case in (*card.cases, *PAPER_CASES.values())]
+    assert front_axes.get_xlim() == pytest.approx((0.0, 1.06 * max(energies)))
+    assert front_axes.get_ylim() == pytest.approx((0.5, max(heights) + 0.06))
+
+
+def test_link_masses_have_a_line_per_motor(source, source_u12):
+    figure = Figure()
+    _links(build([source, source_u12]), figure)
+    labels = [line.get_label() for line in figure.axes[0].lines]
+    assert labels == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12"]
 
 
 def test_the_same_study_gives_the_same_bytes(figures, payload, tmp_path):

@@ -11,7 +11,6 @@ from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.report.page import page, payload_of, write_report
 from pareto_monoped.report.payload import PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M
-from pareto_monoped.report.tables import safe
 
 
 class Scripts(HTMLParser):
@@ -54,10 +53,6 @@ def test_page_is_the_same_every_time(payload, text):
 
 def test_page_of_a_small_study_is_under_six_megabytes(text):
     assert len(text.encode()) < 6e6
-
-
-def test_safe_escapes_markup_and_quotes():
-    assert safe("<a b=\"c\" d='e'>&") == "&lt;a b=&quot;c&quot; d=&#x27;e&#x27;&gt;&amp;"
 
 
 def test_a_missing_database_is_refused_and_nothing_is_written(tmp_path, db):

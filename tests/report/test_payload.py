@@ -11,20 +11,8 @@ from pareto_monoped.report import trials as trials_module
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import embedded
 from pareto_monoped.report.payload import build
-from pareto_monoped.report.rounding import column
 from pareto_monoped.robot.build import build_robot
-from pareto_monoped.robot.population import robot_arrays
 from tests.report.conftest import cut, grown
-
-
-def test_column_keeps_five_digits_and_leaves_out_what_is_no_number():
-    values = [123.456789, -0.00123456, 98765.4, 0.0, float("nan"), float("inf")]
-    assert column(values) == [123.46, -0.0012346, 98765.0, 0.0, None, None]
-
-
-@pytest.mark.parametrize("value", np.random.default_rng(0).lognormal(0.0, 4.0, 12))
-def test_column_is_off_by_at_most_half_a_digit(value):
-    assert column([value])[0] == pytest.approx(value, rel=0.5e-4)
 
 
 def test_rows_are_the_trials(payload, data):
@@ -131,18 +119,3 @@ def test_weighted_runs_give_the_trial_of_least_cost(weighted):
             for h, e in zip(run["height_m"], run["energy_j"], strict=True)
         ]
         assert card.trials.trial[row] == run["trial"].iloc[int(np.argmin(costs))]
-
-
-def test_leg_is_weighed_and_drawn_with_the_dimensions_of_the_studys_own_motor(source_u12):
-    """The page once weighed and drew the default motor's leg, whatever the motor."""
-    actuator_map = source_u12.data.actuator_map
-    robots = [build_robot(case.design, actuator_map) for case in PAPER_CASES.values()]
-    arrays = robot_arrays([case.design.as_array() for case in PAPER_CASES.values()], actuator_map)
-    (leg,) = (table.leg for table in build([source_u12]).maps)
-    for robot, bodies_kg in zip(robots, arrays.body_mass_kg, strict=True):
-        units_kg = {unit.name: unit.mass_properties().mass_kg for unit in robot.units}
-        thigh_kg = np.interp(robot.design.thigh_length_m, leg.length_m, leg.thigh_kg)
-        shank_kg = np.interp(robot.design.shank_length_m, leg.length_m, leg.shank_kg)
-        assert thigh_kg + units_kg["knee_actuator"] + units_kg["journal"] == pytest.approx(bodies_kg[1], abs=1e-4)
-        assert shank_kg + units_kg["foot"] == pytest.approx(bodies_kg[2], abs=1e-4)
-        assert leg.housing_radius_m == pytest.approx(1e-3 * robot.knee.mount.housing_radius_mm)

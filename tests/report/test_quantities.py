@@ -1,0 +1,17 @@
+from pareto_monoped.design import NAMES
+from pareto_monoped.measures import AUDIT_MEASURES, MEASURES, measure
+from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
+
+
+def test_every_variable_and_measure_is_shown_once():
+    names = [q.name for q in QUANTITIES]
+    assert sorted(names) == sorted((*NAMES, *(m.name for m in MEASURES), *AUDIT))
+    assert set(AUDIT) <= {m.name for m in AUDIT_MEASURES}
+    assert set(EVERY_TRIAL) <= {m.name for m in MEASURES}
+
+
+def test_labels_and_units_of_measures_are_those_of_the_table():
+    for q in QUANTITIES:
+        if q.name not in NAMES:
+            m = measure(q.name)
+            assert (q.label, q.unit, q.decimals, q.scale) == (m.label, m.shown_unit, m.decimals, m.scale)
