@@ -39,6 +39,16 @@ def test_a_leg_s_chain_holds_twice_the_largest_torque_of_its_motor(motor):
     assert 1e-3 * chain.breaking_n * chain.pitch_radius_mm >= 2.0 * torque
 
 
+def test_where_mounts_differ_the_leg_fits_that_of_the_lowest_ratio(leg):
+    found = map_for("VT8020")
+    last = max(index for index, entry in enumerate(found.entries) if entry.actuator is not None)
+    actuator = found.entries[last].actuator
+    wider = dataclasses.replace(actuator, mount=dataclasses.replace(actuator.mount, housing_radius_mm=99.0))
+    entries = list(found.entries)
+    entries[last] = dataclasses.replace(entries[last], actuator=wider)
+    assert leg_dimensions(dataclasses.replace(found, entries=tuple(entries))) == leg
+
+
 def test_the_vt8020_s_leg_has_the_documented_dimensions(leg):
     """Golden values of the default motor's leg: plates, chain and bearings of the example in the docs."""
     assert (leg.mount_pitch_radius_mm, leg.housing_radius_mm, leg.back_pitch_radius_mm) == (49.0, 51.5, 25.5)

@@ -25,6 +25,8 @@ def assert_same_robot(arrays, i, robot):
         robot.design.thigh_length_m,
         robot.design.shank_length_m,
     )
+    foot = next(part for unit in robot.units for part in unit.parts if part.name == "foot")
+    assert arrays.foot_radius_m[i] == pytest.approx(1e-3 * foot.balls[0].radius_mm, rel=1e-15)
     for j, actuator in enumerate((robot.hip, robot.knee)):
         assert arrays.ratio[i, j] == actuator.ratio
         assert arrays.armature_kg_m2[i, j] == actuator.reflected_inertia_kg_m2
