@@ -1,1 +1,1 @@
-"""Stage 1: motors, planetary gear rules, strength, part dimensions and masses; gear ratio -> lightest actuator."""
+"""Stage 1: from a motor to the lightest actuator for every gear ratio."""

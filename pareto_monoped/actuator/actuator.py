@@ -22,7 +22,7 @@ class OutputInterface:
     Attributes:
         flange_radius_mm: of the turning face.
         bolts: M3 threads in the flange, the first on the x axis.
-        thread_depth_mm: of those.
+        thread_depth_mm: depth of these threads.
     """
 
     flange_radius_mm: float
@@ -37,10 +37,10 @@ class MountInterface:
     Attributes:
         housing_radius_mm: largest radius of the housing.
         bolts: M3 threads in the face at z = 0, the first on the x axis.
-        thread_depth_mm: of those.
-        back_bolts: the motor's own mounting pattern in the backplate: threads in the ISSPG's; in the ESSPG's, clearance
-            holes for the screws that reach the motor's base.
-        back_depth_mm: of those holes: thread (ISSPG) or plate (ESSPG).
+        thread_depth_mm: depth of these threads.
+        back_bolts: the motor's own mounting pattern in the backplate: threads in an ISSPG; in an ESSPG, clearance holes
+            for the screws that reach the motor's base.
+        back_depth_mm: depth of these holes: that of the thread (ISSPG) or of the plate (ESSPG).
     """
 
     housing_radius_mm: float
@@ -59,16 +59,17 @@ class Actuator:
         family: ``ISSPG`` or ``ESSPG``.
         gears: the gear set.
         face_width_mm: of all gears.
-        ratio: motor speed over output speed, the real one of the gear set.
+        ratio: motor speed over output speed, as the gear set has it.
         mass_kg: sum over the parts.
-        peak_torque_n_m, continuous_torque_n_m: at the output, ratio times the motor's (paper, section III-A), no loss.
+        peak_torque_n_m, continuous_torque_n_m: at the output: ratio times the motor's, without losses (paper, section
+            III-A).
         no_load_speed_rad_per_s: at the output.
-        efficiency: of the gear mesh.
-        contact_ratio_sun, contact_ratio_ring: of sun with planet, planet with ring.
+        efficiency: of both gear meshes together.
+        contact_ratio_sun, contact_ratio_ring: of sun and planet, of planet and ring.
         reflected_inertia_kg_m2: of everything that turns with the motor or in the gearbox, at the output.
-        length_mm: from the output face to the back, from which the heads of screws stand out.
+        length_mm: from the output face to the back, without the screw heads that stand out there.
         output, mount: where the links are bolted on.
-        parts: every part, the screws that hold a framed motor among them.
+        parts: every part, including the screws that hold a framed motor.
     """
 
     motor: Motor
@@ -91,7 +92,7 @@ class Actuator:
 
     @property
     def parts_bolted_at_back(self) -> tuple[Part, ...]:
-        """Every part where something is bolted to the back: its screws hold the framed motor too."""
+        """The parts if something is bolted to the back: its screws then hold the framed motor instead of its own."""
         return tuple(part for part in self.parts if part.role is not Role.STATOR_SCREW)
 
     def mass_breakdown_kg(self) -> dict[str, float]:
@@ -114,7 +115,7 @@ def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: Actuato
 
 
 def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings) -> Actuator:
-    """The actuator around one gear set, which is taken as it is: no constraint is checked."""
+    """The actuator around one gear set. No constraint is checked."""
     width = float(face_width_mm(gears, motor, settings))
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
@@ -144,9 +145,9 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:
     """Inertia at the output of all that moves when the output turns.
 
-    Rotor, sun, coupling and shafts at the square of the ratio; the carrier with all that is fixed to it, once; the
-    planets once on their orbit, and about themselves at the square of their speed against the output's,
-    1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with its own figure, not with its envelope's.
+    Rotor, sun, coupling and shafts count with the square of the ratio, the carrier with all that is fixed to it once.
+    Planets count once on their orbit, and about their own axes with the square of their speed over the output's,
+    1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with the motor's own figure, not with its envelope's.
     """
     ratio = float(gears.ratio)
     spin = 1.0 - float(gears.ring_teeth) / float(gears.planet_teeth)

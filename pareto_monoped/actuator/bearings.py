@@ -54,13 +54,13 @@ def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "
     """The lightest catalogue bearing with at least this bore; NaN beyond the catalogue.
 
     Args:
-        bore_mm: least bore.
+        bore_mm: least bore, float or shape (n,).
         model: ``regression`` keeps the bearing's dimensions and takes its mass from the quadratic fit (the paper's
             "regression-based function ... using the bearing's internal diameter").
     """
     table = catalogue()
     bores = table[:, 0]
-    # For each catalogue index, the lightest bearing from there on; the first of equals, which is the smallest.
+    # For each catalogue index, the lightest bearing from there on. Of equals, argmin takes the first, the smallest.
     lightest = np.array([start + int(np.argmin(table[start:, 3])) for start in range(len(table))] + [0])
     start = np.searchsorted(bores, np.asarray(bore_mm) - 1e-9, side="left")
     row = np.where((start < len(table))[..., None], table[lightest[start]], np.nan)

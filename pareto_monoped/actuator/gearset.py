@@ -31,12 +31,12 @@ class GearSet:
 
     @property
     def ring_root_radius_mm(self) -> Numbers:
-        """Of the ring's tooth spaces."""
+        """Radius of the bottoms of the ring's tooth spaces."""
         return self.module_mm * (0.5 * self.ring_teeth + DEDENDUM)
 
     @property
     def ring_pitch_radius_mm(self) -> Numbers:
-        """Of the ring."""
+        """Radius of the ring's pitch circle."""
         return 0.5 * self.module_mm * self.ring_teeth
 
     def sun(self, backlash_mm: float = 0.0) -> ExternalGear:
@@ -44,7 +44,7 @@ class GearSet:
         return ExternalGear(teeth=self.sun_teeth, module_mm=self.module_mm, backlash_mm=backlash_mm)
 
     def planet(self, backlash_mm: float = 0.0) -> ExternalGear:
-        """Cross-section of the planet that sits on the x axis: a space towards the sun."""
+        """Cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
         return ExternalGear(
             teeth=self.planet_teeth,
             module_mm=self.module_mm,
@@ -53,17 +53,13 @@ class GearSet:
         )
 
     def ring(self, backlash_mm: float = 0.0) -> InternalGear:
-        """Toothed hole of the ring, a space where the first planet has a tooth."""
+        """Toothed hole of the ring, with a space where the first planet has a tooth."""
         return InternalGear(
             teeth=self.ring_teeth,
             module_mm=self.module_mm,
             backlash_mm=backlash_mm,
             phase_rad=np.pi * (self.planet_teeth - 1.0) / self.ring_teeth,
         )
-
-    def planet_turn_rad(self, angle_rad: Numbers) -> Numbers:
-        """How far a planet that sits at an angle is turned about its own axis against the one on the x axis."""
-        return angle_rad * (1.0 + self.sun_teeth / self.planet_teeth)
 
     def chosen(self, index: int) -> "GearSet":
         """One set out of arrays, with plain numbers."""
@@ -104,12 +100,15 @@ def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
 
 
 def efficiency(gears: GearSet, friction: float) -> Numbers:
-    """Mesh efficiency of the stage with the ring fixed, sun in, carrier out.
+    """Mesh efficiency of the stage with the ring fixed, the sun as input and the carrier as output.
 
-    Loss of a mesh with the carrier held, per unit of power: pi mu (1/z1 + 1/z2) (1 - e + e1^2 + e2^2), for an internal
-    mesh 1/z1 - 1/z2, with e1 and e2 the shares of the contact ratio e before and after the pitch point (Ohlendorf;
-    Niemann/Winter, Maschinenelemente II). With eta0 the product of both meshes and the ratio i,
-    eta = (1 + (i - 1) eta0) / i (Mueller, Die Umlaufgetriebe): only the rolling power is lossy.
+    The loss of a mesh with the carrier held, per unit of power, is
+
+        pi mu (1/z1 + 1/z2) (1 - e1 - e2 + e1^2 + e2^2),
+
+    for an internal mesh with 1/z1 - 1/z2. The contact ratios e1 and e2 are the parts before and after the pitch point
+    (Ohlendorf; Niemann/Winter, Maschinenelemente II). With eta0, the product over both meshes, and the ratio i, the
+    efficiency is (1 + (i - 1) eta0) / i (Mueller, Die Umlaufgetriebe): only the rolling power suffers losses.
     """
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
 

@@ -38,9 +38,9 @@ _BELL_PLAY_MM = 1.0
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """All parts of an ISSPG, or of many at once.
 
-    The ring housing is one turned piece, solid between ring and stator: it carries the main bearing, the ring and the
-    stator, takes the stator's torque and its heat. Where the gears need more depth than the stator has, the stator
-    sits further back on it and the casing grows.
+    The ring housing is one turned piece, solid between ring and stator. It carries the main bearing, the ring and the
+    stator, whose torque and heat it takes up. Where the gears need more depth than the stator has, the stator sits
+    further back and the casing is longer.
     """
     shell = internal_layout(at, motor, settings)
     return (

@@ -1,11 +1,11 @@
-"""Radii and heights of an actuator: where every part begins and ends, for one gear set or for arrays of them.
+"""Radii and heights that both families have in common, for one gear set or for arrays of them.
 
-Actuator frame: z is the gearbox axis, z = 0 the face by which the housing is bolted to what carries it, and the output
-flange is flush with it and points to +z; everything lies at z <= 0. Both families have the same front. From the front:
+Actuator frame: z is the gearbox axis. The housing is bolted to what carries it by its face at z = 0. The output flange
+is flush with this face and points to +z; everything lies at z <= 0. From the front:
 
     output flange, main bearing around the carrier | planets between sun and ring | secondary carrier | coupling, motor
 
-In the ISSPG the stator sits on the ring housing, around the gears; in the ESSPG the motor follows behind them.
+In the ISSPG, the stator sits on the ring housing around the gears. In the ESSPG, the motor follows behind them.
 """
 
 from dataclasses import dataclass
@@ -25,14 +25,14 @@ FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
 RETAINING_RING_MM = 1.75
 """Thickness of the retaining ring in front of the main bearing: DIN 471 for 40 mm; 1.5 to 2.5 mm in the range used."""
 RING_GROOVE_WALL_MM = 0.75
-"""What is left of the carrier in front of that ring's groove; the flange in front of it carries the rest."""
+"""What is left of the carrier in front of that ring's groove; the flange before it carries the load."""
 END_BEARING_BORE_MM = 6.0
-"""Bearing that carries the sun's end in the carrier."""
+"""Bore of the bearing that carries the sun's end in the carrier; our own choice."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layout:
-    """All that parts have in common; z values are negative, r values radii, in mm."""
+    """What the parts of both families have in common, in mm; r are radii, z are heights and negative."""
 
     gears: GearSet
     face_width_mm: Numbers

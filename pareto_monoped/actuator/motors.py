@@ -14,7 +14,7 @@ from pareto_monoped.errors import MotorError
 from pareto_monoped.materials import MATERIALS
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-# The search tries all tooth numbers that fit; beyond this size it takes many seconds, and no leg is built for it.
+# The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
 Diameter = Annotated[float, Field(gt=0.0, le=400.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
 
@@ -22,7 +22,7 @@ PEAK_TO_CONTINUOUS = 5.5 / 3.82
 """Peak over continuous torque where a motor's peak torque is not published: the VT8020's own, 5.5 / 3.82 = 1.44."""
 
 BELL_THICKNESS_MM = 2.0
-"""Of an outrunner's bell where the stator's height is not published: VT8020 and U12 both are 2.0 mm longer than it."""
+"""Of an outrunner's bell where the stator's height is not published: VT8020 and U12 are 2.0 mm longer than theirs."""
 
 _STATOR_OUTER_SHARE, _STATOR_INNER_SHARE = 0.90, 0.67
 """Stator diameters over motor diameter where they are not published: means over VT8020, U8, U10 and U12, rounded."""
@@ -68,7 +68,7 @@ class FramedMotor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FramelessMotor:
-    """Stator and rotor alone; the stator's bore takes the gearbox.
+    """Stator and rotor alone; the gearbox goes into the stator's bore.
 
     ``stator_height_mm`` defaults to the length less a bell of 2 mm.
     """
@@ -107,14 +107,14 @@ class FramelessMotor:
 
     @property
     def bell_thickness_mm(self) -> float:
-        """What the kit is longer than its stator."""
+        """Length of the frameless motor less that of its stator."""
         assert self.stator_height_mm is not None
         return self.length_mm - self.stator_height_mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motor:
-    """A brushless outrunner. Values not given are derived; see each property of the same name without underscore.
+    """A brushless outrunner. Values that are not given are derived.
 
     Attributes:
         name: as asked for.

@@ -1,4 +1,4 @@
-"""The result of stage 1: for every ratio interval the lightest actuator, or what forbids one."""
+"""The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -39,8 +39,9 @@ class FamilyResult:
 
     Attributes:
         best, runner_up: the lightest set and the next, or None.
-        in_the_way: names of constraints (``rules.CONSTRAINTS``). With a best: each of them alone keeps out a lighter
-            set. Without: what the sets closest to being allowed break; empty if no integer tooth set lies there.
+        in_the_way: names of constraints (``rules.CONSTRAINTS``). If there is a best set: each of them alone keeps out a
+            lighter one. If there is none: the constraints that the nearest sets break; empty if no integer tooth set
+            has such a ratio.
     """
 
     best: Candidate | None
@@ -93,9 +94,8 @@ class MapEntry:
 class ActuatorMap:
     """Ratio -> lightest actuator, for one motor.
 
-    Stage 2 searches over a continuous ratio. It gets the gearbox of the interval the ratio lies in, and simulates the
-    ratio which that gearbox really has, up to 0.1 higher than the one asked for: a gearbox with the searched ratio does
-    not exist.
+    Stage 2 searches over a continuous ratio. It gets the gearbox of the interval in which the ratio lies and simulates
+    the real ratio of that gearbox, which differs from the searched one by less than 0.1.
     """
 
     motor: Motor
@@ -128,9 +128,9 @@ class ActuatorMap:
         return actuator
 
     def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
-        """Least mass in every interval, of one family or of both, NaN where there is none: the paper's figure.
+        """Least mass in every interval, of one family or of both: the curves of the paper's figure.
 
-        Shape (intervals,), to be drawn over ``ratios_low``.
+        Shape (intervals,), to be drawn over ``ratios_low``; NaN where there is no gearbox.
         """
         masses = np.full(len(self.entries), np.nan)
         for index, entry in enumerate(self.entries):

@@ -1,4 +1,4 @@
-"""The rules a gear set must obey: the paper's, and those that engineering adds, each with its name and source."""
+"""The rules that a gear set must obey: the paper's, and those that engineering adds, each with its source."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.shapes import Numbers
 
 TOLERANCE_MM = 1e-9
-"""Rounding must not decide: 0.5 x 158 is 79 and allowed where 79 is the limit."""
+"""Rounding must not decide: where 79 mm is the limit, 0.5 x 158 is allowed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSets:
-    """What the rules look at: gear sets, with what was laid out around them."""
+    """What the rules look at: one gear set or arrays of them, with what was laid out around them."""
 
     gears: GearSet
     face_width_mm: Numbers
@@ -31,7 +31,7 @@ class CandidateSets:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constraint:
-    """One rule: what it says, where it comes from, and its margin, which must not be negative."""
+    """One rule: what it says, its source, and its margin, which must not be negative."""
 
     says: str
     source: str
@@ -168,12 +168,12 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_bearing_room,
     ),
 }
-"""Name -> rule. Of the paper's others, I (ratio) picks the interval and II (Nr = Ns + 2 Np) is built in, as are the
-ranges of module and planets in V, which are enumerated."""
+"""Name -> rule. Three of the paper's constraints are not here: I (ratio) selects the interval, II (Nr = Ns + 2 Np) and
+the ranges of module and planets in V hold for every candidate."""
 
 
 def violations(sets: CandidateSets) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    """Which of the constraints that are on each gear set breaks.
+    """Which of the active constraints each gear set breaks.
 
     Returns:
         The names, and an array of shape (names, sets), True where broken.

@@ -23,9 +23,9 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
 
 _BEYOND_MM = 12.0
-"""How far beyond the room candidates are enumerated, so that a missing gearbox can be explained by what forbids it."""
+"""How far beyond the room candidates are enumerated, so that the rules can say why a gearbox is missing."""
 _TEETH_LEAST = 12
-"""Fewest teeth enumerated, for the same reason, and for searches with ``teeth_min`` off or lower."""
+"""Fewest teeth enumerated, for the same reason and for searches with ``teeth_min`` off."""
 
 
 def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
@@ -57,7 +57,7 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
 
 
 def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; in whole numbers, exact."""
+    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; exact, in integers."""
     return 10 * (sun_teeth + ring_teeth) // sun_teeth
 
 
@@ -70,7 +70,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
         CandidateSets(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=settings)
     )
     count = broken.sum(axis=0)
-    # Sets that break one rule at most are weighed: the others are neither solutions nor kept out by a single rule.
+    # Only sets that break at most one rule are weighed: others are neither solutions nor kept out by a single rule.
     near = np.flatnonzero(count <= 1)
     mass = np.full(len(count), np.inf)
     chosen = gears.where(near)
@@ -105,10 +105,10 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
 
 
 def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> ActuatorMap:
-    """The whole map of one motor: exhaustive, so every entry is the optimum of its interval.
+    """The whole map of one motor. The search is exhaustive, so every entry is the optimum of its interval.
 
     Args:
-        motor: which one; a family that it has no data for is left out.
+        motor: the motor; families for which it has no data are left out.
         settings: default ``ActuatorSettings()``.
     """
     settings = settings or ActuatorSettings()
@@ -137,7 +137,7 @@ def map_of(motor: Motor) -> ActuatorMap:
 
 
 def map_for(motor_name_or_path: str) -> ActuatorMap:
-    """The map with default settings of a shipped motor, or of one in a TOML file; kept for the next call.
+    """The map of a shipped motor or of one in a TOML file, with default settings; cached.
 
     Raises:
         MotorError: see ``load_motor``.

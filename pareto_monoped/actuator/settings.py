@@ -1,4 +1,4 @@
-"""What stage 1 takes as given: limits, standard modules, strength figures, dimensions; every one can be changed."""
+"""What stage 1 takes as given: limits, standard modules, safety factors, dimensions. All of it can be changed."""
 
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -34,7 +34,7 @@ CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)
 
 ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
 ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
-"""Modules of ISO 54 (and DIN 780) between 0.5 and 1.2 mm: first choice, and the values of its second series."""
+"""Modules of ISO 54 (and DIN 780) between 0.5 and 1.2 mm: those of the first series, preferred, and of the second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,14 +151,14 @@ class ActuatorSettings:
     """Settings of stage 1.
 
     Attributes:
-        modules_mm: from which the module is chosen.
-        planets_min, planets_max: of n_p (paper, eq. 5).
+        modules_mm: modules to choose from.
+        planets_min, planets_max: range of n_p (paper, eq. 5).
         teeth_min: N_min of sun and planet (paper, eq. 5).
         planet_gap_mm: delta_p of the no-interference constraint (paper, eq. 4).
         diameter_clearance_mm: delta_clr between D_GB and the motor (paper, section III-A).
-        contact_ratio_min: of either mesh (Shigley, section 13-6).
+        contact_ratio_min: least contact ratio of either mesh (Shigley, section 13-6).
         constraints_off: names of constraints not to apply, see ``rules.CONSTRAINTS``.
-        bearings: mass of the main bearing from the catalogue, or from the paper's regression over its bore.
+        bearings: source of the main bearing's mass: the catalogue, or the paper's regression over the bore.
         parts: dimensions and safety factors.
         materials: what the parts are made of.
     """

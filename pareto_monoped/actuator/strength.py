@@ -34,9 +34,9 @@ def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
 def face_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
     """Least face width at which the sun's teeth carry the motor's peak torque.
 
-    Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all sets have ratios
-    of 4 and more, so no planet has fewer. The speed is that of the pitch point against the carrier, which is what makes
-    teeth strike each other, at the motor's no-load speed: the fastest it can turn, an upper bound.
+    Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all ratios are 4 or
+    more, so no planet has fewer teeth. The speed is that of the pitch point against the carrier, which decides how hard
+    teeth strike each other. It is taken at the motor's no-load speed, an upper bound.
     """
     radius_m = 0.5e-3 * gears.module_mm * gears.sun_teeth
     force_n = settings.parts.gears.service_factor * motor.peak_torque_n_m / (radius_m * gears.planets)

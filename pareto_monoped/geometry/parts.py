@@ -1,7 +1,7 @@
 """Parts as stacks of extruded shapes with a material, and the mass properties that follow from them.
 
-Every part of the robot is described this way once; the simulation takes its mass and inertia from the description, the
-CAD builds its solid from the same description. Lengths in millimetres, results in SI.
+Every part of the robot is described this way once. The simulation takes its mass and inertia from the description, and
+the CAD builds its solid from the same description. Lengths are in millimetres, results in SI.
 
 Local frame: x and y in the plane of the shapes, z along the extrusion, which is a joint or gearbox axis.
 """
@@ -20,7 +20,7 @@ from pareto_monoped.materials import Material
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prism:
-    """A shape with holes, extruded from z0_mm to z1_mm; the prisms of one part touch but do not overlap."""
+    """A shape with holes, extruded from z0_mm to z1_mm. The prisms of one part may touch but not overlap."""
 
     outline: Shape
     z0_mm: Numbers
@@ -61,7 +61,7 @@ class Ball:
         radius_mm: of the ball.
         y_mm: of its centre; x and z are zero.
         top_mm: height above the centre at which the ball is cut flat, at most the radius.
-        pocket: what is taken out, wholly inside the ball.
+        pocket: a prism that is cut out; it lies wholly inside the ball.
     """
 
     radius_mm: Numbers
@@ -95,7 +95,7 @@ class Ball:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MassProperties:
-    """Mass and its first and second moments about the frame's origin; they add up over parts.
+    """Mass and its first and second moments about the frame's origin; the sum over parts is that of the whole.
 
     Attributes:
         mass_kg: shape (...).
@@ -177,8 +177,8 @@ class MassProperties:
 def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
     """Every vector along the last axis, rotated.
 
-    Written out, as a matrix product may add up in another order for another number of rows, and a robot must weigh the
-    same to the last bit in any population.
+    Written out because the order of the sum in a matrix product may depend on the number of rows. A robot must weigh
+    the same to the last bit in any population.
     """
     return np.stack(
         [turn[i, 0] * vectors[..., 0] + turn[i, 1] * vectors[..., 1] + turn[i, 2] * vectors[..., 2] for i in range(3)],
@@ -205,15 +205,15 @@ class Part:
         name: unique in the unit, lower case with underscores, such as ``planet``.
         role: what it does.
         material: what it is made of.
-        prisms: its geometry; drawn around the part's own centre if ``pitch_radius_mm`` is not zero.
-        balls: further geometry that is round all over.
-        process: how it comes to be: ``machined``, ``laser cut``, ``3D printed``, ``moulded`` or ``bought``.
-        count: how many of it the unit has, at each place.
-        pitch_radius_mm: its instances sit evenly on a circle of this radius about the unit's z axis; 0: at the origin.
+        prisms: its geometry, around the part's own centre if ``pitch_radius_mm`` is not zero.
+        balls: further geometry, bounded by spheres.
+        process: how it is made: ``machined``, ``laser cut``, ``3D printed``, ``moulded`` or ``bought``.
+        count: number of instances at each place.
+        pitch_radius_mm: the instances are evenly spread on a circle of this radius about the z axis; 0: on the axis.
         phase_rad: angle of the first instance on that circle.
-        places_mm: where the whole circle of instances, or the single one, is repeated: x, y, z from the unit's origin.
+        places_mm: centres of the circles of instances, x, y, z from the unit's origin.
         group: what it moves with.
-        catalogue_mass_kg: mass of one, if it is bought and its solid is only an envelope; the density follows.
+        catalogue_mass_kg: mass of one instance if it is bought and its solid is only an envelope; replaces the density.
         note: what the maker should know (standard, fit, catalogue number).
         joint: what holds it where its shape does not.
         visibility: where it is drawn.
@@ -258,7 +258,7 @@ class Part:
     def mass_properties(self) -> MassProperties:
         """All instances together, about the origin of the unit's frame.
 
-        Instances on a circle are taken as evenly spread, exact for three and more (for two, about the z axis).
+        Instances on a circle count as a ring. This is exact for three and more, and for two about the z axis.
         """
         try:
             return _remembered(self)
@@ -283,7 +283,7 @@ class Part:
         half = 0.5 * everything.mass_kg * np.square(np.asarray(self.pitch_radius_mm) * 1e-3)
         around = np.zeros((*half.shape, 3, 3))
         around[..., 0, 0] = around[..., 1, 1] = half
-        # The part's own x-y moments, turned through all angles, average to a round body centred on the axis.
+        # Averaged over all angles, the part's own x-y moments are those of a round body centred on the axis.
         second = everything.second_kg_m2.copy()
         mean = 0.5 * (second[..., 0, 0] + second[..., 1, 1])
         second[..., 0, 0] = second[..., 1, 1] = mean
@@ -295,7 +295,7 @@ class Part:
 
 @lru_cache(maxsize=1024)
 def _remembered(part: Part) -> MassProperties:
-    """Most parts do not depend on a link's length, and are weighed once."""
+    """The mass properties of a part of plain numbers, computed once: most parts do not depend on a link's length."""
     return part._everywhere()
 
 

@@ -31,7 +31,7 @@ class Screw:
     Attributes:
         shank: nominal.
         hole: clearance hole (ISO 273, fine).
-        core: tapping hole; screws are drawn with it where they are in a thread, so that nothing overlaps.
+        core: tapping hole; a screw inside a thread is drawn with this radius, so that it overlaps nothing.
         head, head_height: cap screw (ISO 4762).
     """
 
@@ -41,15 +41,8 @@ class Screw:
     head: float
     head_height: float
 
-    def prisms(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
-        """A cap screw on the z axis: head on its seat, through a grip into a thread, in ``direction`` (-1 or 1)."""
-        return (
-            cylinder(self.head, seat_mm - direction * self.head_height, seat_mm),
-            *self.flush(seat_mm=seat_mm, grip_mm=grip_mm, thread_mm=thread_mm, direction=direction),
-        )
-
     def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
-        """The same with a countersunk head, drawn as a plain shank."""
+        """A screw on the z axis without its head: through a grip into a thread, in ``direction`` (-1 or 1)."""
         split = seat_mm + direction * grip_mm
         return (cylinder(self.shank, seat_mm, split), cylinder(self.core, split, split + direction * thread_mm))
 
@@ -72,7 +65,7 @@ M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0)
 
 
 def screw_for(diameter_mm: float, core_mm: float) -> Screw:
-    """The screw for threads of a motor, whose core is drawn as the actuator draws it."""
+    """The screw for a motor's thread, with the core radius that the actuator draws there."""
     known = {2.0 * screw.shank: screw for screw in (M25, M3, M4, M5)}
     # Between the standard sizes: proportions that are no smaller than those of ISO 4762 from M3 up.
     other = Screw(
@@ -86,10 +79,10 @@ def screw_for(diameter_mm: float, core_mm: float) -> Screw:
 
 
 def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
-    """The longest catalogue length whose thread has room behind the grip; from seat or flush face to the end.
+    """The longest catalogue length that fits grip and thread, measured from the seat or the flush face.
 
     Raises:
-        DesignError: the catalogue has none so short.
+        DesignError: even the shortest screw is too long.
     """
     room = np.asarray(grip_mm + room_mm)
     row = np.searchsorted(LENGTHS_MM, room + 1e-9, side="right") - 1
@@ -120,21 +113,21 @@ def screw_part(
     grade: str = "8.8",
     note: str = "",
 ) -> Part:
-    """A bought screw as long as its thread has room.
+    """A bought screw, of the greatest length for which the thread has room.
 
     Args:
         name: of the part.
         screw: its size.
         head: ``cap`` and ``hexagon`` stand on the seat; ``countersunk`` is flush with it.
         seat_mm: height of the seat.
-        grip_mm: from there to where the thread begins.
+        grip_mm: from the seat to the beginning of the thread.
         room_mm: depth of the thread.
-        direction: in which it is driven along z, -1 or 1.
-        material: steel.
+        direction: of driving along z, -1 or 1.
+        material: of the screw.
         count: see ``Part``, as for the next four.
-        pitch_radius_mm: of the circle.
-        phase_rad: of the first on it.
-        places_mm: of the circle's centre.
+        pitch_radius_mm: radius of the circle.
+        phase_rad: angle of the first screw on it.
+        places_mm: centres of the circle.
         group: what it moves with.
         role: ``SCREW`` or ``STATOR_SCREW``.
         visibility: where it is drawn.
@@ -142,7 +135,7 @@ def screw_part(
         note: what else the maker should know.
 
     Raises:
-        DesignError: no screw of the catalogue has the grip and a thread.
+        DesignError: no catalogue length fits the grip and leaves a thread.
     """
     length = screw_length_mm(grip_mm, room_mm)
     if np.any(length <= grip_mm):

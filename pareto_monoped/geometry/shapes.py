@@ -174,7 +174,7 @@ def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
 
 
 def _added(moments: Moments) -> Moments:
-    """Sum over the pieces, one after the other: NumPy's own sum takes another order for other shapes."""
+    """Sum over the pieces, term by term, because the order of NumPy's own sum depends on the shape."""
     return Moments(*(reduce(np.add, getattr(moments, field.name))[()] for field in fields(moments)))
 
 

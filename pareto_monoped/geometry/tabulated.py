@@ -1,7 +1,7 @@
 """Mass properties that change smoothly with one length, as Chebyshev series.
 
-To weigh a population part by part takes thousands of small array operations. A link, though, is one smooth function of
-its length: interpolated in Chebyshev points it is the same function to the last digits, and is evaluated in a few
+Weighing a population part by part takes thousands of small array operations. But a link is one smooth function of its
+length. Interpolated in Chebyshev points, this function is exact to the last digits, and evaluating it takes a few
 operations for any number of lengths (Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 8).
 """
 
@@ -46,7 +46,7 @@ class Tabulated:
     def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
         """The m units for lengths in the range, shape (n,); a row does not depend on the others.
 
-        By Clenshaw's recurrence, which takes one operation after the other for each length.
+        It is evaluated by Clenshaw's recurrence, in the same order of operations for each length.
         """
         place = (2.0 * lengths_m - (self.low_m + self.high_m)) / (self.high_m - self.low_m)
         values: Floats = np.asarray(chebval(place, self.coefficients), dtype=np.float64)
@@ -54,7 +54,7 @@ class Tabulated:
 
 
 def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
-    """Tabulate units over a range of lengths, with as many nodes as it takes.
+    """Tabulate units over a range of lengths, with as many nodes as the precision needs.
 
     Args:
         weigh: the units, part by part.
@@ -82,7 +82,7 @@ def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
 def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
     """Coefficients of the interpolant in the Chebyshev points of the first kind.
 
-    Added up one after the other: a matrix product may take another order on another day.
+    Summed term by term, because the order of the sum in a matrix product may differ from run to run.
     """
     angles = np.pi * (np.arange(nodes) + 0.5) / nodes
     values = _folded(weigh(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles)))

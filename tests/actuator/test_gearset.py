@@ -85,6 +85,11 @@ def test_more_friction_never_helps(friction):
     assert efficiency(NOMINAL, friction) < efficiency(NOMINAL, 0.9 * friction)
 
 
+def planet_turn_rad(gears, angle_rad):
+    """How far a planet at an angle is turned about its own axis against the one on the x axis."""
+    return angle_rad * (1.0 + gears.sun_teeth / gears.planet_teeth)
+
+
 def turned(polygon, angle, x=0.0, y=0.0):
     return shapely.affinity.translate(shapely.affinity.rotate(polygon, angle, origin=(0, 0), use_radians=True), x, y)
 
@@ -103,10 +108,10 @@ def test_gears_in_phase_mesh_without_overlap(gears):
     for k in range(gears.planets):
         angle = 2.0 * np.pi * k / gears.planets
         r = gears.carrier_radius_mm
-        placed = turned(planet, gears.planet_turn_rad(angle), r * np.cos(angle), r * np.sin(angle))
+        placed = turned(planet, planet_turn_rad(gears, angle), r * np.cos(angle), r * np.sin(angle))
         assert placed.intersection(sun).area < 1e-9
         assert placed.difference(ring_hole).area < 1e-9
         off = turned(
-            planet, gears.planet_turn_rad(angle) + 0.6 / gears.planet_teeth, r * np.cos(angle), r * np.sin(angle)
+            planet, planet_turn_rad(gears, angle) + 0.6 / gears.planet_teeth, r * np.cos(angle), r * np.sin(angle)
         )
         assert off.intersection(sun).area + off.difference(ring_hole).area > 0.01
