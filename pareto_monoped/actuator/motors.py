@@ -177,7 +177,7 @@ class Motor:
 
     @property
     def outer_diameter_mm(self) -> float:
-        """Of the frameless motor, or of the framed one if there is no other."""
+        """Of the frameless motor, or of the framed one if there is no frameless one."""
         motor = self.frameless or self.framed
         assert motor is not None
         return motor.outer_diameter_mm

@@ -176,7 +176,7 @@ def record_job(
         raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
         why = f"no {problem}" if isinstance(problem, KeyError) else str(problem).splitlines()[0]
-        raise InputError(f"{source}: is no record of an export ({why}); give the design.json of one") from None
+        raise InputError(f"{source}: is not the record of an export ({why}); give the design.json of one") from None
     if maker != MADE_BY:
         note(f"{source} was made by {maker!r}, this is {MADE_BY}: files may differ")
     return Job(
@@ -194,5 +194,5 @@ def record_job(
 def _finite(value: Any) -> float:
     number = float(value)
     if not math.isfinite(number):
-        raise ValueError(f"{number} is no number")
+        raise ValueError(f"{number} is not a number")
     return number

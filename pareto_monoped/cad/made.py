@@ -1,4 +1,4 @@
-"""Whether an export that a job asks for is there already, up to date and whole."""
+"""Whether the export that a job asks for exists already, complete and up to date."""
 
 import json
 import math

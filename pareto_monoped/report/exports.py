@@ -53,7 +53,7 @@ def read_models(
     found = [[trial for trial, path in exported.items() if _is_export(path, data, trial)] for data in studies]
     for trial in sorted(exported.keys() - {trial for trials in found for trial in trials}):
         note(
-            f"{str(exported[trial])!r} is left out: it is no up-to-date export of trial {trial} of this study; "
+            f"{str(exported[trial])!r} is left out: it is not an up-to-date export of trial {trial} of this study; "
             "export it again with --force"
         )
     return [

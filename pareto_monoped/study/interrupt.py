@@ -22,7 +22,7 @@ class Interrupt:
             self._before = signal.signal(signal.SIGINT, self._first)
         return self
 
-    def __exit__(self, *exception: object) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._main:
             signal.signal(signal.SIGINT, self._before)
 

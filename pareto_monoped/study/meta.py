@@ -58,7 +58,7 @@ class StudyMeta:
 
 
 def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: Path) -> StudyMeta:
-    """The record from its stored rows; rows with other keys are passed over.
+    """The record from its stored rows; rows with other keys are ignored.
 
     Raises:
         DatabaseError: a value is missing or of the wrong type.

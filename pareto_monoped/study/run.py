@@ -165,7 +165,7 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> No
     if before != now:
         raise StudyError(
             f"study database {str(db)!r}: began with other results: height and energy of the probe designs were "
-            f"{before}, are {now} with this code and machine; go on where it began, or give another --db to start anew"
+            f"{before}, are {now} with this code and machine; continue where it began, or start anew with another --db"
         )
 
 

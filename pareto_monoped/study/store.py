@@ -109,7 +109,7 @@ class Store:
     def __enter__(self) -> "Store":
         return self
 
-    def __exit__(self, *exception: object) -> None:
+    def __exit__(self, *_: object) -> None:
         """Close, and merge the write-ahead log into the file, so that a study at rest is a single file."""
         try:
             self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")

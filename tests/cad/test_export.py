@@ -1,4 +1,4 @@
-"""The folder is whole or not there, foreign files are safe, and the same design gives the same bytes."""
+"""The folder is complete or absent, foreign files are safe, and the same design gives the same bytes."""
 
 import dataclasses
 import json

@@ -48,7 +48,7 @@ def test_a_front_is_no_distance_from_itself():
 
 
 def test_a_front_shifted_by_a_share_of_the_extent_is_that_share_away():
-    # Extent 0.4 m and 4 J: a tenth of it lower, nothing dearer.
+    # Extent 0.4 m and 4 J: a tenth of it lower, no more energy.
     shifted = FRONT - np.array([0.04, 0.0])
     assert epsilon(shifted, FRONT) == pytest.approx(0.1, rel=1e-12)
     assert igd_plus(shifted, FRONT) == pytest.approx(0.1, rel=1e-12)

@@ -83,7 +83,9 @@ def test_exports_that_are_left_out_are_named(exported, data):
     notes = []
     read_models(folder, [data], note=notes.append)
     assert len(notes) == 2
-    assert any(f"trial_{trial + 1}' is left out: it is no up-to-date export of trial {trial + 1}" in n for n in notes)
+    assert any(
+        f"trial_{trial + 1}' is left out: it is not an up-to-date export of trial {trial + 1}" in n for n in notes
+    )
     assert any("trial_99999999' is left out" in note for note in notes)
 
 

@@ -22,7 +22,7 @@ from pareto_monoped.study.simulator import load_simulator
 
 
 def start(study, db, workers):
-    """Run in a forked process; returns its id and a pipe with a number of safe trials a line."""
+    """Run in a forked process; returns its id and a pipe that gives the number of safe trials, one per line."""
     reading, writing = os.pipe()
     child = os.fork()
     if child:

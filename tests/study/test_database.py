@@ -1,4 +1,4 @@
-"""What is no study database is refused with one clear line, and left untouched to the byte."""
+"""A file that is not a study database is refused with one clear line and not changed by a byte."""
 
 import contextlib
 import os

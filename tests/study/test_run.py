@@ -151,7 +151,7 @@ def test_other_results_of_the_same_settings_are_refused(whole, tmp_path):
 
 
 def test_goes_on_without_the_users_own_files(tmp_path):
-    """Motor and calibration files are in the database: it is enough to go on from."""
+    """Motor and calibration files are in the database: it is enough to resume from."""
     from importlib import resources
 
     folder = resources.files("pareto_monoped") / "data" / "calibrations"

@@ -57,7 +57,7 @@ def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, li
     Args:
         winner: index of the triangle at each pixel, shape (2 height, 2 width); the last colour's where none is.
         depth: how near it is, the same shape.
-        owner: body of each triangle, and a last one that is no body.
+        owner: body of each triangle, and a last number for the background.
         colours: red, green and blue of each triangle, and last of the paper.
         line: colour of the lines.
         jump: difference of depth that makes a line.

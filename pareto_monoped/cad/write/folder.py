@@ -1,4 +1,4 @@
-"""The folder of an export: it is whole or not there, nothing is written outside it, foreign files stay."""
+"""The folder of an export: it is complete or absent, nothing is written outside it, and foreign files stay."""
 
 import json
 import re
