@@ -3,9 +3,11 @@
 import csv
 import io
 import json
+import re
 
 import build123d as bd
 import ezdxf
+import ezdxf.units
 import lib3mf
 import numpy as np
 import pytest
@@ -14,7 +16,10 @@ from ezdxf import edgeminer, edgesmith
 from ezdxf.path import make_path
 from PIL import Image
 
+from pareto_monoped.cad.picture.drawing import png
+from pareto_monoped.cad.picture.scenes import section_scene
 from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.dxf import LAYER, dxf, is_flat
 from pareto_monoped.cad.write.triangles import glb, stl, threemf
 
@@ -133,3 +138,44 @@ def test_design_record_and_readme_tell_the_same(exported):
     for height in (record["jumps"][kind]["height_m"] for kind in ("searched", "as_built")):
         assert f"{height:.4g}" in text
     assert "teeth 18/36/90" in text
+
+
+def test_parts_list_sizes_and_units_are_those_of_the_files(exported):
+    shape = bd.import_step(exported.folder / "assembly.step")
+    with (exported.folder / "bom.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    for row in rows:
+        mesh = trimesh.load(exported.folder / "parts" / "stl" / f"{row['part']}.stl")
+        assert [float(size) for size in row["size_mm"].split(" x ")] == pytest.approx(mesh.extents, abs=0.051)
+        units = [unit.label for unit in shape.children if row["part"] in {leaf.label for leaf in unit.children}]
+        assert row["used_in"].split() == units
+        assert row["made_or_bought"] == ("bought" if row["process"] == "bought" else "made")
+        assert float(row["total_g"]) == pytest.approx(int(row["count"]) * float(row["mass_g"]), abs=0.01 * 50)
+
+
+def test_step_files_have_the_colour_of_each_part_s_material(exported, product):
+    colours = {unique.part.material.name: unique.part.material.colour for unique in product.unique}
+    assert len(set(colours.values())) > 2
+    assert any(len(set(colour)) == 3 for colour in colours.values())
+    with (exported.folder / "bom.csv").open() as stream:
+        materials = {row["part"]: row["material"] for row in csv.DictReader(stream)}
+    number = re.compile(r"COLOUR_RGB\('',([^,]*),([^,]*),([^)]*)\)")
+    for name, material in materials.items():
+        text = (exported.folder / "parts" / "step" / f"{name}.step").read_text()
+        assert [tuple(map(float, found)) for found in number.findall(text)] == [colours[material]], name
+        assert "'2025-01-01T00:00:00'" in text
+    text = (exported.folder / "assembly.step").read_text()
+    assert {tuple(map(float, found)) for found in number.findall(text)} == {colours[m] for m in materials.values()}
+
+
+def test_laser_drawings_say_that_they_are_in_millimetres(exported):
+    for path in (exported.folder / "laser").iterdir():
+        assert ezdxf.readfile(path).units == ezdxf.units.MM
+
+
+def test_the_section_shows_the_knee_actuator(product):
+    drawn = files.pictures(product)["knee_actuator_section.png"].result()
+    knee, hip = (section_scene(product, f"{joint}_actuator") for joint in ("knee", "hip"))
+    assert drawn == png(knee.picture())
+    assert knee.legend != hip.legend
+    assert {name: count for name, count, _ in knee.legend}["planet"] == product.robot.knee.gears.planets
