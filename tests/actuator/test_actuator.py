@@ -80,6 +80,15 @@ def test_parts_have_names_of_their_own_groups_and_materials(vt_map):
         assert {part.process for part in parts} <= {"machined", "bought"}
 
 
+@pytest.mark.parametrize("ratio", [4.0, 7.9])
+def test_the_notes_of_the_gears_give_their_own_teeth_and_module(vt_map, ratio):
+    actuator = vt_map.lookup(ratio)
+    gears = actuator.gears
+    notes = {part.name: part.note for part in actuator.parts}
+    for name, teeth in (("sun", gears.sun_teeth), ("planet", gears.planet_teeth), ("ring", gears.ring_teeth)):
+        assert f"{teeth} teeth, module {gears.module_mm:g} mm" in notes[name]
+
+
 def test_building_twice_gives_the_same_record(vt8020, vt_map, settings):
     actuator = vt_map.lookup(6.0)
     assert build_actuator(vt8020, "ISSPG", actuator.gears, settings) == actuator

@@ -1,5 +1,7 @@
 """Every actuator of every map can be put together: nothing overlaps, nothing rubs, bolts meet their holes."""
 
+from dataclasses import replace
+
 import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator
@@ -7,6 +9,7 @@ from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import FramedMotor, FramelessMotor, Motor, load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.roles import SCREWS
 from pareto_monoped.geometry.shapes import Pattern
 from tests.actuator.fit import clashes, overlaps_within, pieces, rings
 
@@ -81,6 +84,31 @@ def test_interfaces_are_where_the_parts_have_their_holes(vt_map):
             hole.count == back.count and abs(2.0 * hole.pitch_radius_mm - back.pitch_circle_mm) < 1e-9
             for hole in patterns(actuator, "backplate")
         )
+
+
+def test_interfaces_are_as_deep_as_the_holes_of_the_parts(vt_map):
+    """Depth of the mounting threads and of the motor's own pattern at the back, from the parts' prisms."""
+
+    def depth(part, bolts):
+        spans = [
+            (float(prism.z0_mm), float(prism.z1_mm))
+            for prism in part.prisms
+            for hole in prism.holes
+            if isinstance(hole, Pattern)
+            and hole.count == bolts.count
+            and abs(2.0 * hole.pitch_radius_mm - bolts.pitch_circle_mm) < 1e-9
+        ]
+        return max(high for _, high in spans) - min(low for low, _ in spans)
+
+    for ratio in (4.0, 7.9):
+        actuator = vt_map.lookup(ratio)
+        parts, mount = {part.name: part for part in actuator.parts}, actuator.mount
+        assert depth(parts["backplate"], mount.back_bolts) == pytest.approx(mount.back_depth_mm)
+        front = parts["casing" if actuator.family == "ISSPG" else "ring_housing"]
+        rim = [prism for prism in front.prisms if prism.z1_mm > -actuator.length_mm / 2.0]
+        assert depth(replace(front, prisms=tuple(rim)), mount.bolts) == pytest.approx(mount.thread_depth_mm)
+        plain = [part for part in actuator.parts if part.role not in SCREWS]
+        assert mount.housing_radius_mm == pytest.approx(max(ring.r1 for part in plain for ring in rings(part)))
 
 
 @pytest.mark.parametrize("name", motor_names())

@@ -58,6 +58,20 @@ def test_rotor_inertias_are_of_the_size_of_published_ones():
     assert load_motor("VT8020").rotor_inertia_kg_m2 < 0.560 * 0.0445**2
 
 
+def test_a_framed_motor_s_rotor_is_a_ring_with_its_share_of_79_percent_of_the_mass():
+    """The MN8014 has no published stator: its diameters and its active mass follow from proportions."""
+    motor = load_motor("MN8014")
+    outer = motor.framed.outer_diameter_mm
+    stator_out, stator_in = 0.90 * outer, 0.67 * outer
+    # Cross-sections times 7.5 g/cm3 for the rotor, 60 percent of 7.8 g/cm3 for the stator.
+    rotor = 7.5 * (outer**2 - (stator_out + 1.0) ** 2)
+    share = rotor / (rotor + 4.68 * (stator_out**2 - stator_in**2))
+    assert motor.rotor_share() == pytest.approx(share)
+    mass = share * 0.79 * motor.framed.mass_kg
+    radii = 0.5e-3 * (stator_out + 1.0), 0.5e-3 * outer
+    assert motor.estimated_rotor_inertia_kg_m2() == pytest.approx(0.5 * mass * (radii[0] ** 2 + radii[1] ** 2))
+
+
 def test_a_motor_of_my_own(tmp_path):
     motor = load_motor(written(tmp_path, GOOD))
     assert motor.name == "mine"
@@ -66,6 +80,14 @@ def test_a_motor_of_my_own(tmp_path):
     given = load_motor(written(tmp_path, "rotor_inertia_kg_m2 = 2e-4\npeak_torque_n_m = 9.0\n" + GOOD))
     assert given.rotor_inertia_kg_m2 == 2e-4
     assert given.peak_torque_n_m == 9.0
+
+
+def test_bolt_circles_that_are_not_given_are_the_vt8020s_scaled_to_the_diameter(tmp_path):
+    motor = load_motor(written(tmp_path, GOOD))
+    assert motor.mount_holes.pitch_circle_mm == pytest.approx(51.0 * 90.0 / 89.0)
+    assert motor.output_holes.pitch_circle_mm == pytest.approx(71.5 * 90.0 / 89.0)
+    assert (motor.mount_holes.count, motor.mount_holes.diameter_mm) == (4, 4.0)
+    assert (motor.output_holes.count, motor.output_holes.diameter_mm) == (6, 3.0)
 
 
 def test_a_file_in_the_shipped_form(tmp_path):
