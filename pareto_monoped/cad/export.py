@@ -10,7 +10,8 @@ import numpy as np
 
 from pareto_monoped.actuator.search import ActuatorMap
 from pareto_monoped.cad.as_built import as_built, assembly_pose, require_fit
-from pareto_monoped.cad.check.checks import Check, run_checks
+from pareto_monoped.cad.check.result import Check
+from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.product import build_product, step_assembly
 from pareto_monoped.cad.write import files
@@ -20,6 +21,7 @@ from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, r
 from pareto_monoped.cad.write.formats import chosen_formats
 from pareto_monoped.cad.write.parts_list import parts_list
 from pareto_monoped.cad.write.readme import readme
+from pareto_monoped.cad.write.visuals import visuals
 from pareto_monoped.design import Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
@@ -97,7 +99,11 @@ def export_design(
     progress("simulating")
     jumps = _jumps({"searched": design, "as_built": built}, actuator_map, calibration)
     progress("checking")
-    checks = run_checks(product, robot_arrays(built.as_array(), actuator_map))
+    shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
+    part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
+    checks = run_checks(
+        product, robot_arrays(built.as_array(), actuator_map), part_files=part_files, other_files=other_files
+    )
     _require_passed(checks, out_dir)
     record = design_record(
         searched=design,
@@ -111,8 +117,9 @@ def export_design(
     )
     progress("writing")
     with beside(out_dir) as folder:
-        files.write_geometry(folder, product, wanted)
-        files.write_models(folder, product, simulated, calibration, wanted)
+        files.write_meshes(folder, part_files, other_files, wanted)
+        files.write_drawings(folder, product, wanted)
+        files.write_models(folder, product, shown, simulated, calibration, wanted)
         write(folder, "bom.csv", parts_list(product))
         write(folder, "checks.json", checks_record(checks))
         write(folder, "README.md", readme(record, product, checks, wanted))

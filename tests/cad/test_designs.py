@@ -10,9 +10,11 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.assembly import Pose
-from pareto_monoped.cad.check.checks import run_checks
+from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.product import build_product
+from pareto_monoped.cad.write import files
+from pareto_monoped.cad.write.visuals import visuals
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
@@ -22,6 +24,12 @@ _RATIOS = (4.0, 6.0, 7.9, 8.6, 4.55, 5.25, 5.95, 6.45, 7.05, 8.25)
 _LENGTHS = np.random.default_rng(20250101).uniform(0.3, 0.5, size=(20, 2)).round(4)
 _LENGTHS[:4] = [(0.3, 0.3), (0.5, 0.5), (0.3, 0.5), (0.5, 0.3)]
 DESIGNS = [(*lengths, _RATIOS[k % 10], _RATIOS[(3 * k + k // 10) % 10]) for k, lengths in enumerate(_LENGTHS.tolist())]
+
+
+def failures(product, arrays):
+    others = files.other_meshes(product, visuals(product), ("3mf", "glb"))
+    checks = run_checks(product, arrays, part_files=files.part_meshes(product), other_files=others)
+    return [failure for check in checks for failure in check.failures]
 
 
 @pytest.mark.parametrize(
@@ -35,8 +43,7 @@ def test_a_design_passes_every_check(actuator_map, numbers):
         {"thigh_length_m": thigh, "shank_length_m": shank, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio}
     )
     product = build_product(build_robot(design, actuator_map), Pose(hip_rad=-0.6, knee_rad=1.2))
-    checks = run_checks(product, robot_arrays(design.as_array(), actuator_map))
-    assert [failure for check in checks for failure in check.failures] == []
+    assert failures(product, robot_arrays(design.as_array(), actuator_map)) == []
 
 
 # Both families, where a motor has both.
@@ -74,5 +81,4 @@ def test_a_robot_of_any_motor_passes_every_check(motor):
     design = PAPER_CASES["C"].design.replace({"thigh_length_m": 0.3, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio})
     actuator_map = map_for(motor)
     product = build_product(build_robot(design, actuator_map), Pose(hip_rad=-0.6, knee_rad=1.2))
-    checks = run_checks(product, robot_arrays(design.as_array(), actuator_map))
-    assert [failure for check in checks for failure in check.failures] == []
+    assert failures(product, robot_arrays(design.as_array(), actuator_map)) == []

@@ -7,7 +7,7 @@ import pytest
 
 from pareto_monoped.cad import batch, export, jobs
 from pareto_monoped.cad.as_built import as_built, require_fit
-from pareto_monoped.cad.check.checks import Check
+from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.made import is_made
 from pareto_monoped.cad.write.folder import safe
@@ -23,7 +23,7 @@ LIGHT = ("dxf", "3mf")
 @pytest.fixture
 def quick(monkeypatch):
     """Leave out the checks, which have tests of their own."""
-    monkeypatch.setattr(export, "run_checks", lambda product, arrays: ())
+    monkeypatch.setattr(export, "run_checks", lambda *_, **__: ())
 
 
 def contents(folder):
@@ -72,8 +72,15 @@ def test_a_record_cannot_make_force_delete_outside_the_folder(quick, actuator_ma
 
 
 def test_a_failed_check_names_the_parts_and_writes_nothing(monkeypatch, actuator_map, calibration, tmp_path):
-    failed = Check(name="no two parts overlap", looked_at="", worst="", failures=("a and b overlap by 3.00 mm3",))
-    monkeypatch.setattr(export, "run_checks", lambda product, arrays: (failed,))
+    failed = Check(
+        name="no two parts overlap",
+        looked_at="",
+        measured=0.1,
+        limit=0.02,
+        unit="mm",
+        failures=("a and b overlap by 3.00 mm3",),
+    )
+    monkeypatch.setattr(export, "run_checks", lambda *_, **__: (failed,))
     with pytest.raises(CheckError, match=r"a and b overlap by 3\.00 mm3; nothing was written"):
         export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
     assert list(tmp_path.iterdir()) == []

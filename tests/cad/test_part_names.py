@@ -5,8 +5,9 @@ import dataclasses
 import pytest
 
 from pareto_monoped.cad.assembly import instances
-from pareto_monoped.cad.check import checks
-from pareto_monoped.cad.check.overlaps import in_gear_cycle, in_working_range
+from pareto_monoped.cad.check import bolts
+from pareto_monoped.cad.check.free_motion import in_working_range
+from pareto_monoped.cad.check.gear_mesh import in_gear_cycle
 from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.cad.picture.scenes import assembly_scene
 from pareto_monoped.cad.write.visuals import colliders, visuals
@@ -65,7 +66,7 @@ def test_what_is_loose_does_not_depend_on_names(product, renamed, names, unit, p
 
 
 def test_checks_do_not_depend_on_names(product, renamed):
-    assert checks._bolts(renamed) == checks._bolts(product)
+    assert bolts.check(renamed) == bolts.check(product)
     assert in_gear_cycle(renamed) == in_gear_cycle(product)
     assert in_working_range(renamed) == in_working_range(product)
 

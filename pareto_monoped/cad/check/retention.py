@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Pose, instances
+from pareto_monoped.cad.check.limits import LOOSE
+from pareto_monoped.cad.check.result import Check, count_of
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part
@@ -61,6 +63,12 @@ class _Slab:
     section: m3.CrossSection
     low: float
     high: float
+
+
+def check(robot: Robot) -> Check:
+    """Push every part of a robot in six directions."""
+    loose, count = loose_parts(robot)
+    return count_of(LOOSE, f"{count} parts in 6 directions, with {PLAY_MM} mm of play", [str(part) for part in loose])
 
 
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:

@@ -1,22 +1,30 @@
 """Part -> closed triangle mesh, from the same outlines as the solid; millimetres.
 
-Every prism is a polygon extruded, the prisms of a part are united by manifold3d, which keeps meshes closed. Polygons
-stay within ``TOLERANCE_MM`` of their arcs: at most a few thousandths of the volume of thin round parts.
+Each prism is an extruded polygon. manifold3d unites the prisms of a part and keeps the mesh closed. Polygons stay
+within ``TOLERANCE_MM`` of their arcs, which changes the volume of thin round parts by at most a few thousandths.
+
+Meshes must also be closed in their files, see ``closed``. Points that would merge there are welded, and parts that
+touch are moved apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.shape.closed import edge_numbers, flaws, place_numbers
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.shape.stacks import regrouped
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 TOLERANCE_MM = 0.01
+WELD_MM = 1e-4
+"""Shorter edges are welded. A robot's mesh in metres has single-precision numbers 0.00006 mm apart at most (at 1 m)."""
+APART_MM = 1e-3
+"""How far touching parts are moved apart: many such numbers, and 1 percent of the coarsest mesh's tolerance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,12 +43,8 @@ class Mesh:
 
     @property
     def is_closed(self) -> bool:
-        """Whether every edge borders two triangles, which run along it in opposite directions."""
-        t = self.triangles
-        edges = np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]])
-        count = len(self.points_mm)
-        there, back = np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))
-        return bool(np.all(there[1:] != there[:-1]) and np.array_equal(there, back))
+        """Whether every edge borders two triangles, which run along it in opposite directions, in its file too."""
+        return not flaws(self.points_mm[self.triangles])
 
     @property
     def volume_mm3(self) -> float:
@@ -56,11 +60,28 @@ def mesh_of(part: Part, tolerance_mm: float = TOLERANCE_MM) -> Mesh:
 # Designs of one study share most of their 70 kinds of parts, each in two tolerances; a mesh takes about 0.1 MB.
 @lru_cache(maxsize=512)
 def _mesh(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], tolerance_mm: float) -> Mesh:
-    body = m3.Manifold.batch_boolean(
-        [_extruded(prism, tolerance_mm) for prism in regrouped(prisms)] + [_ball(ball, tolerance_mm) for ball in balls],
-        m3.OpType.Add,
-    )
-    return mesh_from(body)
+    stack = regrouped(prisms)
+    mesh = _united(stack, balls, tolerance_mm)
+    # Prisms are apart by rounding if one ends at z0 + (z1 - z0) and the next begins at z1. Multiples of 2^-40 mm add up
+    # exactly. They are not used for every part, since other heights order the triangles in another way.
+    return _united([_exact(prism) for prism in stack], balls, tolerance_mm) if _has_twins(mesh) else mesh
+
+
+def _united(prisms: Sequence[Prism], balls: Sequence[Ball], tolerance_mm: float) -> Mesh:
+    pieces = [_extruded(prism, tolerance_mm) for prism in prisms] + [_ball(ball, tolerance_mm) for ball in balls]
+    return _welded(mesh_from(m3.Manifold.batch_boolean(pieces, m3.OpType.Add)))
+
+
+def _exact(prism: Prism) -> Prism:
+    """The prism with its ends rounded to multiples of 2^-40 mm."""
+    z0, z1 = (float(np.ldexp(np.rint(np.ldexp(float(z), 40)), -40)) for z in (prism.z0_mm, prism.z1_mm))
+    return replace(prism, z0_mm=z0, z1_mm=z1)
+
+
+def _has_twins(mesh: Mesh) -> bool:
+    """Whether two points of a mesh are one in a file."""
+    numbers = np.sort(place_numbers(mesh.points_mm))
+    return bool(np.any(numbers[1:] == numbers[:-1]))
 
 
 def mesh_from(body: m3.Manifold) -> Mesh:
@@ -73,23 +94,69 @@ def mesh_from(body: m3.Manifold) -> Mesh:
     )
 
 
-def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]]) -> Mesh:
-    """Meshes that do not touch as one, each moved by its 4 x 4 matrix.
+def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1.0) -> Mesh:
+    """Meshes that do not cut each other as one, each moved by its 4 x 4 matrix.
 
-    Put together here, since manifold3d orders triangles by when their meshes were made, which is not the same in every
-    process.
+    Where members have edges in common, these would border four triangles in a file; the later members are then moved
+    along y, the joints' axis, by as many micrometres as it takes. The meshes are put together here, since manifold3d
+    orders triangles by when their meshes were made, which is not the same in every process.
+
+    Args:
+        members: meshes with their matrices.
+        scale: from millimetres to the unit of the file that is to hold them.
     """
     starts = np.cumsum([0, *(len(mesh.points_mm) for mesh, _ in members)])
-    return Mesh(
-        points_mm=np.concatenate([mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3] for mesh, matrix in members]),
-        triangles=np.concatenate([mesh.triangles + at for (mesh, _), at in zip(members, starts, strict=False)]),
-        body=m3.Manifold.compose([placed(mesh.body, matrix) for mesh, matrix in members]),
-    )
+    points = np.concatenate([mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3] for mesh, matrix in members])
+    triangles = np.concatenate([mesh.triangles + at for (mesh, _), at in zip(members, starts, strict=False)])
+    owners = np.repeat(np.arange(len(members)), [len(mesh.points_mm) for mesh, _ in members])
+    steps = np.zeros(len(members))
+    # Ends, since the first member never moves, and each other one leaves the places of those before it one by one.
+    while (touching := _touching(points * scale, triangles, owners)).size:
+        steps[touching] += 1.0
+        points[:, 1] += APART_MM * np.isin(owners, touching)
+    moves = [np.array([0.0, APART_MM * step, 0.0]) for step in steps.tolist()]
+    bodies = [placed(mesh.body, matrix).translate(move) for (mesh, matrix), move in zip(members, moves, strict=True)]
+    return Mesh(points_mm=points, triangles=triangles, body=m3.Manifold.compose(bodies))
 
 
 def placed(body: m3.Manifold, matrix: NDArray[np.float64]) -> m3.Manifold:
     """A manifold moved by a 4 x 4 matrix."""
     return body.transform(matrix[:3, :])
+
+
+def _welded(mesh: Mesh) -> Mesh:
+    """The same mesh with the ends of edges shorter than ``WELD_MM`` made one point."""
+    edges = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    short = np.all(np.abs(mesh.points_mm[edges[:, 0]] - mesh.points_mm[edges[:, 1]]) < WELD_MM, axis=1)
+    if not short.any():
+        return mesh
+    target = np.arange(len(mesh.points_mm))
+    for one, other in np.sort(edges[short], axis=1):
+        target[target == target[other]] = target[one]
+    triangles = target[mesh.triangles]
+    flat = np.any(triangles == triangles[:, [1, 2, 0]], axis=1)
+    used, triangles = np.unique(triangles[~flat], return_inverse=True)
+    return Mesh(points_mm=mesh.points_mm[used], triangles=triangles.reshape(-1, 3), body=mesh.body)
+
+
+def _touching(points: NDArray[np.float64], triangles: NDArray[np.int64], owners: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Members that have an edge in common with an earlier member; of several with the same edge at least the last.
+
+    Args:
+        points: in the file's unit, shape (n, 3).
+        triangles: indices of points, shape (m, 3).
+        owners: to which member each point belongs, shape (n,).
+    """
+    here = place_numbers(points)
+    start, end = here[triangles].ravel(), here[triangles[:, [1, 2, 0]]].ravel()
+    # One direction is enough: the edges of a closed member run in both.
+    chosen = np.flatnonzero(start < end)
+    edges = edge_numbers(start[chosen], end[chosen])
+    order = np.argsort(edges)
+    same = np.flatnonzero(edges[order[1:]] == edges[order[:-1]])
+    owner = owners[triangles[:, 0]][chosen[order] // 3]
+    one, other = owner[same], owner[same + 1]
+    return np.unique(np.maximum(one, other)[one != other])
 
 
 def _extruded(prism: Prism, tolerance_mm: float) -> m3.Manifold:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 
-from pareto_monoped.cad.check.checks import Check
+from pareto_monoped.cad.check.result import Check
 
 
 def checks_record(checks: Sequence[Check]) -> str:
@@ -14,6 +14,9 @@ def checks_record(checks: Sequence[Check]) -> str:
             "passed": check.passed,
             "looked_at": check.looked_at,
             "worst": check.worst,
+            "measured": check.measured,
+            "limit": check.limit,
+            "unit": check.unit,
             "failures": list(check.failures),
         }
         for check in checks

@@ -1,6 +1,6 @@
 """Which file of an export holds what."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
@@ -9,26 +9,55 @@ import numpy as np
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
-from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf, visuals
+from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf
 from pareto_monoped.cad.write.folder import safe, write
+from pareto_monoped.cad.write.visuals import METRES, Visual, colliders
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import mjcf as simulated_mjcf
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.robot.population import RobotArrays
 
 
-def write_geometry(folder: Path, product: Product, formats: Sequence[str]) -> None:
-    """Write the meshes and laser drawings of all parts, and the assembly's mesh."""
-    for unique in product.unique:
-        name = safe(unique.name)
-        if "stl" in formats:
-            write(folder, f"parts/stl/{name}.stl", triangles.stl(unique.mesh))
-        if "3mf" in formats and unique.part.process == "3D printed":
-            write(folder, f"print/{name}.3mf", triangles.threemf(unique.mesh, unique.name))
-        if "dxf" in formats and dxf.is_flat(unique.part):
-            write(folder, f"laser/{name}.dxf", dxf.dxf(unique.part))
+def part_meshes(product: Product) -> dict[str, bytes]:
+    """The STL file of every unique part, by the part's name."""
+    return {unique.name: triangles.stl(unique.mesh) for unique in product.unique}
+
+
+def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
+    """All other files with triangles: content by path in the export's folder.
+
+    Args:
+        product: the parts.
+        shown: the visual meshes of the robot models, if there are to be any.
+        formats: of ``FORMATS``.
+    """
+    made: dict[str, bytes] = {}
+    if "3mf" in formats:
+        printed = [unique for unique in product.unique if unique.part.process == "3D printed"]
+        made |= {f"print/{safe(unique.name)}.3mf": triangles.threemf(unique.mesh, unique.name) for unique in printed}
     if "glb" in formats:
-        write(folder, "assembly.glb", triangles.glb(product))
+        made["assembly.glb"] = triangles.glb(product)
+    return made | {
+        f"model/meshes/{safe(visual.name)}.stl": triangles.stl(visual.mesh, scale=METRES) for visual in shown
+    }
+
+
+def write_meshes(
+    folder: Path, part_files: Mapping[str, bytes], other_files: Mapping[str, bytes], formats: Collection[str]
+) -> None:
+    """Write the very bytes that were checked, the parts' STL files only if they are wanted."""
+    if "stl" in formats:
+        for name, content in part_files.items():
+            write(folder, f"parts/stl/{safe(name)}.stl", content)
+    for path, content in other_files.items():
+        write(folder, path, content)
+
+
+def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> None:
+    """Write the laser drawings of the flat parts."""
+    for unique in product.unique:
+        if "dxf" in formats and dxf.is_flat(unique.part):
+            write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
 
 
 def write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> None:
@@ -39,14 +68,17 @@ def write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> N
 
 
 def write_models(
-    folder: Path, product: Product, arrays: RobotArrays, calibration: Calibration, formats: Sequence[str]
+    folder: Path,
+    product: Product,
+    shown: Sequence[Visual],
+    arrays: RobotArrays,
+    calibration: Calibration,
+    formats: Collection[str],
 ) -> None:
-    """Write MJCF, URDF and the meshes that both show; no MJCF of a robot that cannot stand, as it has no jump."""
+    """Write MJCF and URDF, which show the same meshes; no MJCF of a robot that cannot stand, as it has no jump."""
     if not {"mjcf", "urdf"} & set(formats):
         return
-    shown, solid = visuals.visuals(product), visuals.colliders(product)
-    for visual in shown:
-        write(folder, f"model/meshes/{safe(visual.name)}.stl", triangles.stl(visual.mesh, scale=1e-3))
+    solid = colliders(product)
     if "mjcf" in formats and np.isfinite(start_pose(arrays, calibration).hip_rad[0]):
         document = mjcf.mjcf_with_meshes(simulated_mjcf(arrays, calibration), shown, solid)
         write(folder, "model/monoped.xml", document)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from pareto_monoped.cad.check.checks import Check
+from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.formats import FILES
 from pareto_monoped.design import VARIABLES

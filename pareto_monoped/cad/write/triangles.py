@@ -1,4 +1,4 @@
-"""STL, 3MF and GLB from the meshes."""
+"""STL, 3MF and GLB from the meshes, as bytes: an export checks them (``check.watertight``) before it writes them."""
 
 import io
 import zipfile

@@ -15,6 +15,8 @@ from pareto_monoped.geometry.roles import Role, Visibility
 Floats = NDArray[np.float64]
 
 VISUAL_TOLERANCE_MM = 0.1
+METRES = 1e-3
+"""From the meshes' millimetres to the models' unit."""
 _MARGIN_M = 1e-3
 
 
@@ -61,7 +63,7 @@ def visuals(product: Product) -> tuple[Visual, ...]:
         Visual(
             name=f"{body}_{material}",
             body=body,
-            mesh=joined(members),
+            mesh=joined(members, METRES),
             colour=colours[body, material],
         )
         for (body, material), members in shown.items()

@@ -6,39 +6,18 @@ import pytest
 
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.check import checks
+from pareto_monoped.cad.check import retention
 from pareto_monoped.cad.check.retention import PLAY_MM, loose_parts
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.roles import SCREWS, Joint, JointKind
 from pareto_monoped.geometry.screws import LENGTHS_MM
 from pareto_monoped.robot.build import build_robot
+from tests.cad.check.faults import replaced, without
 
 
 def loose(robot):
     """Names of what is loose, numbers of instances cut off, with the directions."""
     return {found.name.rstrip("_0123456789"): found.directions for found in loose_parts(robot)[0]}
-
-
-def with_parts(robot, change):
-    """The robot with other records."""
-    units = tuple(
-        dataclasses.replace(unit, parts=tuple(p for part in unit.parts for p in change(unit, part)))
-        for unit in robot.units
-    )
-    return dataclasses.replace(robot, units=units)
-
-
-def without(robot, name):
-    changed = with_parts(robot, lambda unit, part: () if f"{unit.name}/{part.name}" == name else (part,))
-    assert sum(len(unit.parts) for unit in changed.units) == sum(len(unit.parts) for unit in robot.units) - 1
-    return changed
-
-
-def replaced(robot, name, **fields):
-    def change(unit, part):
-        return (dataclasses.replace(part, **fields) if f"{unit.name}/{part.name}" == name else part,)
-
-    return with_parts(robot, change)
 
 
 @pytest.fixture(scope="module")
@@ -115,12 +94,21 @@ def test_play_beyond_the_limit_is_found(robot):
     )
 
 
+def test_a_ring_without_its_joint_is_the_only_failure(product, examine, failing):
+    loosened = replaced(product.robot, "hip_actuator/ring", joint=None)
+    broken = dataclasses.replace(product, robot=loosened)
+    assert failing(product=broken) == ["every part is held"]
+    check = examine(product=broken)["every part is held"]
+    assert check.failures == ("hip_actuator/ring is not held along +y",)
+    assert check.measured == 1.0
+
+
 def test_the_check_names_what_is_loose(product):
-    faulty = dataclasses.replace(product, robot=without(product.robot, "hip_actuator/backplate_screw"))
-    check = checks._retention(faulty)
+    check = retention.check(without(product.robot, "hip_actuator/backplate_screw"))
     assert not check.passed
     assert "hip_actuator/backplate is not held along +y" in check.failures
-    assert checks._retention(product).passed
+    assert check.measured == len(check.failures)
+    assert retention.check(product.robot).passed
 
 
 def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):

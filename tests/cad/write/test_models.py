@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.check.checks import body_properties, solid_properties
+from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
 from pareto_monoped.design import Design
 from pareto_monoped.jump import single
 from pareto_monoped.robot.population import robot_arrays
@@ -73,9 +73,9 @@ def test_urdf_loads_with_the_simulated_masses_and_inertias(exported, built, actu
 
 def test_bodies_of_solids_are_the_bodies_that_jump(product, actuator_map):
     robots = robot_arrays(product.robot.design.as_array(), actuator_map)
-    solids = solid_properties(product)
+    bodies = weigh_bodies(product, weigh_parts(product))
     for k, body in enumerate(("base", "thigh", "shank")):
-        cad = body_properties(product, solids, body)
+        cad = bodies[body]
         assert float(cad.mass_kg) == pytest.approx(robots.body_mass_kg[0, k], rel=5e-3)
         assert cad.com_m == pytest.approx(robots.body_com_m[0, k], abs=1e-4)
         inertia = np.diag(robots.body_inertia_kg_m2[0, k])

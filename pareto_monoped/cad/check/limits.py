@@ -1,0 +1,62 @@
+"""The limits of all checks in one table, with their reasons."""
+
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """What a check allows.
+
+    Attributes:
+        name: of the check, as the export's reader sees it.
+        value: the greatest allowed value, or the least if ``at_least``.
+        unit: of the value; things that are counted name themselves.
+        at_least: whether it is a lower limit.
+    """
+
+    name: str
+    value: float
+    unit: str
+    at_least: bool = False
+
+    def allows(self, value: float) -> bool:
+        """Whether a measured value is within the limit; NaN is not."""
+        return value >= self.value if self.at_least else value <= self.value
+
+    def of(self, body: str) -> "Limit":
+        """The limit for one body, ``{}`` in its name replaced by the body's."""
+        return replace(self, name=self.name.format(body))
+
+
+VALID = Limit(name="solids are valid", value=0, unit="invalid solids")
+WATERTIGHT = Limit(name="meshes are watertight", value=0, unit="open meshes")
+
+MESH_VOLUME = Limit(name="meshes have the volumes of their parts", value=1.0, unit="%")
+"""Facets within 0.01 mm of thin round parts take 0.3 percent."""
+
+PART_MASS = Limit(name="parts weigh what was simulated", value=1.0, unit="%")
+"""Two descriptions of one geometry: splines of gear teeth make 0.02 percent, the rest is far from any real fault."""
+
+BODY_MASS = Limit(name="{} is the body that was simulated", value=0.5, unit="% of its mass")
+"""Greatest found over all motors and both families: 0.002 percent."""
+
+CENTRE_OF_MASS = Limit(name="{} has the centre of mass that was simulated", value=0.05, unit="mm")
+"""Half of the step to which links are made. Greatest found over all motors and both families: 0.0013 mm."""
+
+INERTIA = Limit(name="{} has the inertia that was simulated", value=3.0, unit="%")
+"""Parts on circles count as evenly spread in the simulation. Greatest found over all motors and families: 1.04 percent.
+Each entry ij of the tensor is compared with the square root of ii times jj, which bounds it."""
+
+DEPTH_MM = 0.02
+"""Mean depth below which an overlap is the facets of two fitting cylinders, which lie within 0.01 mm of the circle."""
+OVERLAP = Limit(name="no two parts overlap", value=DEPTH_MM, unit="mm deep")
+GEAR_MESH = Limit(name="gears mesh", value=DEPTH_MM, unit="mm deep")
+FREE_MOTION = Limit(name="the leg moves freely", value=DEPTH_MM, unit="mm deep")
+SHANK_CLEARANCE = Limit(name="the shank passes the base", value=0.0, unit="mm", at_least=True)
+"""Between all that the base reaches and all that the shank reaches, whatever the hip's angle."""
+
+BOLT_OFFSET = Limit(name="bolt patterns coincide", value=0.05, unit="mm")
+"""Half of the radial clearance of a fine clearance hole: M3 in 3.2 mm (ISO 273)."""
+BOLT_PARTS = Limit(name="bolts join parts", value=2, unit="parts", at_least=True)
+
+LOOSE = Limit(name="every part is held", value=0, unit="loose parts")

@@ -1,0 +1,66 @@
+import pytest
+
+from pareto_monoped.cad.check import bolts, free_motion, gear_mesh, overlap, retention, watertight
+from pareto_monoped.cad.check.run import run_checks
+from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.write import files
+from pareto_monoped.cad.write.visuals import visuals
+from pareto_monoped.robot.population import robot_arrays
+
+
+@pytest.fixture(scope="session")
+def arrays(product, actuator_map):
+    """The product's robot as it is simulated."""
+    return robot_arrays(product.robot.design.as_array(), actuator_map)
+
+
+@pytest.fixture(scope="session")
+def part_files(product):
+    return files.part_meshes(product)
+
+
+@pytest.fixture(scope="session")
+def other_files(product):
+    return files.other_meshes(product, visuals(product), ("3mf", "glb"))
+
+
+def _reads(argument):
+    """What of a check's argument its result can depend on, but for the solids, which have checks of their own."""
+    return (argument.instances, argument.unique, argument.robot) if isinstance(argument, Product) else (argument,)
+
+
+@pytest.fixture(scope="session")
+def examine(product, arrays, part_files, other_files):
+    """Run all checks with something broken; returns them by name.
+
+    Results of the slow checks are kept as long as nothing changes that these checks read.
+    """
+    known = {}
+
+    def kept(module):
+        look = module.check
+
+        def check(*arguments):
+            reads = [item for argument in arguments for item in _reads(argument)]
+            ranges = (free_motion.HIP_RANGE_RAD, free_motion.KNEE_RANGE_RAD)
+            key = (module.__name__, *map(id, reads), ranges)
+            if key not in known:
+                known[key] = (look(*arguments), reads)  # an id is unique only while its object is kept
+            return known[key][0]
+
+        return check
+
+    def run(product=product, arrays=arrays, part_files=part_files, other_files=other_files):
+        with pytest.MonkeyPatch.context() as patch:
+            for module in (overlap, gear_mesh, free_motion, bolts, retention, watertight):
+                patch.setattr(module, "check", kept(module))
+            checks = run_checks(product, arrays, part_files=part_files, other_files=other_files)
+        return {check.name: check for check in checks}
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def failing(examine):
+    """Names of the checks that fail with something broken."""
+    return lambda **broken: [name for name, check in examine(**broken).items() if not check.passed]

@@ -1,0 +1,55 @@
+"""Screws and bolts: off their holes, and in too few parts."""
+
+import dataclasses
+
+import pytest
+
+from pareto_monoped.cad.check import bolts
+from tests.cad.check.faults import moved, shifted, with_instance
+
+
+def test_a_screw_off_its_hole_is_measured(product, examine, failing):
+    broken = moved(product, "thigh/knee_mount_screw_1", shifted(x=0.3))
+    # It also cuts into the thread of its hole.
+    assert failing(product=broken) == ["no two parts overlap", "bolt patterns coincide"]
+    check = examine(product=broken)["bolt patterns coincide"]
+    assert check.measured == pytest.approx(0.3, abs=1e-6)
+    assert any("thigh/knee_mount_screw_1: 0.30 mm off its hole in knee_actuator/" in text for text in check.failures)
+
+
+@pytest.mark.parametrize(("offset_mm", "passes"), [(0.049, True), (0.051, False), (-0.051, False)])
+def test_the_limit_is_where_it_is_said_to_be(product, offset_mm, passes):
+    for turn in (shifted(x=offset_mm), shifted(y=offset_mm)):
+        check, joins = bolts.check(moved(product, "thigh/knee_mount_screw_1", turn))
+        assert check.passed is passes
+        assert joins.passed
+
+
+def test_a_hole_pattern_off_by_more_than_the_limit_is_the_only_failure(product, failing):
+    """The plate's record has its holes 0.06 mm off, its mesh does not."""
+
+    def off(instance):
+        world = instance.world.copy()
+        world[0, 3] += 0.06
+        return dataclasses.replace(instance, world=world)
+
+    broken = with_instance(product, "thigh/thigh_plate_outer", off)
+    assert "bolt patterns coincide" in failing(product=broken)
+
+
+def test_a_part_without_its_holes_is_not_joined(product, examine, failing):
+    def blank(instance):
+        whole = tuple(dataclasses.replace(prism, holes=()) for prism in instance.part.prisms)
+        return dataclasses.replace(instance, part=dataclasses.replace(instance.part, prisms=whole))
+
+    broken = with_instance(product, "base_frame/base_far_cheek", blank)
+    assert failing(product=broken) == ["bolts join parts"]
+    check = examine(product=broken)["bolts join parts"]
+    assert check.measured == 1.0
+    assert all(": joins 1 part(s), not two: " in text for text in check.failures)
+
+
+def test_every_screw_and_bolt_is_looked_at(product):
+    names = [i.name for i in product.instances if "screw" in i.name or "bolt" in i.name]
+    offsets, joins = bolts.check(product)
+    assert offsets.looked_at == joins.looked_at == f"{len(names)} screws and bolts"

@@ -1,0 +1,45 @@
+"""Centres of mass: the check did not look at them once, and passed with one moved by 50 mm."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pareto_monoped.cad.check.limits import CENTRE_OF_MASS
+from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from tests.cad.check.faults import moved, shifted
+
+BODIES = ("base", "thigh", "shank")
+
+
+def displaced(arrays, body, axis, distance_mm):
+    com = arrays.body_com_m.copy()
+    com[0, BODIES.index(body), axis] += 1e-3 * distance_mm
+    return dataclasses.replace(arrays, body_com_m=com)
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize(("axis", "distance_mm"), [(0, 50.0), (0, 0.052), (1, -0.052), (2, 0.052)])
+def test_a_displaced_centre_of_mass_is_found(arrays, examine, failing, body, axis, distance_mm):
+    broken = displaced(arrays, body, axis, distance_mm)
+    name = f"{body} has the centre of mass that was simulated"
+    assert failing(arrays=broken) == [name]
+    check = examine(arrays=broken)[name]
+    assert check.measured == pytest.approx(abs(distance_mm), abs=2e-3)
+    assert check.failures == (f"{body}: centre of mass {check.measured:.2f} mm off what was simulated",)
+
+
+def test_a_centre_of_mass_within_the_limit_passes(arrays, failing):
+    for axis in range(3):
+        assert failing(arrays=displaced(arrays, "thigh", axis, 0.95 * CENTRE_OF_MASS.value)) == []
+
+
+def test_a_moved_part_moves_the_centre_of_mass_of_its_body_alone(product):
+    """By its share of the mass, in the body's frame: the foot hangs with its y axis along the shank."""
+    foot = next(kind for kind in product.unique if kind.name == "foot")
+    before = weigh_bodies(product, weigh_parts(product))
+    after = weigh_bodies(moved(product, "foot/foot", shifted(y=-7.0)), weigh_parts(product))
+    share = float(foot.part.unit_mass_kg()) / float(before["shank"].mass_kg)
+    assert 1e3 * (after["shank"].com_m - before["shank"].com_m) == pytest.approx([0.0, 0.0, -7.0 * share], abs=1e-3)
+    for body in ("base", "thigh"):
+        assert np.array_equal(after[body].com_m, before[body].com_m)

@@ -1,0 +1,83 @@
+"""The leg folds freely; parts in its way are found, and so is a shank that reaches the base."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pareto_monoped.cad.assembly import Pose, body_frames, instances
+from pareto_monoped.cad.check import free_motion
+from pareto_monoped.cad.check.limits import FREE_MOTION
+from pareto_monoped.cad.product import build_product
+from pareto_monoped.robot.build import build_robot
+from tests.cad.check.faults import bare, with_unit
+
+ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
+
+
+def test_a_range_that_leads_the_thigh_into_the_frame_is_found(examine, failing, monkeypatch):
+    monkeypatch.setattr(free_motion, "HIP_RANGE_RAD", (-1.92, 3.14))
+    assert failing() == ["the leg moves freely"]
+    check = examine()["the leg moves freely"]
+    assert check.measured > FREE_MOTION.value
+    assert all(" with the hip at 1" in text and "base_frame/" in text and "thigh/" in text for text in check.failures)
+
+
+def test_a_range_that_leads_the_shank_into_the_thigh_is_found(examine, monkeypatch):
+    monkeypatch.setattr(free_motion, "KNEE_RANGE_RAD", (-3.14, 2.62))
+    check = examine()["the leg moves freely"]
+    assert not check.passed
+    assert all(" with the knee at -1" in text for text in check.failures)
+
+
+def test_a_shank_that_reaches_the_base_is_found(failing, examine, monkeypatch):
+    monkeypatch.setattr(free_motion, "_shank_clearance_mm", lambda *_: -3.21)
+    monkeypatch.setattr(free_motion, "HIP_RANGE_RAD", (-1.9, 1.9))  # looked at anew
+    assert failing() == ["the shank passes the base"]
+    check = examine()["the shank passes the base"]
+    assert check.failures == ("shank and base come 3.2 mm into each other's reach",)
+    assert check.measured == -3.21
+
+
+def test_the_shank_s_clearance_is_the_least_distance_of_its_points_from_the_reach_of_the_base(product):
+    """Slowly: all corners, the knee in small steps; corners alone may miss the nearest point by a facet's depth."""
+    robot = bare(product.robot)
+    small = build_product(robot, product.pose)
+    _, clearance = free_motion.in_working_range(small)
+    bodies = {"base": [], "shank": []}
+    for instance, kind in zip(instances(robot, ZERO), small.kinds, strict=True):
+        if instance.body in bodies:
+            points = small.unique[kind].mesh.points_mm
+            bodies[instance.body].append(points @ instance.in_body[:3, :3].T + instance.in_body[:3, 3])
+    reach = np.hypot(*np.concatenate(bodies["base"])[:, [0, 2]].T).max()
+    points, nearest = np.concatenate(bodies["shank"]), np.inf
+    for knee in np.linspace(*free_motion.KNEE_RANGE_RAD, 22):
+        frame = body_frames(robot, Pose(hip_rad=0.0, knee_rad=float(knee)))["shank"]
+        nearest = min(nearest, np.hypot(*(points @ frame[:3, :3].T + frame[:3, 3])[:, [0, 2]].T).min())
+    assert clearance == pytest.approx(nearest - reach, abs=1.5)
+    assert clearance <= nearest - reach + 1e-9
+
+
+def test_a_frame_in_the_thigh_s_way_is_found(product):
+    def lower(unit):
+        parts = tuple(
+            dataclasses.replace(part, places_mm=tuple((x, y - 30.0, z) for x, y, z in part.places_mm))
+            if part.name == "base_rod"
+            else part
+            for part in unit.parts
+        )
+        return dataclasses.replace(unit, parts=parts)
+
+    found, _ = free_motion.in_working_range(with_unit(product, "base_frame", lower))
+    deep = [o for o in found if o.depth_mm > FREE_MOTION.value]
+    pairs = {(o.one.rstrip("_1234"), o.other) for o in deep}
+    assert ("base_frame/base_rod", "thigh/thigh_plate_outer") in pairs
+    assert all("with the hip at" in o.where for o in deep)
+
+
+@pytest.mark.parametrize("lengths", [(0.3, 0.3), (0.3, 0.5), (0.5, 0.3)])
+def test_short_and_long_links_fold_freely(product, actuator_map, lengths):
+    design = product.robot.design.replace({"thigh_length_m": lengths[0], "shank_length_m": lengths[1]})
+    checks = free_motion.check(build_product(bare(build_robot(design, actuator_map)), product.pose))
+    assert all(check.passed for check in checks)
+    assert checks[1].measured > 5.0

@@ -1,0 +1,39 @@
+"""Gears that mesh in the pose but not while they turn."""
+
+import dataclasses
+
+import pytest
+
+from pareto_monoped.cad.check import gear_mesh
+from pareto_monoped.cad.check.limits import GEAR_MESH
+
+
+@pytest.mark.parametrize("joint", ["hip", "knee"])
+@pytest.mark.parametrize("factor", [1.3, 0.7])
+def test_a_sun_that_turns_too_fast_or_too_slowly_is_found(product, examine, failing, joint, factor):
+    actuator = getattr(product.robot, joint)
+    wrong = dataclasses.replace(actuator, ratio=factor * actuator.ratio)
+    broken = dataclasses.replace(product, robot=dataclasses.replace(product.robot, **{joint: wrong}))
+    assert failing(product=broken) == ["gears mesh"]
+    check = examine(product=broken)["gears mesh"]
+    assert check.measured > GEAR_MESH.value
+    assert all(f"{joint}_actuator/sun" in text and "of the gears' cycle" in text for text in check.failures)
+
+
+def test_the_cycle_is_one_tooth_of_the_sun(product, monkeypatch):
+    """In steps; the first is the pose itself."""
+    poses = []
+    instances = gear_mesh.instances
+
+    def seen(robot, pose):
+        poses.append(pose)
+        return instances(robot, pose)
+
+    monkeypatch.setattr(gear_mesh, "instances", seen)
+    gear_mesh.in_gear_cycle(product)
+    assert len(poses) == 2 * gear_mesh.STEPS
+    cycles = poses[: gear_mesh.STEPS], poses[gear_mesh.STEPS :]
+    for actuator, cycle in zip((product.robot.hip, product.robot.knee), cycles, strict=True):
+        teeth = [pose.hip_rad * actuator.ratio * actuator.gears.sun_teeth / 6.283185307179586 for pose in cycle]
+        assert teeth == pytest.approx([k / gear_mesh.STEPS for k in range(gear_mesh.STEPS)])
+        assert [pose.knee_rad for pose in cycle] == [pose.hip_rad for pose in cycle]
