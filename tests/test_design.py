@@ -4,7 +4,20 @@ import io
 import numpy as np
 import pytest
 
-from pareto_monoped.design import CONTROL, LENGTHS, LOWER, NAMES, PAPER_CASES, RATIOS, UPPER, Design, columns
+from pareto_monoped.design import (
+    BASE_START_HEIGHT_M,
+    CONTROL,
+    HEADLINE_HEIGHT_M,
+    LENGTHS,
+    LOWER,
+    NAMES,
+    PAPER_CASES,
+    PAPER_MOTOR,
+    RATIOS,
+    UPPER,
+    Design,
+    columns,
+)
 from pareto_monoped.errors import DesignError
 
 # Table I of the paper, typed again from its LaTeX source: g_h, g_k, l1, l2, K, C, T, H, E.
@@ -80,3 +93,23 @@ def test_wrong_number_of_values_is_refused():
 def test_bounds_cannot_be_overwritten():
     with pytest.raises(ValueError, match="read-only"):
         LOWER[0] = 0.0
+
+
+def test_bounds_are_those_of_the_paper():
+    """Section III-B: lengths in m, ratios, K in N/m, C in N s/m, T in N m/rad."""
+    assert LOWER.tolist() == [0.3, 0.3, 4.0, 4.0, 5.0, 0.0, 0.0]
+    assert UPPER.tolist() == [0.5, 0.5, 8.7, 8.7, 200.0, 10.0, 50.0]
+
+
+def test_each_case_frees_the_variables_that_the_paper_frees():
+    """Section IV-B: A gears and controller, B links and controller, C everything; the nominal design is given."""
+    assert {name: case.free for name, case in PAPER_CASES.items()} == {
+        "nominal": (),
+        "A": RATIOS + CONTROL,
+        "B": LENGTHS + CONTROL,
+        "C": NAMES,
+    }
+
+
+def test_jumps_start_at_the_papers_height():
+    assert (BASE_START_HEIGHT_M, HEADLINE_HEIGHT_M, PAPER_MOTOR) == (0.5, 0.8, "VT8020")
