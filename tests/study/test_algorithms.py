@@ -141,6 +141,13 @@ def test_a_sweep_of_weights_runs_one_after_the_other_and_ends():
     assert algorithm.state() == {"run": 2, "iteration": 0}
 
 
+def test_each_weighted_run_draws_its_own_designs():
+    settings = {"name": "weighted_cmaes", "height_weights": [0.5, 0.5], "iterations": 1}
+    definition = study_from_dict({"name": "w", "evaluations": 1, "algorithm": settings}, source="test")
+    first, second = (values for values, _ in search(definition, 2)[1])
+    assert not np.array_equal(first, second)
+
+
 def test_the_first_weighted_designs_gather_around_the_papers_start_vector():
     """Step 0.1 in scaled variables: the mean of many first designs is the start within a few standard errors."""
     definition = study_from_dict(

@@ -25,6 +25,19 @@ def test_the_defaults_are_case_c_with_the_papers_bounds():
     assert study.constraints.min_height_m == 0.55
     assert study.algorithm.name == "nsga2"
     assert (study.motor, study.calibration) == ("VT8020", "reference")
+    assert (study.reference_point.height_m, study.reference_point.energy_j) == (0.55, 100.0)
+    assert (study.stop.wall_time_s, study.stop.plateau_evaluations, study.stop.plateau_growth) == (None, None, 0.001)
+    assert study.audit is True
+
+
+def test_the_defaults_of_the_algorithms():
+    evolution = made(algorithm={"name": "sms_emoa"}).algorithm
+    assert evolution.population == 40
+    assert (evolution.crossover_probability, evolution.crossover_eta, evolution.mutation_eta) == (0.9, 15.0, 20.0)
+    weighted = made(algorithm={"name": "weighted_cmaes"}).algorithm
+    assert (weighted.population, weighted.sigma, weighted.iterations) == (8, 0.1, 200)
+    assert made(algorithm={"name": "random"}).algorithm.population == 40
+    assert [made(algorithm={"name": f"optuna_{kind}"}).algorithm.batch for kind in ("nsga2", "tpe")] == [50, 8]
 
 
 @pytest.mark.parametrize(

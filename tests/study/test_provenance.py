@@ -44,6 +44,8 @@ def test_only_the_algorithm_in_use_counts_among_the_versions():
     assert "pymoo" in versions(made_study())
     assert "pymoo" not in versions(made_study(algorithm={"name": "weighted_cmaes"}))
     assert "cma" in versions(made_study(algorithm={"name": "weighted_cmaes"}))
+    assert "optuna" in versions(made_study(algorithm={"name": "optuna_tpe"}))
+    assert not {"pymoo", "cma", "optuna"} & set(versions(made_study(algorithm={"name": "random"})))
 
 
 def test_differences_name_key_old_and_new():

@@ -98,6 +98,17 @@ def test_a_study_that_is_done_is_left_untouched(whole):
     assert (path.read_bytes(), path.stat().st_mtime_ns) == before
 
 
+def test_resume_without_a_number_keeps_the_budget_of_the_last_run(tmp_path):
+    run(made(), tmp_path / "s.db", evaluations=25)
+    assert resume(tmp_path / "s.db").new_evaluations == 0
+    assert status(tmp_path / "s.db")["budget"] == 25
+
+
+def test_audits_can_be_switched_off(whole):
+    assert whole[2].study.audit is False
+    assert len(whole[2].audits) == 0
+
+
 def test_the_seed_decides_the_trials(whole, tmp_path):
     run(made(), tmp_path / "s.db", seed=2, evaluations=20)
     assert not read_study(tmp_path / "s.db").trials["hip_ratio"].equals(whole[2].trials["hip_ratio"][:20])
@@ -212,6 +223,9 @@ def test_a_weighted_sweep_ends_by_itself(tmp_path):
     summary = run(study, tmp_path / "s.db")
     assert (summary.stop_reason, summary.evaluations) == ("exhausted", 32)
     assert read_study(tmp_path / "s.db").trials["height_weight"].tolist() == [0.2] * 16 + [0.8] * 16
+    before = (tmp_path / "s.db").read_bytes()
+    assert resume(tmp_path / "s.db").stop_reason == "exhausted"
+    assert (tmp_path / "s.db").read_bytes() == before
 
 
 def test_infeasible_trials_are_kept_and_off_the_front(tmp_path):
