@@ -47,7 +47,16 @@ def test_the_file_and_the_name_exist(what, file, name):
 
 def test_the_table_answers_what_newcomers_look_for():
     questions = " ".join(what for what, _, _ in rows())
-    for words in ("density", "end stop", "well-conditioned", "columns of a trial", "measure", "variables", "motor"):
+    for words in (
+        "density",
+        "end stop",
+        "well-conditioned",
+        "columns of a trial",
+        "measure",
+        "variables",
+        "motor",
+        "limits",
+    ):
         assert words in questions
 
 
