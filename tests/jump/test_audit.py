@@ -1,4 +1,5 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from pareto_monoped.jump.audit import (
     PERTURBATION,
     PERTURBED,
     SPREAD_PERCENTILE,
+    _changes,
     _percentile,
     audit,
     exceeded,
@@ -98,6 +100,16 @@ def test_a_lost_jump_is_an_infinite_change():
     changes = np.array([[0.1, np.nan, 0.3, 0.2], [np.nan, 0.1, 0.1, 0.1]])
     np.testing.assert_array_equal(_percentile(changes, np.array([0]), 75.0), [0.3, np.nan])
     np.testing.assert_array_equal(_percentile(changes, np.array([0, 1]), 90.0), [np.inf, np.inf])
+
+
+def test_a_jump_that_a_finer_step_loses_has_changed_without_limit():
+    base = SimpleNamespace(ok=np.array([True, True]), height_m=np.array([1.0, 1.0]), energy_j=np.array([20.0, 20.0]))
+    finer = SimpleNamespace(
+        ok=np.array([True, False]), height_m=np.array([0.9, np.nan]), energy_j=np.array([22, np.nan])
+    )
+    found = _changes("half_step", base, finer)
+    np.testing.assert_allclose(found["half_step_height_m"], [0.1, np.inf])
+    np.testing.assert_allclose(found["half_step_energy"], [0.1, np.inf])
 
 
 def test_steps_are_halved_and_quartered():
