@@ -1,4 +1,5 @@
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,7 +7,7 @@ from matplotlib.figure import Figure
 
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import _front, _links, write_figures
+from pareto_monoped.report.figures import _along, _front, _links, _states, write_figures
 from pareto_monoped.report.payload import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
@@ -65,6 +66,40 @@ def test_the_front_figure_begins_at_the_start_height_and_holds_every_mark(front_
     heights += [case.height_m for case in (*card.cases, *PAPER_CASES.values())]
     assert front_axes.get_xlim() == pytest.approx((0.0, 1.06 * max(energies)))
     assert front_axes.get_ylim() == pytest.approx((0.5, max(heights) + 0.06))
+
+
+def test_the_floor_is_that_of_the_lightest_robot_of_all_studies(payload):
+    (card,) = payload.studies
+    figure = Figure()
+    _front(replace(payload, studies=[card, replace(card, floor_mass_kg=0.5 * card.floor_mass_kg)]), figure)
+    (floor,) = (line for line in figure.axes[0].lines if line.get_label().startswith("m g"))
+    energy, height = (values[1] for values in floor.get_data())
+    assert height == pytest.approx(0.5 + energy / (0.5 * card.floor_mass_kg * 9.81))
+
+
+def test_states_over_time_are_those_of_the_knees_jump(payload):
+    (card,) = payload.studies
+    jump = card.jumps[str(card.trials.trial[card.picks[0].row])]
+    figure = Figure()
+    _states(payload, figure)
+    columns = [
+        ("hip_motor_torque_n_m", "knee_motor_torque_n_m"),
+        ("hip_rad_per_s", "knee_rad_per_s"),
+        ("base_z_m", "foot_z_m"),
+    ]
+    for axes, names in zip(figure.axes, columns, strict=True):
+        assert axes.lines[2].get_xdata() == pytest.approx([jump.lift_off_s] * 2)
+        for line, name in zip(axes.lines, names, strict=False):
+            np.testing.assert_allclose(line.get_xdata(), np.array(jump.columns["time_s"]) * jump.scale["time_s"])
+            np.testing.assert_allclose(line.get_ydata(), np.array(jump.columns[name]) * jump.scale[name])
+
+
+def test_variables_along_the_front_are_in_their_shown_units(payload, data):
+    figure = Figure()
+    _along(payload, figure)
+    thigh = figure.axes[0].lines[0]
+    np.testing.assert_allclose(thigh.get_ydata(), 1000.0 * data.front()["thigh_length_m"], rtol=1e-4)
+    np.testing.assert_allclose(thigh.get_xdata(), data.front()["height_m"], rtol=1e-4)
 
 
 def test_link_masses_have_a_line_per_motor(source, source_u12):
