@@ -19,7 +19,7 @@ FORMATS = ("dxf", "urdf")
 def original(tmp_path_factory) -> Job:
     """An export of the nominal design; its checks have tests of their own."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(export, "run_checks", lambda product, arrays: ())
+        patch.setattr(export, "run_checks", lambda *_, **__: ())
         job = case_job("nominal", folder=tmp_path_factory.mktemp("made") / "robot", formats=FORMATS)
         batch.run(job)
     return job
@@ -168,7 +168,7 @@ def test_a_truncated_or_senseless_record_is_not_believed(copy, text):
 
 
 def test_a_stale_export_is_made_again(copy, monkeypatch):
-    monkeypatch.setattr(export, "run_checks", lambda product, arrays: ())
+    monkeypatch.setattr(export, "run_checks", lambda *_, **__: ())
     (copy.folder / "model" / "monoped.urdf").unlink()
     batch.run(dataclasses.replace(copy, force=True))
     assert is_made(copy)
