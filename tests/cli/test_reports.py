@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 from click.testing import CliRunner
 
@@ -26,3 +28,12 @@ def test_figures_alone_write_no_page(db, tmp_path):  # noqa: F811
     assert result.exit_code == 0, result.output
     assert "front.svg" in result.stderr
     assert list(tmp_path.glob("*.html")) == []
+
+
+def test_the_folder_of_exports_is_handed_on(monkeypatch, tmp_path):
+    given = {}
+    monkeypatch.setattr("pareto_monoped.report.page.payload_of", lambda dbs, **more: given.update(more, dbs=dbs))
+    monkeypatch.setattr("pareto_monoped.report.page.page", lambda payload: "page")
+    arguments = ["a.db", "b.db", "-o", str(tmp_path / "r.html"), "--exports", str(tmp_path)]
+    assert CliRunner().invoke(report, arguments).exit_code == 0
+    assert given == {"dbs": (Path("a.db"), Path("b.db")), "exports": tmp_path}
