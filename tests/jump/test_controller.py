@@ -153,8 +153,8 @@ def test_a_state_that_is_not_finite_has_diverged():
 
 def test_the_gate_takes_its_share_of_the_limited_torque():
     """A saturated motor fades too: the limit comes first."""
-    torque, _, _ = torques(-0.6, 1.2, clearance=0.01, peak=5.0)
-    assert torque[1] == pytest.approx(-2.5)
+    torque, _, _ = torques(-0.9, 1.3, clearance=0.01, peak=1.0)
+    np.testing.assert_allclose(np.abs(torque[:2]), [0.5, 0.5])
 
 
 def test_without_a_voltage_limit_only_the_peak_counts():
