@@ -36,4 +36,4 @@ def test_the_folder_of_exports_is_handed_on(monkeypatch, tmp_path):
     monkeypatch.setattr("pareto_monoped.report.page.page", lambda payload: "page")
     arguments = ["a.db", "b.db", "-o", str(tmp_path / "r.html"), "--exports", str(tmp_path)]
     assert CliRunner().invoke(report, arguments).exit_code == 0
-    assert given == {"dbs": (Path("a.db"), Path("b.db")), "exports": tmp_path}
+    assert (given["dbs"], given["exports"]) == ((Path("a.db"), Path("b.db")), tmp_path)
