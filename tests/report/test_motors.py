@@ -37,6 +37,13 @@ def test_points_are_the_intervals_of_the_map_with_its_lightest_actuators(vt8020)
         assert gearbox.motor_diameter_mm == body.outer_diameter_mm
 
 
+def test_a_motor_that_is_only_sold_framed_has_its_diameter():
+    actuator_map = map_for("MN8014")
+    assert actuator_map.motor.frameless is None
+    for gearbox in motor_tables(actuator_map, first=0).gearboxes:
+        assert gearbox.motor_diameter_mm == actuator_map.motor.framed.outer_diameter_mm
+
+
 def test_gearboxes_of_ratios_are_counted_like_those_of_the_map(vt8020):
     tables = motor_tables(vt8020, first=7)
     ratios = np.array([4.0, 4.1, 6.05, 8.7, 3.9, 14.95])
