@@ -62,11 +62,13 @@ class Instance:
     world: Matrix
 
 
-def instances(robot: Robot, pose: Pose) -> tuple[Instance, ...]:
-    """Every instance of every part of a robot in a pose."""
+def instances(robot: Robot, pose: Pose, *, only: str | None = None) -> tuple[Instance, ...]:
+    """Every instance of every part of a robot in a pose, or of the unit named ``only``."""
     frames = body_frames(robot, pose)
     found = []
     for unit in robot.units:
+        if only not in (None, unit.name):
+            continue
         joint = _TURNED_BY.get(unit.name)
         output_rad = 0.0 if joint is None else pose.angle_rad(joint)
         for part in unit.parts:

@@ -24,13 +24,14 @@ def in_gear_cycle(product: Product) -> list[Overlap]:
     for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
         if name == "knee_actuator" and actuator is product.robot.hip:
             break
+        bodies = {instance.name: unique.mesh.body for instance, unique in product.placed() if instance.unit == name}
         step = 2.0 * np.pi / (float(actuator.gears.sun_teeth) * actuator.ratio * STEPS)
         for k in range(STEPS):
             pose = Pose(hip_rad=k * step, knee_rad=k * step)
             meshing = [
-                PlacedMesh.of(i.name, product.unique[kind].mesh.body, i.moves)
-                for i, kind in zip(instances(product.robot, pose), product.kinds, strict=True)
-                if i.unit == name and i.part.role is Role.GEAR
+                PlacedMesh.of(i.name, bodies[i.name], i.moves)
+                for i in instances(product.robot, pose, only=name)
+                if i.part.role is Role.GEAR
             ]
             for one, other in near(meshing):
                 found += overlap_of(one, other, f"in step {k} of the gears' cycle")

@@ -25,9 +25,9 @@ def test_the_cycle_is_one_tooth_of_the_sun(product, monkeypatch):
     poses = []
     instances = gear_mesh.instances
 
-    def seen(robot, pose):
+    def seen(robot, pose, **only):
         poses.append(pose)
-        return instances(robot, pose)
+        return instances(robot, pose, **only)
 
     monkeypatch.setattr(gear_mesh, "instances", seen)
     gear_mesh.in_gear_cycle(product)
