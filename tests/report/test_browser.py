@@ -136,6 +136,8 @@ def test_arrow_keys_move_along_the_front(tab, payload):
     assert f"Trial {card.trials.trial[card.front[3]]}" in tab.text("#subject")
     tab.page.keyboard.press("ArrowDown")
     assert f"Trial {card.trials.trial[card.front[2]]}" in tab.text("#subject")
+    tab.click_point("simulated", 0)
+    tab.expects("#subject", "nominal design")
     tab.page.keyboard.press("End")
     assert tab.page.get_attribute("#front-chart", "aria-valuenow") == str(len(card.front))
 

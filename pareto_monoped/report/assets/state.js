@@ -28,7 +28,7 @@ function moveAlongFront(steps) {
   const { front, trials } = current();
   if (!front.length) return;
   let at = place();
-  if (at < 0) {
+  if (at < 0 && Number.isFinite(steps)) {
     // From a design off the front to the first one on it that jumps at least as high.
     const height = state.row === null ? 0 : trials.columns.height_m[state.row] ?? 0;
     at = front.findIndex((row) => trials.columns.height_m[row] >= height);
