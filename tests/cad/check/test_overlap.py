@@ -5,9 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.assembly import turn_z
+from pareto_monoped.cad.assembly import Instance, turn_z
 from pareto_monoped.cad.check import overlap
 from pareto_monoped.cad.check.limits import OVERLAP
+from pareto_monoped.cad.product import UniquePart
+from pareto_monoped.cad.shape.meshes import mesh_of
+from pareto_monoped.geometry.gears import InternalGear
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.materials import MATERIALS
+from pareto_monoped.robot.frames import PART_TO_BODY
 from tests.cad.check.faults import moved, shifted, with_instance
 
 
@@ -56,3 +64,52 @@ def test_the_depth_is_that_of_two_plates_pushed_together():
     assert found.volume_mm3 == pytest.approx(500.0)
     assert found.depth_mm == pytest.approx(0.05, rel=2e-3)
     assert list(overlap_of(one, PlacedMesh.of("far", plate, shifted(z=1.0)), "here")) == []
+
+
+def turned(name, *prisms):
+    return Part(name=name, role=Role.SHAFT, material=MATERIALS.steel, prisms=prisms, process="machined")
+
+
+def disc(radius_mm, low, high, *holes):
+    return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=low, z1_mm=high, holes=holes)
+
+
+def on_one_axis(product, *parts):
+    """A product of a few parts on the hip axis."""
+    world = np.eye(4)
+    world[:3, :3] = PART_TO_BODY
+    return dataclasses.replace(
+        product,
+        unique=tuple(UniquePart(name=p.name, part=p, mesh=mesh_of(p), count=1, units=("unit",)) for p in parts),
+        instances=tuple(
+            Instance(name=p.name, unit="unit", part=p, body="base", in_body=world, moves=world, world=world)
+            for p in parts
+        ),
+        kinds=tuple(range(len(parts))),
+    )
+
+
+RING_GEAR = InternalGear(teeth=60, module_mm=1.0)
+TEETH = float(RING_GEAR.tip_radius_mm), float(RING_GEAR.root_radius_mm)
+
+
+@pytest.mark.parametrize(
+    ("shaft", "around", "overlaps"),
+    [
+        (disc(9.9, 0.0, 20.0), disc(30.0, 5.0, 10.0, Circle(radius_mm=10.0)), False),
+        (disc(10.2, 0.0, 20.0), disc(30.0, 5.0, 10.0, Circle(radius_mm=10.0)), True),
+        (disc(10.0, 0.0, 5.0), disc(30.0, 5.0, 10.0), False),
+        (disc(10.0, 0.0, 5.2), disc(30.0, 5.0, 10.0), True),
+        # The hole is beside the axis.
+        (disc(10.0, 0.0, 20.0), disc(50.0, 5.0, 10.0, Circle(radius_mm=15.0, x_mm=30.0)), True),
+        (disc(10.0, 0.0, 20.0), disc(50.0, 5.0, 10.0, Circle(radius_mm=15.0, y_mm=30.0)), True),
+        (disc(0.99 * TEETH[0], 0.0, 20.0), disc(40.0, 5.0, 10.0, RING_GEAR), False),
+        (disc(0.5 * sum(TEETH), 0.0, 20.0), disc(40.0, 5.0, 10.0, RING_GEAR), True),
+    ],
+)
+def test_parts_on_one_axis_overlap_where_one_meets_the_other(product, shaft, around, overlaps):
+    """A second prism of the shaft that is far from the other part changes nothing."""
+    parts = turned("shaft", shaft, disc(3.0, shaft.z0_mm - 30.0, shaft.z0_mm)), turned("around", around)
+    found, pairs = overlap.in_pose(on_one_axis(product, *parts))
+    assert pairs == 1
+    assert any(o.depth_mm > OVERLAP.value for o in found) is overlaps
