@@ -1,11 +1,15 @@
 """Meshes are judged by the bytes of their files, as another reader judges them."""
 
 import io
+import json
+import re
+import zipfile
 
 import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.cad.check import watertight
 from pareto_monoped.cad.check.limits import MESH_VOLUME
 from pareto_monoped.cad.check.read_back import meshes_of, read_stl
 from pareto_monoped.cad.shape.closed import flaws, volume
@@ -54,20 +58,45 @@ def test_an_open_mesh_in_any_other_file_is_named(other_files, failing, examine):
     assert text.startswith(f"{name}: its mesh is not closed")
 
 
-def test_an_open_mesh_in_the_assembly_is_named(other_files, examine):
-    """In the bytes of the GLB: the index of one corner is that of another."""
+def test_an_open_mesh_in_the_assembly_is_named(product, part_files, other_files):
+    """The first triangle of the first mesh has its third corner where its second one is."""
     content = bytearray(other_files["assembly.glb"])
     sound = meshes_of("assembly.glb", bytes(content))
     name = next(iter(sound))
-    first = sound[name][0]
-    at = bytes(content).index(first[0].tobytes())  # the first corner of the first mesh
-    content[at : at + 4] = np.float32(first[0][0] + 1.0).tobytes()
+    at, index = first_index(content)
+    content[at + 2 * index : at + 3 * index] = content[at + index : at + 2 * index]
     broken = meshes_of("assembly.glb", bytes(content))
     assert {key for key in sound if not np.array_equal(sound[key], broken[key])} == {name}
-    # Moving a shared point opens nothing; a triangle less does.
-    assert not flaws(broken[name])
-    assert flaws(broken[name][1:])
-    assert examine(other_files={"assembly.glb": bytes(content)})["meshes are watertight"].passed
+    closed, volumes = watertight.check(product, part_files, {"assembly.glb": bytes(content)})
+    assert closed.failures == (f"assembly.glb {name}: its mesh is not closed, 1 triangles have no area",)
+    assert volumes.passed
+
+
+def first_index(content):
+    """Where the first index of the first mesh stands in a GLB file, and how many bytes an index has."""
+    length = int(np.frombuffer(content, "<u4", 1, 12)[0])
+    scene = json.loads(bytes(content[20 : 20 + length]))
+    accessor = scene["accessors"][scene["meshes"][0]["primitives"][0]["indices"]]
+    return 20 + length + 8 + scene["bufferViews"][accessor["bufferView"]].get("byteOffset", 0), 4
+
+
+def test_an_open_mesh_in_a_file_to_print_is_named(product, part_files, other_files):
+    path = next(path for path in other_files if path.endswith(".3mf"))
+    sound, spoilt = io.BytesIO(other_files[path]), io.BytesIO()
+    with zipfile.ZipFile(sound) as before, zipfile.ZipFile(spoilt, "w") as after:
+        for entry in before.namelist():
+            after.writestr(entry, re.sub(rb"<triangle [^>]*/>", b"", before.read(entry), count=1))
+    closed, _ = watertight.check(product, part_files, {path: spoilt.getvalue()})
+    assert closed.failures == (f"{path}: its mesh is not closed, 3 edges do not border two triangles",)
+
+
+def test_a_file_has_as_many_triangles_as_its_header_says(part_files):
+    """Other programs read no further."""
+    content = part_files["foot"]
+    count = (len(content) - HEADER) // ROW
+    fewer = content[:80] + np.uint32(count - 1).tobytes() + content[HEADER:]
+    assert flaws(read_stl(content)) == ""
+    assert flaws(read_stl(fewer)) == "3 edges do not border two triangles"
 
 
 def test_a_mesh_of_another_size_than_its_part_is_named(product, part_files, examine, failing):
@@ -78,6 +107,7 @@ def test_a_mesh_of_another_size_than_its_part_is_named(product, part_files, exam
     assert check.measured == pytest.approx(3.0, abs=0.3)
     assert check.failures[0].startswith("foot: its mesh has ")
     assert failing(part_files=part_files | {"foot": scaled(kind, 1.002)}) == []
+    assert failing(part_files=part_files | {"foot": scaled(kind, 0.99)}) == ["meshes have the volumes of their parts"]
     assert MESH_VOLUME.value == 1.0
 
 
