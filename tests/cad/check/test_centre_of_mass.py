@@ -5,8 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+from pareto_monoped.cad.check import centre_of_mass
 from pareto_monoped.cad.check.limits import CENTRE_OF_MASS
 from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from pareto_monoped.geometry.parts import MassProperties
 from tests.cad.check.faults import moved, shifted
 
 BODIES = ("base", "thigh", "shank")
@@ -32,6 +34,20 @@ def test_a_displaced_centre_of_mass_is_found(arrays, examine, failing, body, axi
 def test_a_centre_of_mass_within_the_limit_passes(arrays, failing):
     for axis in range(3):
         assert failing(arrays=displaced(arrays, "thigh", axis, 0.95 * CENTRE_OF_MASS.value)) == []
+
+
+def test_the_distance_counts_and_not_the_greatest_of_its_components(arrays):
+    """Three components of 0.03 mm, each within the limit, are a distance of 0.052 mm."""
+    bodies = {
+        body: MassProperties(
+            mass_kg=np.asarray(2.0), first_kg_m=2.0 * arrays.body_com_m[0, k], second_kg_m2=np.zeros((3, 3))
+        )
+        for k, body in enumerate(BODIES)
+    }
+    broken = displaced(displaced(displaced(arrays, "thigh", 0, 0.03), "thigh", 1, -0.03), "thigh", 2, 0.03)
+    base, thigh, shank = centre_of_mass.check(bodies, broken)
+    assert (base.passed, thigh.passed, shank.passed) == (True, False, True)
+    assert thigh.measured == pytest.approx(0.03 * np.sqrt(3.0), abs=1e-6)
 
 
 def test_a_moved_part_moves_the_centre_of_mass_of_its_body_alone(product):
