@@ -7,7 +7,7 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.check import retention
-from pareto_monoped.cad.check.retention import PLAY_MM, loose_parts
+from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.roles import SCREWS, Joint, JointKind
 from pareto_monoped.geometry.screws import LENGTHS_MM
@@ -76,22 +76,28 @@ def test_words_alone_hold_nothing(robot):
     assert loose(moved)["hip_actuator/rear_bearing"] == ("+x", "-x", "+y", "-y", "+z", "-z")
 
 
-def test_a_screw_too_short_for_its_thread_is_found(robot):
+@pytest.mark.parametrize(("share", "held"), [(0.4, False), (0.59, False), (0.61, True)])
+def test_a_screw_too_short_for_its_thread_is_found(robot, share, held):
+    """An M3 screw holds by 0.6 of its diameter."""
     head, shank, thread = next(p for p in robot.hip.parts if p.name == "backplate_screw").prisms
-    short = (head, shank, dataclasses.replace(thread, z1_mm=thread.z0_mm + 1.0))
-    assert "hip_actuator/backplate_screw" in loose(replaced(robot, "hip_actuator/backplate_screw", prisms=short))
+    short = (head, shank, dataclasses.replace(thread, z1_mm=thread.z0_mm + 3.0 * share))
+    found = loose(replaced(robot, "hip_actuator/backplate_screw", prisms=short))
+    assert ("hip_actuator/backplate_screw" not in found) is held
 
 
-def test_play_beyond_the_limit_is_found(robot):
+@pytest.mark.parametrize(
+    ("play_mm", "freed"), [(0.79, set()), (0.81, {"planet_bush", "planet"}), (1.5, {"planet_bush", "planet"})]
+)
+def test_play_beyond_the_limit_is_found(robot, play_mm, freed):
     """Bushes of the planets' own width would leave them 1.5 mm of play to either side."""
     planet = next(p for p in robot.hip.parts if p.name == "planet")
     bush = next(p for p in robot.hip.parts if p.name == "planet_bush")
     low, high = min(p.z0_mm for p in planet.prisms), max(p.z1_mm for p in planet.prisms)
-    narrow = (dataclasses.replace(bush.prisms[0], z0_mm=low, z1_mm=high),)
-    assert PLAY_MM < 1.5
-    assert {"hip_actuator/planet_bush", "hip_actuator/planet"} <= set(
-        loose(replaced(robot, "hip_actuator/planet_bush", prisms=narrow))
-    )
+    wider = 1.5 - play_mm
+    narrow = (dataclasses.replace(bush.prisms[0], z0_mm=low - wider, z1_mm=high + wider),)
+    found = loose(replaced(robot, "hip_actuator/planet_bush", prisms=narrow))
+    assert {f"hip_actuator/{name}" for name in freed} <= set(found)
+    assert bool(found) is bool(freed)
 
 
 def test_a_ring_without_its_joint_is_the_only_failure(product, examine, failing):
