@@ -20,6 +20,15 @@ def test_a_sun_that_turns_too_fast_or_too_slowly_is_found(product, examine, fail
     assert all(f"{joint}_actuator/sun" in text and "of the gears' cycle" in text for text in check.failures)
 
 
+@pytest.mark.parametrize("joint", ["hip", "knee"])
+def test_planets_that_do_not_roll_on_their_ring_are_found(product, joint):
+    actuator = getattr(product.robot, joint)
+    gears = dataclasses.replace(actuator.gears, ring_teeth=actuator.gears.ring_teeth + 12)
+    robot = dataclasses.replace(product.robot, **{joint: dataclasses.replace(actuator, gears=gears)})
+    texts = gear_mesh.check(dataclasses.replace(product, robot=robot)).failures
+    assert any(f"{joint}_actuator/ring" in text and f"{joint}_actuator/planet" in text for text in texts)
+
+
 def test_the_cycle_is_one_tooth_of_the_sun(product, monkeypatch):
     """In steps; the first is the pose itself."""
     poses = []
