@@ -2,15 +2,17 @@
 
 import dataclasses
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
 from pareto_monoped.cad.assembly import Pose, body_frames, instances
 from pareto_monoped.cad.check import free_motion
+from pareto_monoped.cad.check.contact import PlacedMesh
 from pareto_monoped.cad.check.limits import FREE_MOTION
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.robot.build import build_robot
-from tests.cad.check.faults import bare, with_unit
+from tests.cad.check.faults import bare, shifted, with_unit
 
 ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
@@ -81,3 +83,24 @@ def test_short_and_long_links_fold_freely(product, actuator_map, lengths):
     checks = free_motion.check(build_product(bare(build_robot(design, actuator_map)), product.pose))
     assert all(check.passed for check in checks)
     assert checks[1].measured > 5.0
+
+
+@pytest.mark.parametrize(
+    ("low", "size", "least", "greatest"),
+    [
+        ((3.0, 0.0, -10.0), (2.0, 5.0, 20.0), 3.0, np.hypot(5.0, 10.0)),  # the nearest point is on no corner
+        ((3.0, 0.0, 4.0), (2.0, 5.0, 2.0), 5.0, np.hypot(5.0, 6.0)),
+        ((-7.0, 0.0, -2.0), (10.0, 5.0, 13.0), 0.0, np.hypot(7.0, 11.0)),  # the axis runs through it
+    ],
+)
+def test_the_reach_of_a_block_is_from_its_nearest_to_its_farthest_point(low, size, least, greatest):
+    block = PlacedMesh.of("block", m3.Manifold.cube(size), shifted(*low))
+    assert free_motion.radii_mm(block) == (pytest.approx(least), pytest.approx(greatest))
+
+
+@pytest.mark.parametrize("limits", [free_motion.HIP_RANGE_RAD, free_motion.KNEE_RANGE_RAD])
+def test_a_joint_is_looked_at_from_limit_to_limit_in_steps_of_15_degrees(limits):
+    angles = free_motion._through(limits)
+    assert (angles[0], angles[-1]) == limits
+    assert np.all(np.diff(angles) > 0.0)
+    assert np.diff(angles).max() <= np.radians(15.0) + 1e-12
