@@ -2,10 +2,12 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.assembly import Pose, instances
 from pareto_monoped.cad.check import retention
 from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.design import PAPER_CASES
@@ -74,6 +76,19 @@ def test_words_alone_hold_nothing(robot):
     joint = Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate")
     moved = replaced(robot, "hip_actuator/rear_bearing", places_mm=((200.0, 0.0, 0.0),), joint=joint)
     assert loose(moved)["hip_actuator/rear_bearing"] == ("+x", "-x", "+y", "-y", "+z", "-z")
+
+
+@pytest.mark.parametrize(
+    ("ways", "tied"), [(("y+",), False), (("x+", "y-"), False), (("y+", "y-"), True), (("x+", "x-"), True)]
+)
+def test_a_joint_is_believed_if_its_partner_is_in_the_way_on_two_opposite_sides(robot, ways, tied):
+    placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    pair = [next(i for i in placed if i.name == f"hip_actuator/{name}") for name in ("ring", "ring_housing")]
+    assert pair[0].part.joint.partner == pair[1].part.name
+    runs_into = {(axis, sign): np.zeros((2, 2), dtype=bool) for axis in "xyz" for sign in "+-"}
+    for axis, sign in ways:
+        runs_into[axis, sign][0, 1] = True
+    assert retention._joints(pair, runs_into)[0, 1] == tied
 
 
 @pytest.mark.parametrize(("share", "held"), [(0.4, False), (0.59, False), (0.61, True)])
