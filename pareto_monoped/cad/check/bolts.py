@@ -50,15 +50,16 @@ def check(product: Product) -> tuple[Check, Check]:
 
 
 def _offsets_mm(fastener: Instance, holes: list[_Hole]) -> dict[str, float]:
-    """Distance of a fastener's axis from the axes of the holes in which it stands, by the holes' owners."""
+    """Greatest distance of a fastener's axis from the axes of the holes in which it stands, by the holes' owners."""
     centre, low, high = _shaft(fastener)
-    return {
-        hole.owner: offset
-        for hole in holes
-        if hole.owner != fastener.name
-        and min(hole.high, high) - max(hole.low, low) > _ENGAGED_MM
-        and (offset := float(np.hypot(hole.x - centre[0], hole.z - centre[1]))) < _SEARCH_MM
-    }
+    found: dict[str, float] = {}
+    for hole in holes:
+        if hole.owner == fastener.name or min(hole.high, high) - max(hole.low, low) <= _ENGAGED_MM:
+            continue
+        offset = float(np.hypot(hole.x - centre[0], hole.z - centre[1]))
+        if offset < _SEARCH_MM:
+            found[hole.owner] = max(offset, found.get(hole.owner, 0.0))
+    return found
 
 
 def _shaft(fastener: Instance) -> tuple[NDArray[np.float64], float, float]:

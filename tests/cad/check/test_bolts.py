@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 from pareto_monoped.cad.check import bolts
+from pareto_monoped.geometry.shapes import Circle
 from tests.cad.check.faults import moved, shifted, with_instance
 
 
@@ -35,6 +36,23 @@ def test_a_hole_pattern_off_by_more_than_the_limit_is_the_only_failure(product, 
 
     broken = with_instance(product, "thigh/thigh_plate_outer", off)
     assert failing(product=broken) == ["bolt patterns coincide"]
+
+
+def test_a_hole_that_is_off_in_one_layer_is_not_hidden_by_the_next(product):
+    """The first prism of the far cheek has its holes 0.2 mm off; those of the second are right."""
+
+    def off(instance):
+        first, *others = instance.part.prisms
+        holes = tuple(
+            dataclasses.replace(hole, x_mm=hole.x_mm + 0.2) if isinstance(hole, Circle) else hole
+            for hole in first.holes
+        )
+        part = dataclasses.replace(instance.part, prisms=(dataclasses.replace(first, holes=holes), *others))
+        return dataclasses.replace(instance, part=part)
+
+    check, _ = bolts.check(with_instance(product, "base_frame/base_far_cheek", off))
+    assert check.measured == pytest.approx(0.2, abs=1e-6)
+    assert not check.passed
 
 
 def test_a_part_without_its_holes_is_not_joined(product, examine, failing):
