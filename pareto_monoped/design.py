@@ -1,6 +1,7 @@
 """The design variables, their bounds, and the designs of the paper's Table I.
 
-Order and symbols are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T].
+Order and symbols of the first seven are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T]. The
+others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,8 +21,9 @@ class Variable:
         name: its name in files, flags, databases and code.
         symbol: the paper's symbol.
         unit: of its values and bounds.
-        lower, upper: the paper's bounds (section III-B).
+        lower, upper: the paper's bounds (section III-B); of an optional variable our own.
         meaning: what it is, in a few words.
+        default: value of an optional variable where a study does not name it; None for the paper's seven.
     """
 
     name: str
@@ -30,7 +32,13 @@ class Variable:
     lower: float
     upper: float
     meaning: str
+    default: float | None = None
 
+
+BASE_START_HEIGHT_M = 0.5
+"""Height of the base above the floor at rest (paper, section IV-B)."""
+REST_LENGTH_M = 10.0
+"""l0, rest length of the virtual spring, in a passage that the paper's final text lost."""
 
 VARIABLES: tuple[Variable, ...] = (
     Variable(
@@ -53,35 +61,115 @@ VARIABLES: tuple[Variable, ...] = (
         upper=50.0,
         meaning="virtual torsional spring",
     ),
+    Variable(
+        name="knee_release_rad",
+        symbol="r_k",
+        unit="rad",
+        lower=0.0,
+        upper=1.0,
+        meaning="angle before the knee's stop over which its torque fades to zero",
+        default=0.0,
+    ),
+    Variable(
+        name="rest_length_m",
+        symbol="l0",
+        unit="m",
+        lower=1.0,
+        upper=20.0,
+        meaning="rest length of the virtual spring",
+        default=REST_LENGTH_M,
+    ),
+    Variable(
+        name="start_height_m",
+        symbol="z0",
+        unit="m",
+        lower=0.35,
+        upper=0.7,
+        meaning="height of the base above the floor at rest",
+        default=BASE_START_HEIGHT_M,
+    ),
 )
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
 """The names of all variables; the order of the columns of every array of designs."""
+PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
+"""The names of the paper's seven, which come first."""
+DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
+"""Optional variable -> its default."""
 LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
-CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
+PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
 """K, C and T of the virtual controller."""
-LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES])
-UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES])
+CONTROL = (*PAPER_CONTROL, *DEFAULTS)
+"""Everything that a jump needs besides the robot."""
+LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES if variable.default is None])
+UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES if variable.default is None])
+"""The paper's bounds of its seven variables, shape (7,)."""
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
+
+
+def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
+    """The paper's seven variables, and the optional ones of which some value differs from the default.
+
+    Args:
+        values: name -> values, such as a data frame of trials; an absent optional variable is not in use.
+    """
+    return tuple(
+        variable
+        for variable in VARIABLES
+        if variable.default is None
+        or (variable.name in values and bool(np.any(np.asarray(values[variable.name]) != variable.default)))
+    )
+
+
+def complete(designs: ArrayLike) -> NDArray[np.float64]:
+    """Designs with a column for each variable.
+
+    Args:
+        designs: shape (..., 7), the paper's variables, or (..., number of variables); in the order of ``NAMES``.
+
+    Returns:
+        Shape (..., number of variables): optional variables that were left out at their defaults.
+
+    Raises:
+        DesignError: another number of values.
+    """
+    values = np.asarray(designs, dtype=np.float64)
+    given = values.shape[-1] if values.ndim else 0
+    if given == len(NAMES):
+        return values
+    if given != len(PAPER_NAMES):
+        allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(NAMES)})"
+        raise DesignError(
+            complaint("shape of designs", values.shape, allowed, f"give {', '.join(NAMES)} in this order")
+        )
+    optional = np.broadcast_to(list(DEFAULTS.values()), (*values.shape[:-1], len(DEFAULTS)))
+    return np.concatenate([values, optional], axis=-1)
+
+
+def complete_control(control: ArrayLike) -> NDArray[np.float64]:
+    """Values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
+    values = np.atleast_2d(np.asarray(control, dtype=np.float64))
+    missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
+    return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
 
 
 def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
     """The values of some variables.
 
     Args:
-        designs: shape (..., number of variables), in the order of ``NAMES``.
+        designs: see ``complete``.
         names: which variables, such as ``CONTROL``.
 
     Returns:
         A C-ordered copy, shape (..., len(names)), in the order of ``names``.
     """
-    return np.take(np.asarray(designs, dtype=np.float64), [NAMES.index(name) for name in names], axis=-1)
+    return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """One design: a value for each variable, in the order of ``NAMES``."""
+    """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults."""
 
     thigh_length_m: float
     shank_length_m: float
@@ -90,14 +178,18 @@ class Design:
     stiffness_n_per_m: float
     damping_n_s_per_m: float
     torsional_stiffness_n_m_per_rad: float
+    knee_release_rad: float = 0.0
+    rest_length_m: float = REST_LENGTH_M
+    start_height_m: float = BASE_START_HEIGHT_M
 
     def as_array(self) -> NDArray[np.float64]:
         """The values in the order of ``NAMES``, shape (number of variables,)."""
         return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
-        """The values by name."""
-        return {name: getattr(self, name) for name in NAMES}
+        """The values by name: the paper's seven, and the optional ones that differ from their defaults."""
+        values = {name: getattr(self, name) for name in NAMES}
+        return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
@@ -107,13 +199,12 @@ class Design:
             DesignError: a wrong number of values, or a value that is not finite.
         """
         array = np.asarray(values, dtype=np.float64)
-        shape = (len(NAMES),)
-        if array.shape != shape:
-            raise DesignError(
-                complaint("shape of a design", array.shape, str(shape), f"give {', '.join(NAMES)} in this order")
-            )
-        design = cls(**dict(zip(NAMES, array.tolist(), strict=True)))
-        for name, value in design.as_dict().items():
+        if array.ndim != 1:
+            shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
+            raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
+        design = cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
+        for name in NAMES:
+            value = getattr(design, name)
             if not np.isfinite(value):
                 raise DesignError(complaint(name, value, "a finite number", "give a number"))
         return design
@@ -127,8 +218,7 @@ class Design:
         for name in changes:
             if name not in NAMES:
                 raise DesignError(complaint("design variable", name, f"one of {', '.join(NAMES)}", "correct the name"))
-        merged = self.as_dict() | dict(changes)
-        return Design.from_array([merged[name] for name in NAMES])
+        return Design.from_array([changes.get(name, getattr(self, name)) for name in NAMES])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,15 +246,13 @@ def _case(name: str, values: tuple[float, ...], height_m: float, energy_j: float
 # Table I of the paper. The paper prints g_h before g_k; here the values stand in the order of NAMES.
 PAPER_CASES: Mapping[str, PaperCase] = {
     "nominal": _case("nominal", (0.400, 0.400, 6.0, 6.0, 50.0, 2.5, 10.0), 0.887, 31.44, ()),
-    "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, RATIOS + CONTROL),
-    "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + CONTROL),
-    "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + CONTROL),
+    "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, RATIOS + PAPER_CONTROL),
+    "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + PAPER_CONTROL),
+    "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + PAPER_CONTROL),
 }
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""
 HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
 """Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
-BASE_START_HEIGHT_M = 0.5
-"""Height of the base above the floor at rest (paper, section IV-B)."""
 GRAVITY_M_PER_S2 = 9.81
 """The default of MuJoCo, also used for the paper's m g."""

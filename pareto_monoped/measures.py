@@ -133,6 +133,47 @@ MEASURES: tuple[Measure, ...] = (
         _PERCENT,
     ),
     _measure("efficiency", "1", "maximise", _EFFICIENCY, f"efficiency, {_EFFICIENCY}", 1, _PERCENT),
+    _measure(
+        "electrical_energy_j",
+        "J",
+        "minimise",
+        "energy taken from the battery: sum over both motors of max(power + heat in the winding, 0) dt, and standby",
+        "energy from the battery",
+        2,
+    ),
+    _measure(
+        "sustained_jumps_per_minute",
+        "1/min",
+        "maximise",
+        "jumps per minute whose winding heat the hotter motor can shed: its continuous loss over its heat of one jump",
+        "jumps per minute sustained",
+        1,
+    ),
+    _measure(
+        "peak_gear_torque_hip_n_m",
+        "N m",
+        "minimise",
+        "largest torque that the hip's gearbox transmits, at its output",
+        "peak gear torque, hip",
+        1,
+    ),
+    _measure(
+        "peak_gear_torque_knee_n_m",
+        "N m",
+        "minimise",
+        "largest torque that the knee's gearbox transmits, at its output",
+        "peak gear torque, knee",
+        1,
+    ),
+    _measure("peak_chain_tension_n", "N", "minimise", "largest pull in the chain", "peak chain tension", 0),
+    _measure(
+        "peak_stop_torque_n_m", "N m", "minimise", "largest torque of an end stop", "peak torque of an end stop", 1
+    ),
+    _measure("stop_energy_j", "J", "minimise", "energy that the end stops take", "energy into the end stops", 2),
+    _measure("peak_foot_force_n", "N", "minimise", "largest force of the floor on the foot", "peak foot force", 0),
+    _measure(
+        "drift_m", "m", "minimise", "sideways distance of the base from its start at the apex", "sideways drift", 0, _MM
+    ),
 )
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)

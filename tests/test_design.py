@@ -7,16 +7,21 @@ import pytest
 from pareto_monoped.design import (
     BASE_START_HEIGHT_M,
     CONTROL,
+    DEFAULTS,
     HEADLINE_HEIGHT_M,
     LENGTHS,
     LOWER,
     NAMES,
     PAPER_CASES,
+    PAPER_CONTROL,
     PAPER_MOTOR,
+    PAPER_NAMES,
     RATIOS,
     UPPER,
     Design,
     columns,
+    complete,
+    in_use,
 )
 from pareto_monoped.errors import DesignError
 
@@ -30,7 +35,8 @@ C,4,6,0.49,0.36,7.9,2.2,8.4,0.800,15.36
 
 
 def test_order_is_the_papers():
-    assert NAMES == (
+    assert NAMES[:7] == PAPER_NAMES
+    assert PAPER_NAMES == (
         "thigh_length_m",
         "shank_length_m",
         "knee_ratio",
@@ -45,7 +51,7 @@ def test_order_is_the_papers():
 def test_cases_are_table_1(row):
     case = PAPER_CASES[row[0]]
     g_h, g_k, l1, l2, k, c, t, height, energy = map(float, row[1:])
-    assert case.design.as_array().tolist() == [l1, l2, g_k, g_h, k, c, t]
+    assert case.design.as_array().tolist() == [l1, l2, g_k, g_h, k, c, t, *DEFAULTS.values()]
     assert (case.height_m, case.energy_j) == (height, energy)
 
 
@@ -57,19 +63,37 @@ def test_columns_are_found_by_name():
     designs = np.stack([PAPER_CASES[name].design.as_array() for name in ("A", "C")])
     assert columns(designs, RATIOS).tolist() == [[7.9, 4.0], [6.0, 4.0]]
     assert columns(designs, ("hip_ratio", "thigh_length_m")).tolist() == [[4.0, 0.4], [4.0, 0.49]]
-    assert columns(designs[0], CONTROL).tolist() == [13.7, 6.5, 46.5]
+    assert columns(designs[0], PAPER_CONTROL).tolist() == [13.7, 6.5, 46.5]
+    assert columns(designs[0], CONTROL).tolist() == [13.7, 6.5, 46.5, *DEFAULTS.values()]
     assert columns(designs, CONTROL).flags.c_contiguous
 
 
 def test_cases_lie_within_the_papers_bounds():
     for case in PAPER_CASES.values():
-        values = case.design.as_array()
+        values = columns(case.design.as_array(), PAPER_NAMES)
         assert np.all((values >= LOWER) & (values <= UPPER))
 
 
 def test_array_and_back():
     values = np.linspace(LOWER, UPPER, 3)[1]
-    assert Design.from_array(values).as_array().tolist() == values.tolist()
+    assert Design.from_array(values).as_array().tolist() == [*values.tolist(), *DEFAULTS.values()]
+    everything = complete(values) + 0.25
+    assert Design.from_array(everything).as_array().tolist() == everything.tolist()
+
+
+def test_a_design_by_name_leaves_out_optional_variables_at_their_defaults():
+    design = PAPER_CASES["A"].design
+    assert tuple(design.as_dict()) == PAPER_NAMES
+    released = design.replace({"knee_release_rad": 0.3})
+    assert released.as_dict() == design.as_dict() | {"knee_release_rad": 0.3}
+    assert Design(**released.as_dict()) == released
+
+
+def test_variables_in_use_are_the_papers_and_those_off_their_defaults():
+    values = {name: [1.0, 2.0] for name in PAPER_NAMES} | {"rest_length_m": [10.0, 10.0]}
+    assert tuple(variable.name for variable in in_use(values)) == PAPER_NAMES
+    used = in_use(values | {"rest_length_m": [10.0, 9.0]})
+    assert tuple(variable.name for variable in used) == (*PAPER_NAMES, "rest_length_m")
 
 
 def test_replace_changes_only_what_is_named():
@@ -105,9 +129,9 @@ def test_each_case_frees_the_variables_that_the_paper_frees():
     """Section IV-B: A gears and controller, B links and controller, C everything; the nominal design is given."""
     assert {name: case.free for name, case in PAPER_CASES.items()} == {
         "nominal": (),
-        "A": RATIOS + CONTROL,
-        "B": LENGTHS + CONTROL,
-        "C": NAMES,
+        "A": RATIOS + PAPER_CONTROL,
+        "B": LENGTHS + PAPER_CONTROL,
+        "C": PAPER_NAMES,
     }
 
 

@@ -1,5 +1,6 @@
 """One actuator: motor, gearbox, parts, and what it can do."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pareto_monoped.actuator.external import external_parts
@@ -143,27 +144,32 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
 
 
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:
-    """Inertia at the output of all that moves when the output turns.
+    """Inertia at the output of all that moves when the output turns: each moment at the square of its speed."""
+    # One sum per part: floating-point sums depend on their order, and the results of stored studies on this one.
+    return sum(sum(inertia * speed**2 for inertia, speed in terms) for terms in turning_terms(parts, gears, motor))
 
-    Rotor, sun, coupling and shafts count with the square of the ratio, the carrier with all that is fixed to it once.
-    Planets count once on their orbit, and about their own axes with the square of their speed over the output's,
-    1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with the motor's own figure, not with its envelope's.
+
+def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iterator[tuple[tuple[float, float], ...]]:
+    """For each part that turns: moments of inertia in kg m2, each with its speed relative to the output's.
+
+    Rotor, sun, coupling and shafts turn at the ratio; the carrier and everything fixed to it turn once; the planets
+    turn once on their orbit, and about themselves at 1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with
+    the figure of its data sheet, not with its envelope's.
     """
     ratio = float(gears.ratio)
     spin = 1.0 - float(gears.ring_teeth) / float(gears.planet_teeth)
-    total = motor.rotor_inertia_kg_m2 * ratio**2
+    yield ((motor.rotor_inertia_kg_m2, ratio),)
     for part in parts:
         if part.role is Role.MOTOR_ROTOR or part.group is Group.HOUSING:
             continue
         about_axis = float(part.mass_properties().inertia_kg_m2[2, 2])
         if part.group is Group.ROTOR:
-            total += ratio**2 * about_axis
+            yield ((about_axis, ratio),)
         elif part.group is Group.PLANET:
             orbit = float(part.mass_kg()) * (1e-3 * float(part.pitch_radius_mm)) ** 2
-            total += orbit + spin**2 * (about_axis - orbit)
+            yield (orbit, 1.0), (about_axis - orbit, spin)
         else:
-            total += about_axis
-    return total
+            yield ((about_axis, 1.0),)
 
 
 def output_interface(settings: ActuatorSettings) -> OutputInterface:

@@ -119,7 +119,7 @@ def export_design(
     with beside(out_dir) as folder:
         files.write_meshes(folder, part_files, other_files, wanted)
         files.write_drawings(folder, product, wanted)
-        files.write_models(folder, product, shown, simulated, calibration, wanted)
+        files.write_models(folder, product, shown, simulated, built, calibration, wanted)
         write(folder, "bom.csv", parts_list(product))
         write(folder, "checks.json", checks_record(checks))
         write(folder, "README.md", readme(record, product, checks, wanted))

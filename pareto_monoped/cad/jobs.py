@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ from pareto_monoped.actuator.motors import Motor, load_motor
 from pareto_monoped.cad.write.design_record import MADE_BY
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.config import checked
-from pareto_monoped.design import NAMES, PAPER_CASES, Design
+from pareto_monoped.design import DEFAULTS, NAMES, PAPER_CASES, Design
 from pareto_monoped.errors import InputError, MotorError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, load_calibration
 
@@ -166,7 +166,7 @@ def record_job(
     source = f"design record {str(path)!r}"
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
-        design = Design.from_array([_finite(record["searched"][name]) for name in NAMES])
+        design = _design(record["searched"])
         angles = {name: _finite(record["pose"][name]) for name in ("hip_rad", "knee_rad")}
         motor, calibration = dict(record["motor_data"]), dict(record["calibration_data"])
         origin = dict(record["source"])
@@ -189,6 +189,12 @@ def record_job(
         source=origin,
         **angles,
     )
+
+
+def _design(searched: Mapping[str, Any]) -> Design:
+    """The design of a record; optional variables that it does not name have their defaults."""
+    values = DEFAULTS | dict(searched)
+    return Design.from_array([_finite(values[name]) for name in NAMES])
 
 
 def _finite(value: Any) -> float:

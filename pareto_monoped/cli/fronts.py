@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.design import NAMES, VARIABLES
+from pareto_monoped.design import VARIABLES, in_use
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
     from pareto_monoped.pareto.pick import Selector
 
-COLUMNS = ("trial", "height_m", "energy_j", *NAMES)
-"""The columns of each design in the output of ``front`` and ``pick``."""
+
+def shown_columns(trials: "DataFrame") -> list[str]:
+    """The columns of each design in the output of ``front`` and ``pick``."""
+    return ["trial", "height_m", "energy_j", *(variable.name for variable in in_use(trials))]
 
 
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -106,7 +108,8 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> 
     """List the non-dominated designs, from the lowest jump to the highest."""
     from pareto_monoped.study.reader import read_study
 
-    rows = read_study(db).front(include_ill_conditioned=include_all)[list(COLUMNS)]
+    data = read_study(db)
+    rows = data.front(include_ill_conditioned=include_all)[shown_columns(data.trials)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -119,10 +122,11 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> 
 
 
 def _print_table(rows: "DataFrame") -> None:
-    symbols = [variable.symbol for variable in VARIABLES]
-    click.echo(f"{'trial':>6} {'height m':>8} {'energy J':>8} " + " ".join(f"{symbol:>7}" for symbol in symbols))
+    shown = [variable for variable in VARIABLES if variable.name in rows.columns]
+    symbols = " ".join(f"{variable.symbol:>7}" for variable in shown)
+    click.echo(f"{'trial':>6} {'height m':>8} {'energy J':>8} {symbols}")
     for _, row in rows.iterrows():
-        values = " ".join(f"{row[name]:7.3f}" for name in NAMES)
+        values = " ".join(f"{row[name]:7.3f}" for name in (variable.name for variable in shown))
         click.echo(f"{int(row['trial']):6d} {row['height_m']:8.4f} {row['energy_j']:8.3f} {values}")
 
 
@@ -136,12 +140,13 @@ def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
     from pareto_monoped.study.reader import read_study
 
     wanted = required(selector)
-    rows = read_study(db).front()
+    data = read_study(db)
+    rows, names = data.front(), shown_columns(data.trials)
     picked = pick_design(rows, wanted)
-    row = rows.loc[rows["trial"] == picked.trial, list(COLUMNS)].to_dict(orient="records")[0]
+    row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
     if as_json:
         click.echo(json.dumps(row | {"why": picked.why}, indent=2))
         return
     click.echo(picked.why)
-    for name in COLUMNS[1:]:
+    for name in names[1:]:
         click.echo(f"{name:<34} {row[name]:.6g}")

@@ -95,7 +95,8 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
         value = getattr(design, variable.name)
         if not variable.lower <= value <= variable.upper:
             bounds = f"{variable.lower:g} to {variable.upper:g} {variable.unit}"
-            click.echo(f"note: {variable.name} = {value:g} is outside the paper's bounds, {bounds}", err=True)
+            whose = "the paper's" if variable.default is None else "the usual"
+            click.echo(f"note: {variable.name} = {value:g} is outside {whose} bounds, {bounds}", err=True)
     return design
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.design import CONTROL, NAMES, RATIOS, columns
+from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.single import energy_balance
@@ -25,8 +25,8 @@ PERTURBATION = 1e-6
 """Relative size of the perturbations: half a micrometre of a link, far below any tolerance of manufacture."""
 SPREAD_PERCENTILE = 90.0
 """Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
-PERTURBED = tuple(k for k, name in enumerate(NAMES) if name not in RATIOS)
-"""Columns that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
+PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
+"""Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,16 +115,23 @@ class Audits:
 def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
     """Perturbed copies of designs: each continuous variable changed by up to 1e-6 of its value.
 
+    Optional variables at their defaults are not in use, and stay.
+
     Args:
-        designs: shape (n, number of variables).
+        designs: shape (n, 7) or (n, number of variables).
         count: copies per design.
         rng: source of the perturbations.
 
     Returns:
         The copies of the first design, then those of the second, ..., shape (n * count, number of variables).
     """
-    copies = np.repeat(np.atleast_2d(designs), count, axis=0)
-    copies[:, PERTURBED] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(PERTURBED)))
+    copies = np.repeat(np.atleast_2d(complete(designs)), count, axis=0)
+    places = [NAMES.index(name) for name in PERTURBED]
+    copies[:, places] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(places)))
+    for name, default in DEFAULTS.items():
+        place = NAMES.index(name)
+        factor = 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, len(copies))
+        copies[:, place] *= np.where(copies[:, place] == default, 1.0, factor)
     return copies
 
 
@@ -153,7 +160,7 @@ def audit(
         perturbations: perturbed copies per design.
         seed: of the perturbations; the same seed gives the same audit.
     """
-    values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+    values = np.atleast_2d(complete(designs))
     n = len(values)
     base = Evaluator(actuator_map, calibration, workers)(values)
     half = Evaluator(actuator_map, finer(calibration, 2), workers)(values)

@@ -4,8 +4,9 @@ Three are shipped in ``data/calibrations``: ``reference``, well-posed and the de
 literally and fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may write their own.
 """
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -25,6 +26,8 @@ _STRICT = ConfigDict(extra="forbid")
 DEFAULT = "reference"
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
+# As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
+_MOST_DELAY = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,6 +65,8 @@ class Joints:
 
     Attributes:
         damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint.
+        rotors: how the parts that turn with the knee actuator are booked: as ``armature`` of the joint alone, or with
+            their ``absolute`` speeds, which the thigh's rotation is part of.
         motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft; acts on the joint times the ratio squared.
         hip_stop, knee_stop: end stops; None for a joint that turns freely.
     """
@@ -71,6 +76,7 @@ class Joints:
     damping_n_m_s_per_rad: NotNegative
     friction_n_m: NotNegative
     motor_damping_n_m_s_per_rad: NotNegative = 0.0
+    rotors: Literal["armature", "absolute"] = "armature"
     hip_stop: EndStop | None = None
     knee_stop: EndStop | None = None
 
@@ -85,6 +91,8 @@ class Drive:
         loss_speed_rad_per_s: joint speed over which the load-dependent losses change sign; smooths the change.
         voltage_limit: whether the torque limit falls along the voltage-speed line to zero at the no-load speed.
         peak_torque_scale: factor on the motors' peak torque.
+        regeneration_share: of the electrical power that flows back, what the battery takes.
+        standby_power_w: of the electronics, as long as the jump lasts.
     """
 
     __pydantic_config__ = _STRICT
@@ -94,6 +102,8 @@ class Drive:
     loss_speed_rad_per_s: Positive = 0.5
     voltage_limit: bool = True
     peak_torque_scale: Positive = 1.0
+    regeneration_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    standby_power_w: NotNegative = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,7 +203,10 @@ class Simulation:
 
     Attributes:
         integrator: MuJoCo's integrator.
-        timestep_s: step of the integrator and period of the controller.
+        timestep_s: step of the integrator.
+        control_period_s: period of the controller, a whole number of steps, in which the motors' torques are held;
+            None: each step is a period.
+        delay_s: from measuring to acting, a whole number of control periods, at most 8.
         time_limit_s: a jump that is not over by then has failed.
         base_slides: whether the base may move in x; otherwise a vertical guide holds it.
         work_speed: speed used for the work of a step. ``mean`` of both ends is what MuJoCo's step turns into kinetic
@@ -206,7 +219,31 @@ class Simulation:
     timestep_s: Positive
     time_limit_s: Positive = 3.0
     base_slides: bool = True
+    control_period_s: Positive | None = None
+    delay_s: NotNegative = 0.0
     work_speed: Literal["mean", "start"] = "mean"
+
+    def __post_init__(self) -> None:
+        """Refuse a period that is no whole number of steps, and a delay that is no whole number of periods."""
+        if not _whole(self.period_s / self.timestep_s) or self.period_steps < 1:
+            raise ValueError(f"control_period_s {self.period_s:g} must be a whole multiple of timestep_s")
+        if not _whole(self.delay_s / self.period_s) or self.delay_s > _MOST_DELAY * self.period_s * (1.0 + 1e-9):
+            raise ValueError(f"delay_s {self.delay_s:g} must be 0 to {_MOST_DELAY} whole control periods")
+
+    @property
+    def period_s(self) -> float:
+        """Period of the controller."""
+        return self.timestep_s if self.control_period_s is None else self.control_period_s
+
+    @property
+    def period_steps(self) -> int:
+        """Steps of the integrator in one control period."""
+        return round(self.period_s / self.timestep_s)
+
+
+def _whole(number: float) -> bool:
+    """Whether a number is whole but for rounding."""
+    return abs(number - round(number)) < 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -230,6 +267,29 @@ class Calibration:
     def label(self) -> str:
         """Name and version, as quoted in results."""
         return f"{self.name}-{self.version}"
+
+
+_LATER = {
+    "joints": ("rotors",),
+    "drive": ("regeneration_share", "standby_power_w"),
+    "simulation": ("control_period_s", "delay_s"),
+}
+"""Fields that calibrations did not always have, by table."""
+
+
+def calibration_values(calibration: Calibration) -> dict[str, Any]:
+    """Every value of a calibration as JSON has it; ``calibration_of`` reads it back.
+
+    A field that calibrations did not always have is left out at its default, so that studies stored before it came
+    keep their hash.
+    """
+    values: dict[str, Any] = json.loads(json.dumps(asdict(calibration)))
+    for table, names in _LATER.items():
+        defaults = {field.name: field.default for field in fields(getattr(calibration, table))}
+        values[table] = {
+            name: value for name, value in values[table].items() if name not in names or value != defaults[name]
+        }
+    return values
 
 
 def calibration_names() -> tuple[str, ...]:

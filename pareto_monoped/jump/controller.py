@@ -14,19 +14,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.jump.compiled import compiled
 
 Floats = NDArray[np.float64]
 
 HIP, KNEE = 0, 1
 
-_ONE, _BOTH = np.float64, (np.float64, (2,))
+MOST_DELAY = 8
+"""Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
+
+_ONE, _BOTH, _STATE = np.float64, (np.float64, (2,)), (np.float64, (4,))
+_COMMANDS = (np.float64, (MOST_DELAY + 1, 3))
 RECORD = np.dtype(
     [
         ("status", _ONE),  # one of RUNNING ... TIMEOUT
         # Settings, the same for all jumps under one calibration. Flags are 0 or 1.
         ("rest_length_m", _ONE),
         ("timestep_s", _ONE),
+        ("period_steps", _ONE),  # steps of one control period, in which the motors' torques are held
+        ("delay_periods", _ONE),
         ("step_limit", _ONE),
         ("stages", _ONE),  # calls per step: 4 for a Runge-Kutta integrator
         ("fade_length_m", _ONE),  # 0: torque only while the foot touches the floor
@@ -35,6 +42,7 @@ RECORD = np.dtype(
         ("voltage_limit", _ONE),
         ("lags", _ONE),
         ("mean_speed", _ONE),
+        ("regeneration_share", _ONE),
         # The robot.
         ("thigh_length_m", _ONE),
         ("shank_length_m", _ONE),
@@ -48,6 +56,20 @@ RECORD = np.dtype(
         ("corner_speed_rad_per_s", _BOTH),
         ("loss", _BOTH),  # share of the torque lost in gears and chain
         ("heat_w_per_n2_m2", _BOTH),  # Joule heat per squared joint torque
+        ("knee_release_rad", _ONE),  # 0: the knee's torque does not fade before its stop
+        # What the loads are computed from, see ``_loads``.
+        ("body_mass_kg", (np.float64, (3,))),
+        ("thigh_com_m", _BOTH),  # x, z
+        ("shank_com_m", _BOTH),
+        ("link_inertia_kg_m2", _BOTH),  # of thigh and shank about y, through their centres of mass
+        ("armature_kg_m2", _BOTH),
+        ("coupling_kg_m2", _ONE),  # of the knee's turning parts with the thigh's rotation
+        ("rotor_kg_m2", _BOTH),  # of what turns at the motor's speed, times the ratio: torque per motor acceleration
+        ("ratio", _BOTH),
+        ("joint_damping_n_m_s_per_rad", _BOTH),
+        ("lower_stop_rad", _BOTH),
+        ("upper_stop_rad", _BOTH),
+        ("sprocket_radius_m", _ONE),
         # What the controller remembers from step to step.
         ("stage", _ONE),
         ("steps", _ONE),
@@ -61,14 +83,27 @@ RECORD = np.dtype(
         ("absorbed_j", _BOTH),
         ("drive_loss_j", _BOTH),
         ("joule_heat_j", _ONE),
+        ("winding_heat_j", _BOTH),
+        ("electrical_energy_j", _ONE),
         ("peak_torque_n_m", _BOTH),
         ("peak_speed_rad_per_s", _BOTH),
         ("peak_power_w", _BOTH),
         ("active_steps", _ONE),
         ("saturated_steps", _BOTH),
+        ("peak_gear_torque_n_m", _BOTH),
+        ("peak_chain_tension_n", _ONE),
+        ("peak_stop_torque_n_m", _ONE),
+        ("stop_energy_j", _ONE),
+        ("peak_foot_force_n", _ONE),
+        ("drift_m", _ONE),
         ("speed_rad_per_s", _BOTH),  # at the start of the current step
         ("motor_torque_n_m", _BOTH),  # during the current step, at the joint before losses
         ("joint_torque_n_m", _BOTH),  # the same after losses
+        ("periods", _ONE),  # control periods so far
+        ("quiet_periods", _ONE),  # control periods since the torque was switched off for good
+        ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of the gate
+        ("position", _STATE),  # x, z, hip, knee at the start of the current step
+        ("velocity", _STATE),
     ],
     align=True,
 )
@@ -139,6 +174,8 @@ def _fly(q: Floats, v: Floats, jump: Any) -> None:
         jump.status = DIVERGED
         return
     nv = v.shape[0]
+    _loads(v, jump)
+    _note_state(q, v, jump)
     jump.steps += 1.0
     jump.height_m = max(jump.height_m, q[nv - 3])
     jump.peak_speed_rad_per_s[HIP] = max(jump.peak_speed_rad_per_s[HIP], abs(v[nv - 2]))
@@ -168,42 +205,56 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     clearance = z + rz - jump.foot_radius_m
 
     if jump.steps > 0:
+        _loads(v, jump)
         _book(jump, speed)
+    _note_state(q, v, jump)
+    tick = jump.steps % jump.period_steps == 0.0
     jump.steps += 1
     jump.height_m = max(jump.height_m, z)
     jump.clearance_m = clearance
-    gate = _gate(clearance, jump)
-    _end(q, v, jump)
-    if jump.status != RUNNING:
-        return
-    if jump.off_floor > 0.0 and jump.latch > 0.0:
-        jump.status = FLYING
-        for joint in range(2):
-            jump.motor_torque_n_m[joint] = jump.joint_torque_n_m[joint] = 0.0
-        return
-
-    torque = (0.0, 0.0)
-    if gate > 0.0:
-        wanted = _virtual_leg((rx, rz), (shank_x, shank_z), speed, jump)
-        jump.active_steps += 1
-        torque = (
-            gate * _limited(wanted[HIP], speed[HIP], jump, HIP),
-            gate * _limited(wanted[KNEE], speed[KNEE], jump, KNEE),
-        )
-    for joint in range(2):
-        jump.motor_torque_n_m[joint] = torque[joint]
-        jump.speed_rad_per_s[joint] = speed[joint]
-        delivered = _delivered(torque[joint], speed[joint], jump, joint)
-        ctrl[joint] = jump.joint_torque_n_m[joint] = delivered
-
-
-@compiled
-def _gate(clearance: float, jump: Any) -> float:
-    """The share of the torque that passes at a foot clearance; notes contact and lift-off."""
     touching = clearance <= TOUCH_M
     if touching:
         jump.stood = 1.0
         jump.lift_off_step = jump.steps
+    gate = _gate(clearance, touching, jump) if tick else 0.0
+    _end(q, v, jump)
+    if jump.status != RUNNING:
+        return
+    if tick:
+        if jump.latch > 0.0 and jump.off_floor > 0.0:
+            if jump.quiet_periods >= jump.delay_periods:
+                jump.status = FLYING
+                for joint in range(2):
+                    jump.motor_torque_n_m[joint] = jump.joint_torque_n_m[joint] = 0.0
+                return
+            # The driver still works off the commands that are under way.
+            jump.quiet_periods += 1
+        wanted = (0.0, 0.0)
+        if gate > 0.0:
+            wanted = _virtual_leg((rx, rz), (shank_x, shank_z), speed, jump)
+            wanted = (wanted[HIP], wanted[KNEE] * _release(knee, jump))
+        _command(wanted, gate, speed, jump)
+    for joint in range(2):
+        jump.speed_rad_per_s[joint] = speed[joint]
+        delivered = _delivered(jump.motor_torque_n_m[joint], speed[joint], jump, joint)
+        ctrl[joint] = jump.joint_torque_n_m[joint] = delivered
+
+
+@compiled
+def _note_state(q: Floats, v: Floats, jump: Any) -> None:
+    """Keep the state at the start of a step."""
+    nv = v.shape[0]
+    jump.position[0] = q[0] if nv == 4 else 0.0
+    jump.velocity[0] = v[0] if nv == 4 else 0.0
+    for k in range(3):
+        jump.position[1 + k] = q[nv - 3 + k]
+        jump.velocity[1 + k] = v[nv - 3 + k]
+    jump.drift_m = abs(jump.position[0])
+
+
+@compiled
+def _gate(clearance: float, touching: bool, jump: Any) -> float:
+    """The share of the torque that passes at a foot clearance; notes lift-off."""
     length = jump.fade_length_m
     if length > 0.0:
         u = min(max(clearance / length, 0.0), 1.0)
@@ -215,8 +266,38 @@ def _gate(clearance: float, jump: Any) -> float:
         jump.touched = 1.0 if touching else 0.0
         gate = 1.0 if listed else 0.0
         in_air = not listed
+    if jump.quiet_periods > 0.0:
+        return 0.0  # switched off for good, whatever the foot does
     jump.off_floor = 1.0 if in_air and jump.stood > 0.0 else 0.0
     return gate
+
+
+@compiled
+def _release(knee: float, jump: Any) -> float:
+    """The share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
+    if jump.knee_release_rad == 0.0:
+        return 1.0
+    return min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
+
+
+@compiled
+def _command(wanted: tuple[float, float], gate: float, speed: tuple[float, float], jump: Any) -> None:
+    """Give the drivers the torques of this control period; they act on the command of ``delay_periods`` ago."""
+    size = jump.commands.shape[0]
+    late = jump.periods - jump.delay_periods
+    slot = int(jump.periods) % size
+    jump.commands[slot, HIP], jump.commands[slot, KNEE], jump.commands[slot, 2] = wanted[HIP], wanted[KNEE], gate
+    jump.periods += 1.0
+    for joint in range(2):
+        jump.motor_torque_n_m[joint] = 0.0
+    if late < 0.0:
+        return
+    slot = int(late) % size
+    share = jump.commands[slot, 2]
+    if share > 0.0:
+        jump.active_steps += 1
+        for joint in range(2):
+            jump.motor_torque_n_m[joint] = share * _limited(jump.commands[slot, joint], speed[joint], jump, joint)
 
 
 @compiled
@@ -294,7 +375,92 @@ def _book(jump: Any, speed: tuple[float, float]) -> None:
         else:
             jump.absorbed_j[joint] -= power * timestep
         jump.drive_loss_j[joint] += (torque - jump.joint_torque_n_m[joint]) * during * timestep
-        jump.joule_heat_j += jump.heat_w_per_n2_m2[joint] * torque * torque * timestep
+        heating = jump.heat_w_per_n2_m2[joint] * torque * torque
+        jump.joule_heat_j += heating * timestep
+        jump.winding_heat_j[joint] += heating * timestep
+        electrical = power + heating
+        share = 1.0 if electrical > 0.0 else jump.regeneration_share
+        jump.electrical_energy_j += share * electrical * timestep
         jump.peak_torque_n_m[joint] = max(jump.peak_torque_n_m[joint], abs(torque))
         jump.peak_speed_rad_per_s[joint] = max(jump.peak_speed_rad_per_s[joint], abs(speed[joint]))
         jump.peak_power_w[joint] = max(jump.peak_power_w[joint], abs(power))
+
+
+@compiled
+def _loads(v: Floats, jump: Any) -> None:
+    """Loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
+
+    The floor's force accelerates the whole robot. An end stop has what is left of the moment about its joint of all
+    that hangs below it, less those of actuator, floor and viscous friction; Coulomb friction is counted with the stop.
+    A gearbox transmits the motor's torque less what accelerates the rotor, and the chain transmits the knee's torque
+    less what accelerates everything before its sprocket. On a vertical guide the floor's force has an unknown part in
+    x, which is left out.
+    """
+    nv, timestep = v.shape[0], jump.timestep_s
+    hip, knee = jump.position[2], jump.position[2] + jump.position[3]  # of thigh and shank against the vertical
+    turn, turn_below = jump.velocity[2], jump.velocity[2] + jump.velocity[3]
+    ax = (v[0] - jump.velocity[0]) / timestep if nv == 4 else 0.0
+    az = (v[nv - 3] - jump.velocity[1]) / timestep + GRAVITY_M_PER_S2
+    spin_up, knee_spin_up = (v[nv - 2] - jump.velocity[2]) / timestep, (v[nv - 1] - jump.velocity[3]) / timestep
+    below_spin_up = spin_up + knee_spin_up
+
+    thigh = _turned(jump.thigh_com_m, hip)
+    to_knee = _turned((0.0, -jump.thigh_length_m), hip)
+    shank = _turned(jump.shank_com_m, knee)
+    to_floor = _turned((0.0, -jump.shank_length_m), knee)
+    at_knee = _accelerated((ax, az), to_knee, turn, spin_up)
+    at_thigh = _accelerated((ax, az), thigh, turn, spin_up)
+    at_shank = _accelerated(at_knee, shank, turn_below, below_spin_up)
+    mass, thigh_mass, shank_mass = jump.body_mass_kg[0], jump.body_mass_kg[1], jump.body_mass_kg[2]
+    floor = (0.0, 0.0)
+    if jump.position[1] + to_knee[1] + to_floor[1] - jump.foot_radius_m <= 0.0:
+        fx = mass * ax + thigh_mass * at_thigh[0] + shank_mass * at_shank[0]
+        floor = (fx if nv == 4 else 0.0, mass * az + thigh_mass * at_thigh[1] + shank_mass * at_shank[1])
+    jump.peak_foot_force_n = max(jump.peak_foot_force_n, math.sqrt(floor[0] * floor[0] + floor[1] * floor[1]))
+
+    at_sole = (to_floor[0], to_floor[1] - jump.foot_radius_m)
+    below = jump.link_inertia_kg_m2[1] * below_spin_up + shank_mass * _moment(shank, at_shank) - _moment(at_sole, floor)
+    whole = below + jump.link_inertia_kg_m2[0] * spin_up + thigh_mass * _moment(thigh, at_thigh)
+    pull = (shank_mass * at_shank[0] - floor[0], shank_mass * at_shank[1] - floor[1])
+    whole += _moment(to_knee, pull) + jump.coupling_kg_m2 * knee_spin_up
+    turning = jump.armature_kg_m2[KNEE] * knee_spin_up + jump.coupling_kg_m2 * spin_up
+    needed = (whole + jump.armature_kg_m2[HIP] * spin_up, below + turning)
+
+    riding = spin_up if jump.coupling_kg_m2 > 0.0 else 0.0
+    for joint in range(2):
+        acceleration = spin_up if joint == HIP else knee_spin_up
+        motor_spin_up = jump.ratio[joint] * acceleration + (riding if joint == KNEE else 0.0)
+        gear = abs(jump.motor_torque_n_m[joint] - jump.rotor_kg_m2[joint] * motor_spin_up)
+        jump.peak_gear_torque_n_m[joint] = max(jump.peak_gear_torque_n_m[joint], gear)
+        angle, after = jump.position[2 + joint], v[nv - 2 + joint]
+        if angle < jump.lower_stop_rad[joint] or angle > jump.upper_stop_rad[joint]:
+            stop = needed[joint] - jump.joint_torque_n_m[joint] + jump.joint_damping_n_m_s_per_rad[joint] * after
+            jump.peak_stop_torque_n_m = max(jump.peak_stop_torque_n_m, abs(stop))
+            jump.stop_energy_j -= stop * 0.5 * (jump.velocity[2 + joint] + after) * timestep
+    tension = abs(jump.joint_torque_n_m[KNEE] - turning) / jump.sprocket_radius_m
+    jump.peak_chain_tension_n = max(jump.peak_chain_tension_n, tension)
+
+
+@compiled
+def _turned(vector: Any, angle: float) -> tuple[float, float]:
+    """A vector (x, z) of a body frame in the world: turned about +y."""
+    sin, cos = math.sin(angle), math.cos(angle)
+    return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]
+
+
+@compiled
+def _accelerated(
+    origin: tuple[float, float], arm: tuple[float, float], speed: float, acceleration: float
+) -> tuple[float, float]:
+    """Acceleration of the end of ``arm`` on a body that turns about +y, from that of its origin."""
+    centripetal = speed * speed
+    return (
+        origin[0] + acceleration * arm[1] - centripetal * arm[0],
+        origin[1] - acceleration * arm[0] - centripetal * arm[1],
+    )
+
+
+@compiled
+def _moment(arm: tuple[float, float], force: tuple[float, float]) -> float:
+    """Moment about +y of a force at the end of ``arm``."""
+    return arm[1] * force[0] - arm[0] * force[1]

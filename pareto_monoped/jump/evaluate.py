@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, columns
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, columns, complete, complete_control
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.population import Population, prepare
+from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import take
 from pareto_monoped.measures import MEASURE_NAMES
@@ -24,6 +24,8 @@ _SHORTEST_LINK_M = 0.05
 _LEAST = np.array([_SHORTEST_LINK_M if name in LENGTHS else 0.0 for name in NAMES])
 # Beyond this value of any variable, numbers overflow.
 _MOST = 1e9
+# Measures that the controller's records hold under their own names.
+_LOADS = ("peak_chain_tension_n", "peak_stop_torque_n_m", "stop_energy_j", "peak_foot_force_n", "drift_m")
 # Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
@@ -61,6 +63,15 @@ class Evaluations:
     saturation_hip: Floats
     saturation_knee: Floats
     efficiency: Floats
+    electrical_energy_j: Floats
+    sustained_jumps_per_minute: Floats
+    peak_gear_torque_hip_n_m: Floats
+    peak_gear_torque_knee_n_m: Floats
+    peak_chain_tension_n: Floats
+    peak_stop_torque_n_m: Floats
+    stop_energy_j: Floats
+    peak_foot_force_n: Floats
+    drift_m: Floats
 
     def __len__(self) -> int:
         return len(self.height_m)
@@ -97,9 +108,9 @@ class Evaluator:
         """Jump with each design.
 
         Args:
-            designs: shape (n, number of variables), in the order of ``design.NAMES``.
+            designs: shape (n, 7) or (n, number of variables), see ``design.complete``.
         """
-        values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+        values = np.atleast_2d(complete(designs))
         table, reasons = _Table(len(values)), _nonsense(values)
         for i, reason in reasons.items():
             table.fail(i, "bad_input", reason)
@@ -115,12 +126,12 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
 
     Args:
         robots: n robots.
-        control: K, C and T of each, shape (n, 3).
+        control: of each, see ``design.complete_control``.
         calibration: the jump model.
         workers: threads.
     """
     table = _Table(len(robots))
-    _jump(robots, control, calibration, workers, table, np.arange(len(robots)))
+    _jump(robots, complete_control(control), calibration, workers, table, np.arange(len(robots)))
     return table.evaluations()
 
 
@@ -172,21 +183,24 @@ def _jump(
     ready = np.flatnonzero(built & stands)
     for start in range(0, len(ready), _CHUNK):
         chosen = ready[start : start + _CHUNK]
-        population = prepare(take(robots, chosen), control[chosen], take(pose, chosen), calibration, workers)
+        jumping = take(robots, chosen)
+        population = prepare(jumping, control[chosen], take(pose, chosen), calibration, workers)
         population.run()
-        _collect(population, calibration, table, rows[chosen])
+        _collect(population, jumping, calibration, table, rows[chosen])
 
 
-def _collect(population: Population, calibration: Calibration, table: _Table, rows: NDArray[np.intp]) -> None:
+def _collect(
+    population: Population, robots: RobotArrays, calibration: Calibration, table: _Table, rows: NDArray[np.intp]
+) -> None:
     """Fill ``rows`` of the table with the ends and measures of a population that has run."""
     from pareto_monoped.jump.controller import HIP, KNEE
 
-    records, step = population.records, calibration.simulation.timestep_s
+    records, step, drive = population.records, calibration.simulation.timestep_s, calibration.drive
     energy = records["energy_j"][:, HIP] + records["energy_j"][:, KNEE]
     _name_failures(population, energy, step, table, rows)
     ok = table.status[rows] == "ok"
     mass = table.columns["mass_kg"][rows]
-    rise = records["height_m"] - BASE_START_HEIGHT_M
+    rise = records["height_m"] - robots.start_height_m
     active = np.maximum(records["active_steps"], 1.0)
     saturated = records["saturated_steps"] / active[:, None]
     measures = {
@@ -204,9 +218,20 @@ def _collect(population: Population, calibration: Calibration, table: _Table, ro
         **_by_joint("peak_power_{}_w", records["peak_power_w"]),
         **_by_joint("saturation_{}", saturated),
         "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(ok, energy, np.nan),
+        "electrical_energy_j": records["electrical_energy_j"] + drive.standby_power_w * (records["steps"] - 1) * step,
+        "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
+        **_by_joint("peak_gear_torque_{}_n_m", records["peak_gear_torque_n_m"]),
+        **{name: records[name] for name in _LOADS},
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]
+
+
+def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Floats:
+    """Jumps per minute at which neither motor makes more heat in its winding than at its continuous torque."""
+    allowed_w = records["heat_w_per_n2_m2"] * np.square(continuous_torque_n_m)
+    with np.errstate(divide="ignore"):
+        return np.asarray((60.0 * allowed_w / records["winding_heat_j"]).min(axis=1))
 
 
 def _by_joint(name: str, values: Floats) -> dict[str, Floats]:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
-from pareto_monoped.jump.calibration import Calibration, EndStop, SpringContact
-from pareto_monoped.jump.pose import LEAST_IMPEDANCE, start_pose
+from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.jump.calibration import Calibration, EndStop, Joints, SpringContact
+from pareto_monoped.jump.pose import LEAST_IMPEDANCE, StartPose, start_pose
 from pareto_monoped.robot.population import RobotArrays
 
 Floats = NDArray[np.float64]
@@ -36,7 +36,7 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
 
     fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
     pose = start_pose(robots, calibration)
-    start = start_qpos(calibration, pose.hip_rad, pose.knee_rad)[index]
+    start = start_qpos(calibration, robots.start_height_m, pose)[index]
     # Springs in N/m need inverse masses that only MuJoCo's compiler computes, so compile a draft without them first.
     draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, None, comment))
     springs = spring_fields(calibration, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
@@ -60,8 +60,10 @@ def template_mjcf(calibration: Calibration, user_data: int) -> str:
         "dof_armature": np.ones(4),
         "dof_damping": np.ones(4),
         "actuator_ctrlrange": np.array([[-1.0, 1.0], [-1.0, 1.0]]),
+        "tendon_armature": np.ones(1),
+        "wrap_prm": np.ones(2),
     }
-    start = start_qpos(calibration, np.zeros(1), np.ones(1))[0]
+    start = np.zeros(4 if calibration.simulation.base_slides else 3)
     size = f'<size nuserdata="{user_data}"/>'
     return _document(fields, start, calibration, None, "").replace("<worldbody>", f"{size}\n  <worldbody>", 1)
 
@@ -80,9 +82,19 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
     foot[:, 0, 2] = -robots.shank_length_m
     armature = np.zeros((n, 4 if slides else 3))
     armature[:, -2:] = robots.armature_kg_m2
+    rotor = {}
+    if calibration.joints.rotors == "absolute":
+        # One tendon of the coordinate hip + c knee with the armature J adds J [1, c; c, c^2] to the mass matrix
+        # (MuJoCo's documentation, "tendon-fixed"). J c and J c^2 are the sums B and C; J itself leaves the thigh.
+        coupling, reflected = robots.knee_coupling_kg_m2, robots.knee_reflected_kg_m2
+        tendon = np.divide(coupling**2, reflected, out=np.zeros(n), where=reflected > 0.0)
+        lever = np.divide(reflected, coupling, out=np.zeros(n), where=coupling > 0.0)
+        armature[:, -1] = 0.0
+        inertia[:, THIGH, 1] += robots.rotor_excess_kg_m2 - tendon
+        rotor = {"tendon_armature": tendon[:, None], "wrap_prm": np.stack([np.ones(n), lever], axis=1)}
     joints = calibration.joints
     damping = np.zeros_like(armature)
-    damping[:, -2:] = joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
+    damping[:, -2:] = joint_damping(robots, joints)
     limit = calibration.drive.peak_torque_scale * robots.peak_torque_n_m
     return {
         "body_mass": mass,
@@ -97,7 +109,13 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
         "dof_armature": armature,
         "dof_damping": damping,
         "actuator_ctrlrange": np.stack([-limit, limit], axis=-1),
+        **rotor,
     }
+
+
+def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
+    """Viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
+    return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
 
 
 def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweight0: Floats) -> dict[str, Floats]:
@@ -132,11 +150,11 @@ def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweig
     return result
 
 
-def start_qpos(calibration: Calibration, hip_rad: Floats, knee_rad: Floats) -> Floats:
+def start_qpos(calibration: Calibration, height_m: Floats, pose: StartPose) -> Floats:
     """Joint positions at rest: x (unless the base is on a vertical guide), z, hip, knee; shape (n, 4) or (n, 3)."""
-    columns = [np.full(len(hip_rad), BASE_START_HEIGHT_M), hip_rad, knee_rad]
+    columns = [height_m, pose.hip_rad, pose.knee_rad]
     if calibration.simulation.base_slides:
-        columns.insert(0, np.zeros(len(hip_rad)))
+        columns.insert(0, np.zeros(len(height_m)))
     return np.stack(columns, axis=1)
 
 
@@ -179,6 +197,15 @@ def _document(
 
     slide_x = '\n      <joint name="slide_x" type="slide" axis="1 0 0"/>' if simulation.base_slides else ""
     foot = _n(*fields["site_pos"][0])
+    tendon = ""
+    if joints.rotors == "absolute":
+        tendon = f"""
+  <tendon>
+    <fixed name="knee_rotor" armature="{_n(*fields["tendon_armature"])}">
+      <joint joint="hip" coef="{_n(fields["wrap_prm"][0])}"/>
+      <joint joint="knee" coef="{_n(fields["wrap_prm"][1])}"/>
+    </fixed>
+  </tendon>"""
     head = f"<!-- {comment.replace('--', '- -')} -->\n" if comment else ""
     return f"""{head}<mujoco model="pareto_monoped {calibration.label}">
   <compiler angle="radian" autolimits="false"/>
@@ -204,7 +231,7 @@ friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solim
         </body>
       </body>
     </body>
-  </worldbody>
+  </worldbody>{tendon}
   <actuator>
     <motor name="hip" joint="hip" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][0])}"/>
     <motor name="knee" joint="knee" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][1])}"/>

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, GRAVITY_M_PER_S2
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, complete_control
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.pose import StartPose
+from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
 
 Floats = NDArray[np.float64]
@@ -81,7 +82,7 @@ def prepare(
 
     Args:
         robots: n robots that can stand.
-        control: K, C and T of each, shape (n, 3).
+        control: of each, see ``design.complete_control``.
         pose: their start pose.
         calibration: the jump model.
         threads: number of threads that step the simulations.
@@ -101,7 +102,7 @@ def prepare(
         batch.expand("geom_solref")[:, model.FOOT_GEOM] = springs["geom_solref"]
     if "jnt_solref" in springs:
         batch.expand("jnt_solref")[:, -2:] = springs["jnt_solref"]
-    _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(calibration, pose.hip_rad, pose.knee_rad)
+    _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(calibration, robots.start_height_m, pose)
     records = _component(batch, mujoco.mjtState.mjSTATE_USERDATA).view(RECORD)[:, 0]
     records[:] = first_records(robots, control, calibration)
     return Population(batch=batch, records=records)
@@ -136,7 +137,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
 
     Args:
         robots: n robots.
-        control: K, C and T of each, shape (n, 3).
+        control: of each, see ``design.complete_control``.
         calibration: the jump model.
     """
     from pareto_monoped.jump import controller
@@ -144,10 +145,11 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     drive, gate, simulation = calibration.drive, calibration.gate, calibration.simulation
     records = np.zeros(len(robots), dtype=controller.RECORD)
     records["status"] = controller.RUNNING
-    records["height_m"] = BASE_START_HEIGHT_M
+    records["height_m"] = robots.start_height_m
 
-    records["rest_length_m"] = calibration.controller.rest_length_m
     records["timestep_s"] = simulation.timestep_s
+    records["period_steps"] = simulation.period_steps
+    records["delay_periods"] = round(simulation.delay_s / simulation.period_s)
     records["step_limit"] = round(simulation.time_limit_s / simulation.timestep_s)
     records["stages"] = _STAGES.get(simulation.integrator, 1)
     if isinstance(gate, FadeGate):
@@ -156,14 +158,19 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     else:
         records["lags"] = gate.lags
     records["loss_speed_rad_per_s"] = drive.loss_speed_rad_per_s
+    records["regeneration_share"] = drive.regeneration_share
     records["mean_speed"] = simulation.work_speed == "mean"
     records["voltage_limit"] = drive.voltage_limit
 
     records["thigh_length_m"] = robots.thigh_length_m
     records["shank_length_m"] = robots.shank_length_m
     records["foot_radius_m"] = robots.foot_radius_m
-    for k, name in enumerate(CONTROL):
-        records[name] = control[:, k]
+    given = dict(zip(CONTROL, complete_control(control).T, strict=True))
+    for name in (*PAPER_CONTROL, "knee_release_rad"):
+        records[name] = given[name]
+    # A design that leaves the rest length at its default takes that of its calibration.
+    free = given["rest_length_m"] != REST_LENGTH_M
+    records["rest_length_m"] = np.where(free, given["rest_length_m"], calibration.controller.rest_length_m)
     weight_n = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
     records["weight_n"] = calibration.controller.gravity_feed_forward * weight_n
     limit = drive.peak_torque_scale * robots.peak_torque_n_m
@@ -178,4 +185,26 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     efficiency[:, controller.KNEE] *= drive.chain_efficiency
     records["loss"] = 1.0 - efficiency
     records["heat_w_per_n2_m2"] = robots.winding_resistance_ohm / volts_per_speed**2
+    _set_load_constants(records, robots, calibration)
     return records
+
+
+def _set_load_constants(records: Records, robots: RobotArrays, calibration: Calibration) -> None:
+    """What ``controller`` computes the loads from: bodies, everything that turns, friction, and stops."""
+    joints = calibration.joints
+    records["body_mass_kg"] = robots.body_mass_kg
+    for name, body in (("thigh_com_m", "thigh"), ("shank_com_m", "shank")):
+        records[name] = robots.body_com_m[:, BODIES.index(body)][:, [0, 2]]
+    records["link_inertia_kg_m2"] = robots.body_inertia_kg_m2[:, 1:, 1, 1]
+    records["armature_kg_m2"] = robots.armature_kg_m2
+    if joints.rotors == "absolute":
+        records["link_inertia_kg_m2"][:, 0] += robots.rotor_excess_kg_m2
+        records["armature_kg_m2"][:, 1] = robots.knee_reflected_kg_m2
+        records["coupling_kg_m2"] = robots.knee_coupling_kg_m2
+    records["rotor_kg_m2"] = robots.rotor_inertia_kg_m2 * robots.ratio
+    records["ratio"] = robots.ratio
+    records["joint_damping_n_m_s_per_rad"] = model.joint_damping(robots, joints)
+    for k, stop in enumerate((joints.hip_stop, joints.knee_stop)):
+        records["lower_stop_rad"][:, k] = -np.inf if stop is None else stop.lower_rad
+        records["upper_stop_rad"][:, k] = np.inf if stop is None else stop.upper_rad
+    records["sprocket_radius_m"] = robots.sprocket_radius_m

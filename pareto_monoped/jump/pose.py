@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, SpringContact
 from pareto_monoped.robot.population import RobotArrays
 
@@ -46,7 +46,7 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
     sunk = np.zeros(len(robots))
     if isinstance(calibration.contact, SpringContact):
         sunk = compression_m(calibration.contact, robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2)
-    length = BASE_START_HEIGHT_M - radius + sunk
+    length = robots.start_height_m - radius + sunk
     thigh, shank = robots.thigh_length_m, robots.shank_length_m
     with np.errstate(invalid="ignore", divide="ignore"):
         # Law of cosines. Of both solutions, take the one with the knee in front: positive flexion, from 0 to pi.

@@ -1,13 +1,13 @@
 """One study -> its part of the page: pure functions of the stored study and of what was simulated again for it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES
+from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
@@ -44,7 +44,9 @@ class Source:
     models: Mapping[int, Model3D]
 
 
-def study_card(source: Source, label: str, most_rows: int, map_number: int, first_gearbox: int) -> StudyCard:
+def study_card(
+    source: Source, label: str, most_rows: int, map_number: int, first_gearbox: int, variables: Sequence[Variable]
+) -> StudyCard:
     """What the page says of one study.
 
     Args:
@@ -53,6 +55,7 @@ def study_card(source: Source, label: str, most_rows: int, map_number: int, firs
         most_rows: trials that the page may hold of it.
         map_number: which of the page's stage 1 maps is its motor's.
         first_gearbox: number of that map's first gearbox.
+        variables: those that the page shows.
     """
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
@@ -63,7 +66,7 @@ def study_card(source: Source, label: str, most_rows: int, map_number: int, firs
     state = data.trials["state"]
     feasible_kg = data.trials.loc[state == "feasible", "mass_kg"]
     foot_kg, foot_radius_m = _foot(data)
-    cases = pd.DataFrame([case.design.as_dict() for case in PAPER_CASES.values()])
+    cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
 
     def gearboxes(designs: pd.DataFrame) -> dict[str, list[int]]:
         return {
@@ -97,7 +100,7 @@ def study_card(source: Source, label: str, most_rows: int, map_number: int, firs
         },
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
-        trials=trial_columns(trials, gearboxes(trials), len(data.trials)),
+        trials=trial_columns(trials, gearboxes(trials), len(data.trials), variables),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
         picks=_picks(front, row_of),

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from pareto_monoped import __version__
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.report.card import HEADLINES_M, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.motors import motor_tables
@@ -38,12 +38,14 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             maps.append(tables.map)
             gearboxes.extend(tables.gearboxes)
     labels = _labels(sources)
+    used = {variable.name for source in sources for variable in in_use(source.data.trials)}
+    variables = [variable for variable in VARIABLES if variable.name in used]
     cards = []
     for source, label, most_rows in zip(
         sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
     ):
         number = motors.index(source.data.actuator_map.motor)
-        cards.append(study_card(source, label, most_rows, number, first_gearboxes[number]))
+        cards.append(study_card(source, label, most_rows, number, first_gearboxes[number], variables))
     return Payload(
         version=__version__,
         title=cards[0].name if len(cards) == 1 else f"{cards[0].name} and {len(cards) - 1} more",
@@ -53,10 +55,15 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg=PUBLISHED_LINK_KG,
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
-        variables=[asdict(variable) for variable in VARIABLES],
+        variables=[asdict(variable) for variable in variables],
         quantities=QUANTITIES,
         published=[
-            {"name": c.name, "height_m": c.height_m, "energy_j": c.energy_j, "design": c.design.as_dict()}
+            {
+                "name": c.name,
+                "height_m": c.height_m,
+                "energy_j": c.energy_j,
+                "design": {variable.name: getattr(c.design, variable.name) for variable in variables},
+            }
             for c in PAPER_CASES.values()
         ],
         literal=literal,

@@ -20,6 +20,9 @@ _VARIABLES = (
     _quantity("stiffness_n_per_m", "stiffness", "N/m", 1),
     _quantity("damping_n_s_per_m", "damping", "N s/m", 2),
     _quantity("torsional_stiffness_n_m_per_rad", "torsional stiffness", "N m/rad", 2),
+    _quantity("knee_release_rad", "knee release", "rad", 3),
+    _quantity("rest_length_m", "rest length", "m", 2),
+    _quantity("start_height_m", "start height", "mm", 0, 1000.0),
 )
 
 _OBJECTIVES = ("height_m", "energy_j")

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import NAMES, Variable
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
 from pareto_monoped.report.rounding import column
 from pareto_monoped.report.schema import Column, Trials
@@ -36,15 +36,18 @@ def thinned(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> pd.Da
     return trials.iloc[rows].reset_index(drop=True)
 
 
-def trial_columns(trials: pd.DataFrame, gearboxes: Mapping[str, Sequence[int]], total: int) -> Trials:
+def trial_columns(
+    trials: pd.DataFrame, gearboxes: Mapping[str, Sequence[int]], total: int, variables: Sequence[Variable]
+) -> Trials:
     """The trials on the page.
 
     Args:
         trials: one row per trial.
         gearboxes: number of each trial's gearbox, by joint.
         total: trials in the database.
+        variables: those that the page shows.
     """
-    names = [*NAMES, "height_m", "energy_j", *EVERY_TRIAL]
+    names = [*(variable.name for variable in variables), "height_m", "energy_j", *EVERY_TRIAL]
     columns: dict[str, Column] = {name: column(trials[name]) for name in names}
     columns |= {f"{joint}_gearbox": numbers for joint, numbers in gearboxes.items()}
     return Trials(

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
+from pareto_monoped.robot.rotation import drive_turning
 from pareto_monoped.robot.tables import ActuatorTable, actuator_table, weighed
 from pareto_monoped.robot.units import UNITS, ActuatorSized
 
@@ -56,8 +57,14 @@ class RobotArrays:
         body_com_m: centres of mass in the body frames, shape (n, 3, 3).
         body_inertia_kg_m2: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3).
         foot_radius_m: shape (n,).
+        start_height_m: of the base above the floor at rest, shape (n,).
         ratio: real ratios of the gearboxes (not the searched ones), shape (n, 2).
         armature_kg_m2: reflected inertia of all that turns with the motor, at the joint, shape (n, 2).
+        rotor_inertia_kg_m2: of what turns at the motor's speed, about the motor's axis, shape (n, 2).
+        knee_reflected_kg_m2, knee_coupling_kg_m2: C and B of everything that turns against the thigh: the knee
+            actuator, its drive sprocket and the chain, see ``rotation``, shape (n,).
+        rotor_excess_kg_m2: what the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,).
+        sprocket_radius_m: pitch radius of the chain's sprockets, shape (n,).
         peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2).
         no_load_speed_rad_per_s: at the joint, shape (n, 2).
         efficiency: of the gear mesh, shape (n, 2).
@@ -71,8 +78,14 @@ class RobotArrays:
     body_com_m: NDArray[np.float64]
     body_inertia_kg_m2: NDArray[np.float64]
     foot_radius_m: NDArray[np.float64]
+    start_height_m: NDArray[np.float64]
     ratio: NDArray[np.float64]
     armature_kg_m2: NDArray[np.float64]
+    rotor_inertia_kg_m2: NDArray[np.float64]
+    knee_reflected_kg_m2: NDArray[np.float64]
+    knee_coupling_kg_m2: NDArray[np.float64]
+    rotor_excess_kg_m2: NDArray[np.float64]
+    sprocket_radius_m: NDArray[np.float64]
     peak_torque_n_m: NDArray[np.float64]
     continuous_torque_n_m: NDArray[np.float64]
     no_load_speed_rad_per_s: NDArray[np.float64]
@@ -101,7 +114,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
     Raises:
         DesignError: the map has no actuator.
     """
-    values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
+    values = np.atleast_2d(complete(designs))
     table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
     intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
     reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
@@ -109,9 +122,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
 
     bodies = _body_masses(_unit_masses(table, leg, values, {"hip": hip, "knee": knee}), options)
     rows = np.stack([hip, knee], axis=1)
-    armature = table.armature_kg_m2[rows]
-    if options.rotor_inertia_kg_m2 is not None:
-        armature = options.rotor_inertia_kg_m2 * np.square(table.ratio[rows])
+    turning = _turning(table, leg, rows, values[:, NAMES.index("thigh_length_m")], options)
     foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
     motor = actuator_map.motor
     return RobotArrays(
@@ -121,8 +132,9 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         body_com_m=np.stack([body.com_m for body in bodies], axis=1),
         body_inertia_kg_m2=np.stack([body.inertia_kg_m2 for body in bodies], axis=1),
         foot_radius_m=np.full(len(values), foot_radius_m),
+        start_height_m=values[:, NAMES.index("start_height_m")].copy(),
         ratio=table.ratio[rows],
-        armature_kg_m2=armature,
+        **turning,
         peak_torque_n_m=table.peak_torque_n_m[rows],
         continuous_torque_n_m=table.continuous_torque_n_m[rows],
         no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
@@ -131,6 +143,37 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         winding_resistance_ohm=np.full(rows.shape, motor.winding_resistance_ohm),
         reason=reason,
     )
+
+
+def _turning(
+    table: ActuatorTable, leg: LegDimensions, rows: NDArray[np.intp], thigh_m: Floats, options: MassOptions
+) -> dict[str, Floats]:
+    """What turns in each robot: the fields of ``RobotArrays`` from ``armature_kg_m2`` to ``sprocket_radius_m``.
+
+    Args:
+        table: the actuators.
+        leg: dimensions.
+        rows: of the hip's and the knee's actuator in the table, shape (n, 2).
+        thigh_m: thigh lengths, shape (n,).
+        options: may set the rotors' inertia, which then stands for everything that turns in an actuator.
+    """
+    knee, ratio = rows[:, JOINTS.index("knee")], table.ratio[rows]
+    armature, rotor = table.armature_kg_m2[rows], table.rotor_inertia_kg_m2[rows]
+    coupling, excess = table.coupling_kg_m2[knee], table.rotor_excess_kg_m2[knee]
+    if options.rotor_inertia_kg_m2 is not None:
+        armature = options.rotor_inertia_kg_m2 * np.square(ratio)
+        rotor = np.full(rows.shape, options.rotor_inertia_kg_m2)
+        coupling, excess = rotor[:, 1] * ratio[:, 1], np.zeros(len(rows))
+    drive = drive_turning(leg)
+
+    return {
+        "armature_kg_m2": armature,
+        "rotor_inertia_kg_m2": rotor,
+        "knee_reflected_kg_m2": armature[:, 1] + drive.reflected_kg_m2[0] + drive.reflected_kg_m2[1] * thigh_m,
+        "knee_coupling_kg_m2": coupling + drive.coupling_kg_m2[0] + drive.coupling_kg_m2[1] * thigh_m,
+        "rotor_excess_kg_m2": excess,
+        "sprocket_radius_m": np.full(len(rows), 1e-3 * leg.chain.pitch_radius_mm),
+    }
 
 
 def _unit_masses(

@@ -12,6 +12,7 @@ from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.tabulated import Tabulated, tabulate
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import Floats
+from pareto_monoped.robot.rotation import actuator_coupling_kg_m2, rotor_excess_kg_m2, rotor_inertia_kg_m2
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 _TABULATED_M = (0.25, 0.55)  # the paper's lengths, 0.3 to 0.5 m, and some more
@@ -26,6 +27,7 @@ class ActuatorTable:
         units: name -> mass properties of each ``ActuatorSized`` unit in its body frame, one row per actuator.
         ratio: real ratio of the gearbox.
         armature_kg_m2: reflected inertia at the joint.
+        coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``.
         peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``.
     """
 
@@ -33,6 +35,9 @@ class ActuatorTable:
     units: Mapping[str, MassProperties]
     ratio: Floats
     armature_kg_m2: Floats
+    coupling_kg_m2: Floats
+    rotor_inertia_kg_m2: Floats
+    rotor_excess_kg_m2: Floats
     peak_torque_n_m: Floats
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
@@ -54,6 +59,9 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         },
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
+        coupling_kg_m2=np.array([actuator_coupling_kg_m2(a) for a in actuators]),
+        rotor_inertia_kg_m2=np.array([rotor_inertia_kg_m2(a) for a in actuators]),
+        rotor_excess_kg_m2=np.array([rotor_excess_kg_m2(a) for a in actuators]),
         peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
         continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
         no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),

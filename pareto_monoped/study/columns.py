@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal
 
-from pareto_monoped.design import VARIABLES
+from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
 from pareto_monoped.measures import MEASURES
 from pareto_monoped.study.definition import Objectives
 
@@ -35,7 +35,7 @@ def _variable(index: int) -> Column:
     variable = VARIABLES[index]
     return Column(
         name=variable.name,
-        sql="REAL",
+        sql="REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {DEFAULTS[variable.name]!r}",
         dtype="float64",
         meaning=variable.meaning,
         values=lambda generation: generation.designs[:, index].tolist(),
@@ -114,5 +114,9 @@ COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, *_MEASURES)
 OBJECTIVES: tuple[str, ...] = tuple(field.name for field in fields(Objectives))
 """Columns of the objectives: the height first."""
 
-REQUIRED: tuple[str, ...] = (*(column.name for column in (*_IDENTITY, *_VARIABLES)), *OBJECTIVES)
+REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *OBJECTIVES)
 """Columns that every study has, in the order of the data frame; the others follow as the database has them."""
+
+LATER: tuple[Column, ...] = tuple(column for column in (*_VARIABLES, *_MEASURES) if column.name not in REQUIRED)
+"""Columns that a database of an earlier version may lack: optional variables, which then have their defaults, and
+measures, which then are missing. They are added to such a database when its study goes on."""

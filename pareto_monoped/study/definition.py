@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.design import BASE_START_HEIGHT_M, NAMES, PAPER_CASES, VARIABLES
+from pareto_monoped.design import BASE_START_HEIGHT_M, DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.study.algorithm_settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
 
+_FIRST_LIMITS = ("min_height_m", "max_energy_j", "max_mass_kg", "min_foot_clearance_m")
+"""Limits that every stored study names, also where they are off."""
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
 
@@ -40,6 +42,15 @@ class Constraints:
     max_energy_j: Positive | None = None
     max_mass_kg: Positive | None = None
     min_foot_clearance_m: Annotated[float, Field(gt=0.0, le=10.0)] | None = None
+    max_electrical_energy_j: Positive | None = None
+    max_peak_gear_torque_hip_n_m: Positive | None = None
+    max_peak_gear_torque_knee_n_m: Positive | None = None
+    max_peak_chain_tension_n: Positive | None = None
+    max_peak_stop_torque_n_m: Positive | None = None
+    max_stop_energy_j: Positive | None = None
+    max_peak_foot_force_n: Positive | None = None
+    max_drift_m: Positive | None = None
+    min_sustained_jumps_per_minute: Positive | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,23 +140,31 @@ class Study:
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        """Lower bound of each variable, or its fixed value; shape (7,), in the order of ``NAMES``."""
+        """Lower bound of each variable, or its fixed value; in the order of ``NAMES``."""
         return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        """Upper bound of each variable, or its fixed value; shape (7,), in the order of ``NAMES``."""
+        """Upper bound of each variable, or its fixed value; in the order of ``NAMES``."""
         return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
 
     def _ordered(self) -> list[Bounds | float]:
         return [self.variables[name] for name in NAMES]
 
     def as_dict(self) -> dict[str, Any]:
-        """The study as plain values in the form of its file; ``study_from_dict`` reads it back."""
+        """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
+
+        Optional variables at their defaults, and limits that are off and came later, are left out, so that studies
+        stored before there were any keep their hash.
+        """
         plain = asdict(self)
         plain["variables"] = {
-            name: asdict(v) if isinstance(v, Bounds) else v for name, v in zip(NAMES, self._ordered(), strict=True)
+            name: asdict(v) if isinstance(v, Bounds) else v
+            for name, v in zip(NAMES, self._ordered(), strict=True)
+            if v != DEFAULTS.get(name)
         }
+        limits = plain["constraints"]
+        plain["constraints"] = {k: v for k, v in limits.items() if v is not None or k in _FIRST_LIMITS}
         return plain
 
 
@@ -230,17 +249,21 @@ def _variables(file: _File, source: str) -> dict[str, Bounds | float]:
         given = file.variables.get(variable.name)
         if given is not None:
             chosen[variable.name] = _variable(variable.name, given, source)
+        elif variable.default is not None:
+            chosen[variable.name] = variable.default
         elif file.case is None or variable.name in PAPER_CASES[file.case].free:
             chosen[variable.name] = Bounds(lower=variable.lower, upper=variable.upper)
         else:
             chosen[variable.name] = getattr(PAPER_CASES[file.case].design, variable.name)
     if not any(isinstance(value, Bounds) for value in chosen.values()):
-        raise StudyError(f"{source}: variables: all seven are fixed, at least one must be free; give one bounds")
-    longest = sum(v.upper if isinstance(v, Bounds) else v for v in (chosen[NAMES[0]], chosen[NAMES[1]]))
-    if longest <= BASE_START_HEIGHT_M:
+        raise StudyError(f"{source}: variables: all are fixed, at least one must be free; give one bounds")
+    longest = sum(v.upper if isinstance(v, Bounds) else v for v in (chosen[name] for name in LENGTHS))
+    start = chosen["start_height_m"]
+    lowest = start.lower if isinstance(start, Bounds) else start
+    if longest <= lowest:
         raise StudyError(
             f"{source}: thigh_length_m + shank_length_m = {longest:g} at most: must exceed the start height of "
-            f"{BASE_START_HEIGHT_M:g} m; allow longer links"
+            f"{lowest:g} m; allow longer links"
         )
     return chosen
 
@@ -262,13 +285,14 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
     return _number(key, name, given)
 
 
-_LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0)}
-"""Unit -> allowed range. Lengths and ratios beyond it are typing errors; controller gains may be any number from 0."""
+_LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
+"""Unit -> allowed range. Values beyond it are typing errors; controller gains may be any number from 0."""
+_REST_LENGTHS_M = (0.5, 100.0)  # longer than any leg; a longer spring acts by its product with K alone
 
 
 def _number(key: str, name: str, given: Any) -> float:
     unit = next(variable.unit for variable in VARIABLES if variable.name == name)
-    low, high = _LIMITS.get(unit, (0.0, 1e6))
+    low, high = _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
     allowed = f"a number from {low:g} to {high:g}"
     if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
         raise StudyError(complaint(key, given, allowed, "correct it"))

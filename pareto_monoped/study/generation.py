@@ -19,7 +19,7 @@ class Generation:
     Attributes:
         number: of the generation.
         first_trial: number of the first of these trials.
-        designs: shape (n, 7).
+        designs: shape (n, number of variables).
         evaluations, judgement: of these designs.
         height_weight: lambda1 of a weighted search; None for other searches.
         state: the algorithm's state once it knows the scores of the whole generation; None while some are missing.

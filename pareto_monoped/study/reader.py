@@ -11,10 +11,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.config import checked
+from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.study.columns import COLUMNS, REQUIRED
+from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
@@ -166,8 +167,13 @@ def read_study(db: Path) -> StudyData:
 
 
 def _frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
-    columns = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else dict.fromkeys(names, ())
-    ordered = [*REQUIRED, *(name for name in names if name not in REQUIRED)]
+    columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
+    if rows:
+        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+    for column in LATER:
+        columns.setdefault(column.name, (DEFAULTS.get(column.name),) * len(rows))
+    known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
+    ordered = [*known, *(name for name in columns if name not in known)]
     try:
         # A column that only a later version knows is read as a number, as every measure is.
         return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})

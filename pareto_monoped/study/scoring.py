@@ -39,6 +39,15 @@ CONSTRAINTS: tuple[Constraint, ...] = (
     Constraint(key="max_energy_j", measure="energy_j", violated="above"),
     Constraint(key="max_mass_kg", measure="mass_kg", violated="above"),
     Constraint(key="min_foot_clearance_m", measure="foot_clearance_m", violated="below"),
+    Constraint(key="max_electrical_energy_j", measure="electrical_energy_j", violated="above"),
+    Constraint(key="max_peak_gear_torque_hip_n_m", measure="peak_gear_torque_hip_n_m", violated="above"),
+    Constraint(key="max_peak_gear_torque_knee_n_m", measure="peak_gear_torque_knee_n_m", violated="above"),
+    Constraint(key="max_peak_chain_tension_n", measure="peak_chain_tension_n", violated="above"),
+    Constraint(key="max_peak_stop_torque_n_m", measure="peak_stop_torque_n_m", violated="above"),
+    Constraint(key="max_stop_energy_j", measure="stop_energy_j", violated="above"),
+    Constraint(key="max_peak_foot_force_n", measure="peak_foot_force_n", violated="above"),
+    Constraint(key="max_drift_m", measure="drift_m", violated="above"),
+    Constraint(key="min_sustained_jumps_per_minute", measure="sustained_jumps_per_minute", violated="below"),
 )
 """All constraints that a study may set, in the order in which they are stored and named."""
 

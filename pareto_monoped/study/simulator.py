@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.motors import Motor, load_motor
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.design import LOWER, PAPER_CASES, UPPER
-from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
+from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.reader import StudyData
 
 Evaluate = Callable[[NDArray[np.float64]], Evaluations]
-"""Designs, shape (n, 7), to their evaluations, in order."""
+"""Designs, see ``design.complete``, to their evaluations, in order."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,10 +39,8 @@ class Simulator:
     @property
     def contents(self) -> dict[str, dict[str, Any]]:
         """Every value of ``motor`` and ``calibration``, as JSON values."""
-        plain: dict[str, dict[str, Any]] = json.loads(
-            json.dumps({"motor": asdict(self.motor), "calibration": asdict(self.calibration)})
-        )
-        return plain
+        motor: dict[str, Any] = json.loads(json.dumps(asdict(self.motor)))
+        return {"motor": motor, "calibration": calibration_values(self.calibration)}
 
     def probe(self) -> list[list[float | None]]:
         """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.
@@ -51,7 +49,7 @@ class Simulator:
         """
         paper = np.array([case.design.as_array() for case in PAPER_CASES.values()])
         drawn = np.random.default_rng(20250101).uniform(LOWER, UPPER, size=(4, len(LOWER)))
-        result = self.evaluator(np.vstack((paper, drawn)))
+        result = self.evaluator(np.vstack((paper, complete(drawn))))
         pairs = np.column_stack((result.height_m, result.energy_j))
         return [[value if np.isfinite(value) else None for value in row] for row in pairs.tolist()]
 

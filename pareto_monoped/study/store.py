@@ -12,7 +12,7 @@ from typing import Any
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import replacing
-from pareto_monoped.study.columns import COLUMNS
+from pareto_monoped.study.columns import COLUMNS, LATER
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
@@ -102,9 +102,19 @@ class Store:
         self._optuna = OptunaTables(self.path, int(rows[0][0]), study)
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
+        self._add_later_columns()
         connection.execute("PRAGMA journal_mode = WAL")
         # What was acknowledged must survive a power cut too, not only a killed process.
         connection.execute("PRAGMA synchronous = FULL")
+
+    def _add_later_columns(self) -> None:
+        """Give a database of an earlier version the columns that trials have now."""
+        there = {row[1] for row in self._connection.execute("PRAGMA table_info(monoped_trials)")}
+        missing = [column for column in LATER if column.name not in there]
+        if missing:
+            with _transaction(self._connection):
+                for column in missing:
+                    self._connection.execute(f"ALTER TABLE monoped_trials ADD COLUMN {column.name} {column.sql}")
 
     def __enter__(self) -> "Store":
         return self

@@ -12,7 +12,7 @@ from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
 from pareto_monoped.cad.write.formats import FORMATS
 from pareto_monoped.cli import main
-from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
+from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import load_calibration
 
@@ -20,7 +20,7 @@ from pareto_monoped.jump.calibration import load_calibration
 @pytest.fixture
 def data():
     """A study of ten trials with a motor and a calibration that are not the defaults; its front is 7, 2, 5, 4, 0."""
-    values = np.random.default_rng(1).uniform(LOWER, UPPER, size=(10, len(NAMES)))
+    values = complete(np.random.default_rng(1).uniform(LOWER, UPPER, size=(10, len(LOWER))))
     trials = pd.DataFrame(values, columns=list(NAMES)).assign(trial=np.arange(10))
     return SimpleNamespace(
         trials=trials,

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import PAPER_NAMES
 from pareto_monoped.study.reader import StudyData
 from tests.study.support import made_database
 
@@ -22,7 +22,7 @@ def test_front_as_json(db, capsys):
     assert cli(["front", db, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert [row["trial"] for row in rows] == [4, 0, 3]
-    assert [list(row) for row in rows] == [["trial", "height_m", "energy_j", *NAMES]] * 3
+    assert [list(row) for row in rows] == [["trial", "height_m", "energy_j", *PAPER_NAMES]] * 3
     assert (rows[0]["height_m"], rows[0]["energy_j"]) == (0.7, 8.0)
 
 
@@ -55,7 +55,7 @@ def test_front_as_csv_and_table(db, tmp_path, capsys):
 def test_pick(db, capsys, selector, trial, word):
     assert cli(["pick", db, *selector, "--json"]) == 0
     picked = json.loads(capsys.readouterr().out)
-    assert list(picked) == ["trial", "height_m", "energy_j", *NAMES, "why"]
+    assert list(picked) == ["trial", "height_m", "energy_j", *PAPER_NAMES, "why"]
     assert picked["trial"] == trial
     assert word in picked["why"]
     assert cli(["pick", db, *selector]) == 0
@@ -90,7 +90,7 @@ def test_the_printed_front_has_named_units_and_fixed_decimals(db, capsys):
     assert cli(["front", db]) == 0
     heading, line, *_ = capsys.readouterr().out.splitlines()
     assert heading.split() == ["trial", "height", "m", "energy", "J", "l1", "l2", "g_k", "g_h", "K", "C", "T"]
-    assert line.split() == ["4", "0.7000", "8.000", *(f"{first[name]:.3f}" for name in NAMES)]
+    assert line.split() == ["4", "0.7000", "8.000", *(f"{first[name]:.3f}" for name in PAPER_NAMES)]
 
 
 def test_the_printed_pick_has_six_digits(db, capsys):
@@ -100,7 +100,7 @@ def test_the_printed_pick_has_six_digits(db, capsys):
     why, *lines = capsys.readouterr().out.splitlines()
     assert why == picked["why"]
     assert [line.split() for line in lines] == [
-        [name, f"{picked[name]:.6g}"] for name in ("height_m", "energy_j", *NAMES)
+        [name, f"{picked[name]:.6g}"] for name in ("height_m", "energy_j", *PAPER_NAMES)
     ]
 
 

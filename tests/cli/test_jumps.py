@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.cli import jumps, main
-from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.design import PAPER_CASES, PAPER_NAMES
 from pareto_monoped.jump.table1 import Result, Row, Spread
 
 
@@ -119,7 +119,7 @@ def test_tables_fit_eighty_columns(capsys):
     for arguments in (("table1",), ("simulate", "--audit")):
         _, out, _ = run(capsys, *arguments)
         assert max(len(line) for line in out.splitlines()) <= 80
-        assert np.all([name in out for name in NAMES]) or arguments == ("table1",)
+        assert np.all([name in out for name in PAPER_NAMES]) or arguments == ("table1",)
 
 
 @pytest.mark.parametrize("text", ["thigh_length_m=0.3", "thigh_length_m=0.5", "damping_n_s_per_m=0"])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pareto_monoped.design import LOWER, UPPER
+from pareto_monoped.design import BASE_START_HEIGHT_M, LOWER, UPPER
 from pareto_monoped.robot.population import RobotArrays
 
 
@@ -32,8 +32,14 @@ def plausible_robots(designs):
         body_com_m=com,
         body_inertia_kg_m2=inertia,
         foot_radius_m=np.full(n, 0.025),
+        start_height_m=np.full(n, BASE_START_HEIGHT_M),
         ratio=ratio,
         armature_kg_m2=1.0e-4 * ratio**2,
+        rotor_inertia_kg_m2=1.0e-4 * both,
+        knee_reflected_kg_m2=1.0e-4 * ratio[:, 1] ** 2,
+        knee_coupling_kg_m2=1.0e-4 * ratio[:, 1],
+        rotor_excess_kg_m2=np.zeros(n),
+        sprocket_radius_m=np.full(n, 0.026),
         peak_torque_n_m=5.5 * ratio,
         continuous_torque_n_m=3.82 * ratio,
         no_load_speed_rad_per_s=502.65 / ratio,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import DEFAULTS, NAMES, PAPER_CASES, RATIOS, columns
 from pareto_monoped.jump.audit import (
     LIMITS,
     PERTURBATION,
@@ -125,7 +125,7 @@ def test_steps_are_halved_and_quartered():
 
 
 def test_columns_have_one_row_per_design():
-    designs = np.array([PAPER_CASES["C"].design.as_array(), np.full(7, np.nan)])
+    designs = np.array([PAPER_CASES["C"].design.as_array(), np.full(len(NAMES), np.nan)])
     found = audit(designs, MAP, load_calibration(), perturbations=2)
     assert found.well_conditioned.tolist() == [True, False]
     assert found.reason[1] == "no jump: bad_input"
@@ -144,7 +144,18 @@ def test_same_seed_same_audit():
 def test_perturbations_are_small_and_leave_the_gearbox_alone():
     design = PAPER_CASES["nominal"].design.as_array()
     copies = perturbed(design, 50, np.random.default_rng(0))
-    change = np.abs(copies / design - 1.0)
-    assert copies.shape == (50, 7)
-    assert 0.0 < change[:, PERTURBED].max() <= 1e-6
-    np.testing.assert_array_equal(copies[:, 2:4], np.tile(design[2:4], (50, 1)))
+    with np.errstate(invalid="ignore"):
+        change = np.abs(copies / design - 1.0)
+    assert copies.shape == (50, len(NAMES))
+    assert 0.0 < change[:, [NAMES.index(name) for name in PERTURBED]].max() <= 1e-6
+    np.testing.assert_array_equal(columns(copies, RATIOS), np.tile(columns(design, RATIOS), (50, 1)))
+    np.testing.assert_array_equal(columns(copies, DEFAULTS), np.tile([*DEFAULTS.values()], (50, 1)))
+
+
+def test_an_optional_variable_in_use_is_perturbed_too():
+    design = PAPER_CASES["nominal"].design.replace({"knee_release_rad": 0.3, "rest_length_m": 8.0}).as_array()
+    copies = perturbed(design, 50, np.random.default_rng(0))
+    used = ("knee_release_rad", "rest_length_m")
+    change = np.abs(columns(copies, used) / columns(design, used) - 1.0)
+    assert np.all((change > 0.0) & (change <= 1e-6))
+    assert np.all(columns(copies, ("start_height_m",)) == 0.5)

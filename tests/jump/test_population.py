@@ -71,6 +71,7 @@ def test_first_records_hold_what_robot_and_calibration_say():
     expected = {
         "rest_length_m": 9.0,
         "timestep_s": 0.001,
+        "period_steps": 1,
         "step_limit": 2000,
         "stages": 4,
         "fade_length_m": 0.01,
@@ -92,6 +93,17 @@ def test_first_records_hold_what_robot_and_calibration_say():
         "loss": [1.0 - 0.97, 1.0 - 0.97 * 0.9],
         "heat_w_per_n2_m2": [0.06 / (0.0955 * ratio) ** 2 for ratio in (hip, knee)],
         "height_m": 0.5,
+        "body_mass_kg": robots.body_mass_kg[0],
+        "thigh_com_m": robots.body_com_m[0, 1, [0, 2]],
+        "shank_com_m": robots.body_com_m[0, 2, [0, 2]],
+        "link_inertia_kg_m2": robots.body_inertia_kg_m2[0, 1:, 1, 1],
+        "armature_kg_m2": robots.armature_kg_m2[0],
+        "rotor_kg_m2": [1e-4 * hip, 1e-4 * knee],
+        "ratio": [hip, knee],
+        "joint_damping_n_m_s_per_rad": start.joints.damping_n_m_s_per_rad,
+        "lower_stop_rad": [start.joints.hip_stop.lower_rad, start.joints.knee_stop.lower_rad],
+        "upper_stop_rad": [start.joints.hip_stop.upper_rad, start.joints.knee_stop.upper_rad],
+        "sprocket_radius_m": 0.026,
     }
     for name, value in expected.items():
         np.testing.assert_allclose(records[0][name], value, rtol=1e-12, err_msg=name)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.design import NAMES, PAPER_CASES, PAPER_NAMES
 from pareto_monoped.pareto.pick import Knee, pick
 from pareto_monoped.report import trials as trials_module
 from pareto_monoped.report.card import Source
@@ -20,7 +20,10 @@ def test_rows_are_the_trials(payload, data):
     assert card.trials.trial == data.trials["trial"].tolist()
     assert card.counts["total"] == card.trials.total == len(data.trials)
     np.testing.assert_allclose(
-        np.array([card.trials.columns[n] for n in NAMES], dtype=float).T, data.trials[list(NAMES)], rtol=1e-4, atol=1e-9
+        np.array([card.trials.columns[n] for n in PAPER_NAMES], dtype=float).T,
+        data.trials[list(PAPER_NAMES)],
+        rtol=1e-4,
+        atol=1e-9,
     )
 
 

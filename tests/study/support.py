@@ -54,7 +54,9 @@ def made_meta(study):
 
 
 def made_generation(study, number, first, evaluations, state=None, seed=0, height_weight=None):
-    designs = np.random.default_rng([seed, number]).uniform(study.lower, study.upper, (len(evaluations.height_m), 7))
+    designs = np.random.default_rng([seed, number]).uniform(
+        study.lower, study.upper, (len(evaluations.height_m), len(study.lower))
+    )
     now = datetime(2025, 1, 1, tzinfo=UTC)
     return Generation(
         number=number,

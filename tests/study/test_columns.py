@@ -4,7 +4,7 @@ from pathlib import Path
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.study.columns import COLUMNS, OBJECTIVES, REQUIRED
+from pareto_monoped.study.columns import COLUMNS, LATER, OBJECTIVES, REQUIRED
 from pareto_monoped.study.definition import Constraints
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.scoring import CONSTRAINTS
@@ -32,7 +32,12 @@ def test_tables_are_declared_as_version_0_1_0_declared_them(tmp_path):
         declared.append({name: connection.execute(f"PRAGMA table_info({name})").fetchall() for name in sorted(tables)})
         connection.close()
     assert len(declared[0]) == 5
-    assert declared[0] == declared[1]
+    later = [column.name for column in LATER if column.name not in {row[1] for row in declared[0]["monoped_trials"]}]
+    old, new = (
+        {name: [row[1:] for row in rows if row[1] not in later] for name, rows in tables.items()} for tables in declared
+    )
+    assert old == new
+    assert later == [row[1] for row in declared[1]["monoped_trials"] if row[1] in later]
 
 
 def test_the_frame_has_the_types_of_the_table(tmp_path):

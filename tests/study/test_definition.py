@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pareto_monoped.design import LOWER, NAMES, UPPER
+from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
 from pareto_monoped.errors import StudyError
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
@@ -19,9 +19,9 @@ def made(**more):
 
 def test_the_defaults_are_case_c_with_the_papers_bounds():
     study = made()
-    assert study.free == NAMES
-    assert np.array_equal(study.lower, LOWER)
-    assert np.array_equal(study.upper, UPPER)
+    assert study.free == PAPER_NAMES
+    assert np.array_equal(study.lower[: len(LOWER)], LOWER)
+    assert np.array_equal(study.upper[: len(UPPER)], UPPER)
     assert study.constraints.min_height_m == 0.55
     assert study.algorithm.name == "nsga2"
     assert (study.motor, study.calibration) == ("VT8020", "reference")
@@ -50,8 +50,8 @@ def test_the_defaults_of_the_algorithms():
 )
 def test_a_case_fixes_what_the_paper_fixed(case, fixed):
     study = made(case=case)
-    assert {name: v for name, v in study.variables.items() if not isinstance(v, Bounds)} == fixed
-    assert study.free == tuple(name for name in NAMES if name not in fixed)
+    assert {name: v for name, v in study.variables.items() if not isinstance(v, Bounds)} == fixed | DEFAULTS
+    assert study.free == tuple(name for name in PAPER_NAMES if name not in fixed)
 
 
 def test_bounds_and_fixed_values_override_the_case():
@@ -59,6 +59,19 @@ def test_bounds_and_fixed_values_override_the_case():
     assert study.variables["thigh_length_m"] == Bounds(lower=0.35, upper=0.45)
     assert study.variables["hip_ratio"] == 4.0
     assert study.variables["shank_length_m"] == 0.4
+
+
+def test_limits_that_are_off_and_came_later_are_not_stored():
+    """A study without them keeps the hash that it had before there were any."""
+    assert set(made().as_dict()["constraints"]) == {
+        "min_height_m",
+        "max_energy_j",
+        "max_mass_kg",
+        "min_foot_clearance_m",
+    }
+    limited = made(constraints={"max_drift_m": 0.1})
+    assert limited.as_dict()["constraints"]["max_drift_m"] == 0.1
+    assert study_from_dict(limited.as_dict(), source="db") == limited
 
 
 @pytest.mark.parametrize("name", ALGORITHMS)
@@ -90,7 +103,7 @@ def test_plain_values_and_back(name):
             {"variables": {"thigh_length_m": 0.2, "shank_length_m": {"lower": 0.1, "upper": 0.3}}},
             ["thigh_length_m + shank_length_m = 0.5", "0.5 m", "longer links"],
         ),
-        ({"variables": dict.fromkeys(NAMES[2:], 5.0) | dict.fromkeys(NAMES[:2], 0.4)}, ["all seven are fixed"]),
+        ({"variables": dict.fromkeys(PAPER_NAMES, 5.0) | dict.fromkeys(LENGTHS, 0.4)}, ["all are fixed"]),
         ({"objectives": {"height_m": "minimise"}}, ["objectives.height_m = 'minimise'", "'maximise'"]),
         ({"constraints": {"min_height": 0.6}}, ["constraints.min_height"]),
         ({"constraints": {"min_height_m": 0.2}}, ["constraints.min_height_m = 0.2", "0.5"]),

@@ -14,12 +14,12 @@ WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 3
 NSGA2 = 'name = "nsga2"\npopulation = 20'
 
 
-def killed(folder, algorithms, evaluations, kills, seed=3):
+def killed(folder, algorithms, evaluations, kills, seed=3, variables=""):
     """Runs tests/study/killed.py; checks everything that must hold after each kill and at the end."""
     folders = [folder / str(k) for k in range(len(algorithms))]
     for place, algorithm in zip(folders, algorithms, strict=True):
         place.mkdir()
-        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n[algorithm]\n{algorithm}\n'
+        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n{variables}[algorithm]\n{algorithm}\n'
         (place / "s.toml").write_text(text)
     done = subprocess.run(
         [sys.executable, "-m", "tests.study.killed", str(kills), str(seed), *map(str, folders)],
@@ -45,6 +45,14 @@ def killed(folder, algorithms, evaluations, kills, seed=3):
 
 def test_killed_three_times(tmp_path):
     killed(tmp_path, [NSGA2, WEIGHTED], evaluations=240, kills=3)
+
+
+def test_killed_with_optional_variables_free(tmp_path):
+    variables = (
+        "[variables]\nknee_release_rad = { lower = 0.0, upper = 0.6 }\nrest_length_m = { lower = 2, upper = 12 }\n"
+    )
+    killed(tmp_path, [NSGA2], evaluations=240, kills=3, variables=variables)
+    assert read_study(tmp_path / "0" / "whole.db").trials["knee_release_rad"].nunique() > 100
 
 
 @pytest.mark.long

@@ -1,10 +1,11 @@
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.definition import Constraints
-from pareto_monoped.study.scoring import FAILED_VIOLATION, judge, scores
+from pareto_monoped.study.scoring import CONSTRAINTS, FAILED_VIOLATION, judge, scores
 from tests.study.support import made_evaluations
 
 
@@ -54,6 +55,20 @@ def test_an_ok_status_without_numbers_is_still_a_failure():
         ("max_energy_j", 20.0, "energy_j", [15.0, 20.0, 30.0], [0.0, 0.0, 0.5]),
         ("max_mass_kg", 4.0, "mass_kg", [3.0, 4.0, 5.0], [0.0, 0.0, 0.25]),
         ("min_foot_clearance_m", 0.02, "foot_clearance_m", [0.01, 0.02, 0.03], [0.5, 0.0, 0.0]),
+        ("min_sustained_jumps_per_minute", 100.0, "sustained_jumps_per_minute", [50.0, 100.0, 200.0], [0.5, 0.0, 0.0]),
+        *(
+            (f"max_{name}", 20.0, name, [15.0, 20.0, 30.0], [0.0, 0.0, 0.5])
+            for name in (
+                "electrical_energy_j",
+                "peak_gear_torque_hip_n_m",
+                "peak_gear_torque_knee_n_m",
+                "peak_chain_tension_n",
+                "peak_stop_torque_n_m",
+                "stop_energy_j",
+                "peak_foot_force_n",
+                "drift_m",
+            )
+        ),
     ],
 )
 def test_each_constraint_refuses_the_values_on_its_wrong_side(key, limit, measure, values, violation):
@@ -64,6 +79,11 @@ def test_each_constraint_refuses_the_values_on_its_wrong_side(key, limit, measur
     for value, missed, reason in zip(values, violation, judgement.reason, strict=True):
         side = "below" if key.startswith("min") else "above"
         assert reason == (f"{measure} = {value:g} is {side} the limit of {limit:g}" if missed else "")
+
+
+def test_every_limit_of_a_study_is_judged_and_the_other_way_round():
+    assert [constraint.key for constraint in CONSTRAINTS] == [field.name for field in fields(Constraints)]
+    assert {constraint.measure for constraint in CONSTRAINTS} <= set(MEASURE_NAMES)
 
 
 def test_a_limit_that_is_not_set_is_not_judged():

@@ -9,7 +9,7 @@ import numpy as np
 import optuna
 import pytest
 
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.reader import read_study
@@ -48,8 +48,8 @@ def test_optuna_reads_what_was_stored(tmp_path, options):
     designs = np.vstack([g.designs for g in generations])
     for number, trial in enumerate(trials):
         assert trial.number == number
-        assert trial.params == dict(zip(NAMES, designs[number].tolist(), strict=True))
-        for name in NAMES:
+        assert trial.params == dict(zip(PAPER_NAMES, designs[number, : len(PAPER_NAMES)].tolist(), strict=True))
+        for name in PAPER_NAMES:
             bounds = study.variables[name]
             assert trial.distributions[name] == optuna.distributions.FloatDistribution(bounds.lower, bounds.upper)
     assert [trial.values for trial in trials] == [[0.8, 9.0], [0.52, 1.0], None, [1.1, 30.0], [0.7, 8.0], [0.9, 40.0]]

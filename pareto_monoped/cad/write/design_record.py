@@ -9,7 +9,7 @@ from pareto_monoped import __version__
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
-from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.calibration import Calibration, calibration_values
 from pareto_monoped.robot.build import Robot
 
 MADE_BY = f"pareto-monoped {__version__}"
@@ -73,5 +73,7 @@ def design_record(
 
 def json_values(record: Motor | Calibration) -> dict[str, Any]:
     """Every value of a record as JSON has it, so that it compares equal to what is read back."""
+    if isinstance(record, Calibration):
+        return calibration_values(record)
     values: dict[str, Any] = json.loads(json.dumps(asdict(record)))
     return values

@@ -11,7 +11,9 @@ from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf
 from pareto_monoped.cad.write.folder import safe, write
+from pareto_monoped.cad.write.jump_record import jump_record, replay_script
 from pareto_monoped.cad.write.visuals import METRES, Visual, colliders
+from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import mjcf as simulated_mjcf
 from pareto_monoped.jump.pose import start_pose
@@ -72,16 +74,22 @@ def write_models(
     product: Product,
     shown: Sequence[Visual],
     arrays: RobotArrays,
+    design: Design,
     calibration: Calibration,
     formats: Collection[str],
 ) -> None:
-    """Write MJCF and URDF, which show the same meshes; no MJCF of a robot that cannot stand, as it has no jump."""
+    """Write MJCF and URDF, which show the same meshes; no MJCF of a robot that cannot stand, as it has no jump.
+
+    Beside the MJCF stand all numbers that its jump needs, and a program that makes the jump with MuJoCo alone.
+    """
     if not {"mjcf", "urdf"} & set(formats):
         return
     solid = colliders(product)
     if "mjcf" in formats and np.isfinite(start_pose(arrays, calibration).hip_rad[0]):
         document = mjcf.mjcf_with_meshes(simulated_mjcf(arrays, calibration), shown, solid)
         write(folder, "model/monoped.xml", document)
+        write(folder, "model/jump.json", jump_record(arrays, design, calibration))
+        write(folder, "model/replay.py", replay_script())
     if "urdf" in formats:
         write(folder, "model/monoped.urdf", urdf.urdf(arrays, shown, solid))
 

@@ -13,7 +13,11 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
     "dxf": (("laser/", "the plates for the laser cutter: true outline without kerf, one layer, mm"),),
     "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
-    "mjcf": (("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),),
+    "mjcf": (
+        ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
+        ("model/jump.json", "every number that the jump needs besides the model: motors, controller, losses, SI units"),
+        ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
+    ),
     "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
     "png": (
         ("assembly.png", "the robot in its start pose"),

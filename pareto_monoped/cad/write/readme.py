@@ -6,7 +6,6 @@ from typing import Any
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.formats import FILES
-from pareto_monoped.design import VARIABLES
 
 _HOW = {
     "laser cut": "Laser-cut from sheet by `laser/`; countersink where the parts list says so; deburr.",
@@ -41,9 +40,8 @@ def _design(record: Mapping[str, Any]) -> Iterator[str]:
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
     yield from ("| variable | searched | as built |", "|---|---|---|")
-    for variable in VARIABLES:
-        searched, built = record["searched"][variable.name], record["as_built"][variable.name]
-        yield f"| {variable.name} | {searched:.6g} | {built:.6g} |"
+    for name, searched in record["searched"].items():
+        yield f"| {name} | {searched:.6g} | {record['as_built'][name]:.6g} |"
     for key, label in (("height_m", "jump height, m"), ("energy_j", "mechanical energy, J")):
         values = [record["jumps"][name][key] for name in ("searched", "as_built")]
         shown = [f"{value:.4g}" if value is not None else "-" for value in values]

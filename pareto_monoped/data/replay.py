@@ -1,0 +1,114 @@
+"""Makes the jump of this folder again, with MuJoCo and NumPy alone. Run it with: python replay.py.
+
+Reads ``monoped.xml`` (the robot) and ``jump.json`` (everything else), prints height and energy, and says whether they
+are those of the export. Units are SI; pairs are hip, knee. The equations stand in the project's docs/model.md.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+
+def virtual_leg(jump: dict, hip: float, knee: float, speed: np.ndarray) -> tuple[np.ndarray, float]:
+    """Torques of the virtual spring, damper and torsional spring, and the height of the foot's centre below the hip."""
+    thigh, shank = jump["thigh_length_m"], jump["shank_length_m"]
+    shank_x, shank_z = -shank * np.sin(hip + knee), -shank * np.cos(hip + knee)
+    rx, rz = -thigh * np.sin(hip) + shank_x, -thigh * np.cos(hip) + shank_z
+    length = np.sqrt(rx * rx + rz * rz)
+    sin, cos = -rx / length, -rz / length
+    alpha = np.arctan2(-rx, -rz)
+    jacobian = np.array([[rz, shank_z], [-rx, -shank_x]])
+    rate = np.array([rx, rz]) @ jacobian @ speed / length
+    axial = jump["stiffness_n_per_m"] * (jump["rest_length_m"] - length) - jump["damping_n_s_per_m"] * rate
+    across = -jump["torsional_stiffness_n_m_per_rad"] * alpha / length
+    force = np.array([-axial * sin - across * cos, -axial * cos + across * sin - jump["weight_n"]])
+    return jacobian.T @ force, rz
+
+
+def limited(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Within the motors' peak torque and, where they drive, within their voltage-speed line."""
+    limit, share = np.array(jump["torque_limit_n_m"]), np.ones(2)
+    against = np.ones(2)
+    if jump["voltage_limit"]:
+        no_load, corner = np.array(jump["no_load_speed_rad_per_s"]), np.array(jump["corner_speed_rad_per_s"])
+        share = np.clip((no_load - speed) / (no_load - corner), 0.0, 1.0)
+        against = np.clip((no_load + speed) / (no_load - corner), 0.0, 1.0)
+    return np.clip(torque, -limit * against, limit * share)
+
+
+def delivered(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """What reaches the joints: load-dependent friction of gears and chain opposes the motion."""
+    limit, loss = np.array(jump["torque_limit_n_m"]), np.array(jump["loss"])
+    after = torque - loss * np.abs(torque) * np.tanh(speed / jump["loss_speed_rad_per_s"])
+    return np.where((loss == 0.0) | (torque == 0.0), torque, np.clip(after, -limit, limit))
+
+
+def replay(folder: Path) -> tuple[float, float, float]:
+    """Height in m, mechanical energy and energy from the battery in J of the jump in ``folder``."""
+    jump = json.loads((folder / "jump.json").read_text())
+    model = mujoco.MjModel.from_xml_path(str(folder / "monoped.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.keyframe("start").id)
+    z, hip, knee = (int(model.joint(name).qposadr[0]) for name in ("slide_z", "hip", "knee"))
+    heat_per_torque2 = np.array(jump["heat_w_per_n2_m2"])
+    height, work, electrical = data.qpos[z], np.zeros(2), 0.0
+    stood = touched = latched = off = False
+    commands: list[tuple[float, np.ndarray]] = []
+    motor, quiet, step = np.zeros(2), 0, 0
+    while step <= jump["step_limit"]:
+        speed = data.qvel[[hip, knee]].copy()
+        wanted, below = virtual_leg(jump, data.qpos[hip], data.qpos[knee], speed)
+        clearance = data.qpos[z] + below - jump["foot_radius_m"]
+        height = max(height, data.qpos[z])
+        touching = clearance <= jump["touch_m"]
+        stood = stood or touching
+        tick = step % jump["period_steps"] == 0 and not latched
+        if tick:
+            if jump["fade_length_m"]:
+                u = np.clip(clearance / jump["fade_length_m"], 0.0, 1.0)
+                gate, in_air = 1.0 - u * u * (3.0 - 2.0 * u), clearance >= jump["fade_length_m"]
+            else:  # the contact list that MuJoCo leaves after a step describes the state before it
+                listed = touched if jump["lags"] and step else touching
+                gate, in_air, touched = float(listed), not listed, touching
+            off = quiet > 0 or (in_air and stood)
+            gate = 0.0 if quiet else gate
+        if off and data.qvel[z] <= 0.0:
+            break
+        if tick and off and jump["latch"]:
+            latched = quiet >= jump["delay_periods"]
+            quiet += 1
+        if latched:
+            motor = np.zeros(2)
+        elif tick:
+            if jump["knee_release_rad"]:
+                before_stop = data.qpos[knee] - jump["lower_stop_rad"][1]
+                wanted[1] *= np.clip(before_stop / jump["knee_release_rad"], 0.0, 1.0)
+            commands.append((gate, wanted))
+            motor = np.zeros(2)
+            if len(commands) > jump["delay_periods"]:
+                share, torque = commands[-1 - int(jump["delay_periods"])]
+                motor = share * limited(jump, torque, speed) if share else motor
+        data.ctrl[:] = delivered(jump, motor, speed)
+        mujoco.mj_step(model, data)
+        step += 1
+        during = 0.5 * (speed + data.qvel[[hip, knee]]) if jump["mean_speed"] else speed
+        power = motor * during
+        work += np.maximum(power, 0.0) * jump["timestep_s"]
+        at_battery = power + heat_per_torque2 * motor**2
+        share_back = np.where(at_battery > 0.0, 1.0, jump["regeneration_share"])
+        electrical += float(share_back @ at_battery) * jump["timestep_s"]
+    return float(height), float(work.sum()), electrical + jump["standby_power_w"] * step * jump["timestep_s"]
+
+
+if __name__ == "__main__":
+    here = Path(__file__).resolve().parent
+    found = replay(here)
+    expected = json.loads((here / "jump.json").read_text())["expected"]
+    same = True
+    for name, value in zip(("height_m", "energy_j", "electrical_energy_j"), found, strict=True):
+        same = same and abs(value - expected[name]) <= 1e-9 * max(1.0, abs(expected[name]))
+        print(f"{name:20} {value:.9f}   export {expected[name]:.9f}")
+    sys.exit(0 if same else "not the jump of this export: another version of MuJoCo or a changed file?")

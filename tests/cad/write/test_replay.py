@@ -1,0 +1,77 @@
+"""The replay in an export makes the simulated jump with MuJoCo and NumPy alone."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.cad.write.jump_record import jump_record, replay_script
+from pareto_monoped.design import Design
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.model import mjcf
+from pareto_monoped.robot.population import robot_arrays
+
+REFERENCE = load_calibration("reference")
+MACHINE = replace(
+    REFERENCE,
+    joints=replace(REFERENCE.joints, rotors="absolute"),
+    drive=replace(REFERENCE.drive, regeneration_share=0.5, standby_power_w=8.0),
+    simulation=replace(REFERENCE.simulation, timestep_s=5e-4, control_period_s=1e-3, delay_s=2e-3),
+)
+CALIBRATIONS = {"reference": REFERENCE, "paper": load_calibration("paper"), "machine": MACHINE}
+DESIGNS = {
+    "low and light": (0.3, 0.3, 4.05, 4.05, 30.0, 5.0, 10.0),
+    "long thigh": (0.5, 0.31, 5.0, 6.0, 20.0, 2.0, 30.0),
+    "long shank": (0.31, 0.5, 8.2, 4.05, 60.0, 0.0, 0.0),
+    "strong": (0.5, 0.5, 8.2, 8.2, 200.0, 10.0, 50.0),
+    "every variable": (0.45, 0.4, 6.0, 4.4, 40.0, 3.0, 12.0, 0.4, 4.0, 0.45),
+}
+
+
+def run(folder):
+    return subprocess.run([sys.executable, "-I", "replay.py"], cwd=folder, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("calibration", CALIBRATIONS.values(), ids=CALIBRATIONS)
+@pytest.mark.parametrize("values", DESIGNS.values(), ids=DESIGNS)
+def test_five_very_different_designs_jump_the_same(values, calibration, actuator_map, tmp_path):
+    design = Design.from_array(values)
+    arrays = robot_arrays(design.as_array(), actuator_map, calibration.mass)
+    (tmp_path / "monoped.xml").write_text(mjcf(arrays, calibration))
+    (tmp_path / "jump.json").write_text(jump_record(arrays, design, calibration))
+    (tmp_path / "replay.py").write_text(replay_script())
+    expected = json.loads((tmp_path / "jump.json").read_text())["expected"]
+    if not np.isfinite(expected["height_m"]) or expected["height_m"] < 0.0:
+        pytest.skip("this design does not jump under this calibration")
+    found = run(tmp_path)
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert f"{expected['height_m']:.9f}" in found.stdout
+
+
+def test_an_export_replays_its_own_jump(exported):
+    found = run(exported.folder / "model")
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert f"{exported.record['jumps']['as_built']['energy_j']:.9f}" in found.stdout
+
+
+def test_a_changed_number_is_another_jump(exported, tmp_path):
+    for path in (exported.folder / "model").iterdir():
+        if path.is_file():
+            (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "meshes").symlink_to((exported.folder / "model" / "meshes").resolve())
+    numbers = json.loads((tmp_path / "jump.json").read_text())
+    numbers["loss"][1] += 1e-6
+    (tmp_path / "jump.json").write_text(json.dumps(numbers))
+    found = run(tmp_path)
+    assert found.returncode == 1
+    assert "not the jump of this export" in found.stderr
+
+
+def test_the_replay_is_short_and_needs_two_packages():
+    text = replay_script()
+    assert len(text.splitlines()) <= 120
+    imported = {line.split()[1].split(".")[0] for line in text.splitlines() if line.startswith(("import ", "from "))}
+    assert imported == {"json", "sys", "pathlib", "mujoco", "numpy"}

@@ -1,0 +1,93 @@
+"""The loads of a jump are those of MuJoCo's constraint forces, which the controller never sees."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import CONTROL, LOWER, PAPER_CASES, UPPER, columns, complete
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.single import _contact_force, _force, _moments
+from pareto_monoped.robot.population import robot_arrays
+
+REFERENCE = load_calibration("reference")
+SMOOTH = replace(REFERENCE, joints=replace(REFERENCE.joints, friction_n_m=0.0))
+STEP = REFERENCE.simulation.timestep_s
+LIMIT = (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT,)
+
+
+@pytest.fixture(scope="module")
+def designs():
+    paper = [case.design.as_array() for case in PAPER_CASES.values()]
+    return np.vstack([paper, complete(np.random.default_rng(5).uniform(LOWER, UPPER, (6, len(LOWER))))])
+
+
+def loads_by_mujoco(robots, control, calibration):
+    """Stop torque, stop energy, foot force, gear torques and chain pull of one jump, from a plain loop."""
+    stop = foot = energy = pull = 0.0
+    gear = np.zeros(2)
+    rotor, ratio = robots.rotor_inertia_kg_m2[0], robots.ratio[0]
+    absolute = calibration.joints.rotors == "absolute"
+    for moment in _moments(robots, control, calibration):
+        if moment.last:
+            break
+        limits = _force(moment.data, LIMIT)[2:]
+        force = _contact_force(moment.data)
+        change = (moment.after.qvel - moment.qvel) / STEP
+        stop, foot = max(stop, np.abs(limits).max()), max(foot, np.hypot(force[0], force[1]))
+        energy -= float(limits @ (0.5 * (moment.qvel[2:] + moment.after.qvel[2:]))) * STEP
+        motor = np.array([change[2], change[3]]) * ratio + [0.0, change[2] if absolute else 0.0]
+        torque = moment.record["motor_torque_n_m"]
+        gear = np.maximum(gear, np.abs(torque - rotor * ratio * motor))
+        if absolute:
+            before = robots.knee_reflected_kg_m2[0] * change[3] + robots.knee_coupling_kg_m2[0] * change[2]
+        else:
+            before = robots.armature_kg_m2[0, 1] * change[3]
+        pull = max(pull, abs(moment.data.ctrl[1] - before) / robots.sprocket_radius_m[0])
+    return {
+        "peak_stop_torque_n_m": stop,
+        "stop_energy_j": energy,
+        "peak_foot_force_n": foot,
+        "peak_gear_torque_hip_n_m": gear[0],
+        "peak_gear_torque_knee_n_m": gear[1],
+        "peak_chain_tension_n": pull,
+        "drift_m": abs(moment.qpos[0]),
+    }
+
+
+@pytest.mark.parametrize("rotors", ["armature", "absolute"])
+def test_loads_are_those_of_the_constraints(designs, rotors):
+    actuator_map = map_for("VT8020")
+    calibration = replace(SMOOTH, joints=replace(SMOOTH.joints, rotors=rotors))
+    evaluations = Evaluator(actuator_map, calibration)(designs)
+    assert evaluations.ok.all()
+    for i, design in enumerate(designs):
+        robots = robot_arrays(design, actuator_map)
+        # MuJoCo's contact point lies in the middle of the foot's 2 mm of compression, ours at its sole.
+        for name, value in loads_by_mujoco(robots, columns(design[None], CONTROL), calibration).items():
+            assert getattr(evaluations, name)[i] == pytest.approx(value, rel=1e-3, abs=1e-6), (name, i)
+
+
+def test_coulomb_friction_is_counted_with_the_stop(designs):
+    actuator_map = map_for("VT8020")
+    evaluations = Evaluator(actuator_map, REFERENCE)(designs)
+    for i, design in enumerate(designs):
+        expected = loads_by_mujoco(robot_arrays(design, actuator_map), columns(design[None], CONTROL), REFERENCE)
+        off = abs(evaluations.peak_stop_torque_n_m[i] - expected["peak_stop_torque_n_m"])
+        assert off < REFERENCE.joints.friction_n_m + 0.05
+
+
+def test_without_stops_nothing_ends_in_them(designs):
+    free = replace(REFERENCE, joints=replace(REFERENCE.joints, hip_stop=None, knee_stop=None))
+    evaluations = Evaluator(map_for("VT8020"), free)(designs)
+    assert np.all(evaluations.peak_stop_torque_n_m[evaluations.ok] == 0.0)
+    assert np.all(evaluations.stop_energy_j[evaluations.ok] == 0.0)
+
+
+def test_a_guided_base_does_not_drift(designs):
+    guided = replace(REFERENCE, simulation=replace(REFERENCE.simulation, base_slides=False))
+    evaluations = Evaluator(map_for("VT8020"), guided)(designs)
+    assert np.all(evaluations.drift_m[evaluations.ok] == 0.0)
