@@ -104,6 +104,7 @@ RECORD = np.dtype(
         ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of the gate
         ("position", _STATE),  # x, z, hip, knee at the start of the current step
         ("velocity", _STATE),
+        ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
     ],
     align=True,
 )
@@ -175,14 +176,16 @@ def _fly(q: Floats, v: Floats, jump: Any) -> None:
         return
     nv = v.shape[0]
     _loads(v, jump)
-    _note_state(q, v, jump)
+    shank_angle = q[nv - 2] + q[nv - 1]
+    thigh_turned, shank_turned = _direction(q[nv - 2]), _direction(shank_angle)
+    _note_state(q, v, thigh_turned, shank_turned, jump)
     jump.steps += 1.0
     jump.height_m = max(jump.height_m, q[nv - 3])
     jump.peak_speed_rad_per_s[HIP] = max(jump.peak_speed_rad_per_s[HIP], abs(v[nv - 2]))
     jump.peak_speed_rad_per_s[KNEE] = max(jump.peak_speed_rad_per_s[KNEE], abs(v[nv - 1]))
     _end(q, v, jump)
     if jump.status != FLYING:
-        rz = -jump.thigh_length_m * math.cos(q[nv - 2]) - jump.shank_length_m * math.cos(q[nv - 2] + q[nv - 1])
+        rz = -jump.thigh_length_m * thigh_turned[1] - jump.shank_length_m * shank_turned[1]
         jump.clearance_m = q[nv - 3] + rz - jump.foot_radius_m
 
 
@@ -197,17 +200,17 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     speed = (v[nv - 2], v[nv - 1])
 
     # Vectors from hip to foot (r) and from knee to foot (shank).
-    shank_angle = hip + knee
-    shank_x = -jump.shank_length_m * math.sin(shank_angle)
-    shank_z = -jump.shank_length_m * math.cos(shank_angle)
-    rx = -jump.thigh_length_m * math.sin(hip) + shank_x
-    rz = -jump.thigh_length_m * math.cos(hip) + shank_z
+    thigh_turned, shank_turned = _direction(hip), _direction(hip + knee)
+    shank_x = -jump.shank_length_m * shank_turned[0]
+    shank_z = -jump.shank_length_m * shank_turned[1]
+    rx = -jump.thigh_length_m * thigh_turned[0] + shank_x
+    rz = -jump.thigh_length_m * thigh_turned[1] + shank_z
     clearance = z + rz - jump.foot_radius_m
 
     if jump.steps > 0:
         _loads(v, jump)
         _book(jump, speed)
-    _note_state(q, v, jump)
+    _note_state(q, v, thigh_turned, shank_turned, jump)
     tick = jump.steps % jump.period_steps == 0.0
     jump.steps += 1
     jump.height_m = max(jump.height_m, z)
@@ -241,14 +244,22 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 
 @compiled
-def _note_state(q: Floats, v: Floats, jump: Any) -> None:
-    """Keep the state at the start of a step."""
+def _direction(angle: float) -> tuple[float, float]:
+    """Sine and cosine."""
+    return math.sin(angle), math.cos(angle)
+
+
+@compiled
+def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[float, float], jump: Any) -> None:
+    """Keep the state at the start of a step, with sine and cosine of the links' angles."""
     nv = v.shape[0]
     jump.position[0] = q[0] if nv == 4 else 0.0
     jump.velocity[0] = v[0] if nv == 4 else 0.0
     for k in range(3):
         jump.position[1 + k] = q[nv - 3 + k]
         jump.velocity[1 + k] = v[nv - 3 + k]
+    jump.directions[0], jump.directions[1] = thigh
+    jump.directions[2], jump.directions[3] = shank
     jump.drift_m = abs(jump.position[0])
 
 
@@ -397,7 +408,7 @@ def _loads(v: Floats, jump: Any) -> None:
     x, which is left out.
     """
     nv, timestep = v.shape[0], jump.timestep_s
-    hip, knee = jump.position[2], jump.position[2] + jump.position[3]  # of thigh and shank against the vertical
+    hip, knee = (jump.directions[0], jump.directions[1]), (jump.directions[2], jump.directions[3])
     turn, turn_below = jump.velocity[2], jump.velocity[2] + jump.velocity[3]
     ax = (v[0] - jump.velocity[0]) / timestep if nv == 4 else 0.0
     az = (v[nv - 3] - jump.velocity[1]) / timestep + GRAVITY_M_PER_S2
@@ -442,9 +453,9 @@ def _loads(v: Floats, jump: Any) -> None:
 
 
 @compiled
-def _turned(vector: Any, angle: float) -> tuple[float, float]:
-    """A vector (x, z) of a body frame in the world: turned about +y."""
-    sin, cos = math.sin(angle), math.cos(angle)
+def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
+    """A vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
+    sin, cos = direction
     return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]
 
 
