@@ -27,7 +27,7 @@ DEFAULT = "reference"
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 # As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
-_MOST_DELAY = 8
+MOST_DELAY = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -227,8 +227,8 @@ class Simulation:
         """Refuse a period that is no whole number of steps, and a delay that is no whole number of periods."""
         if not _whole(self.period_s / self.timestep_s) or self.period_steps < 1:
             raise ValueError(f"control_period_s {self.period_s:g} must be a whole multiple of timestep_s")
-        if not _whole(self.delay_s / self.period_s) or self.delay_s > _MOST_DELAY * self.period_s * (1.0 + 1e-9):
-            raise ValueError(f"delay_s {self.delay_s:g} must be 0 to {_MOST_DELAY} whole control periods")
+        if not _whole(self.delay_s / self.period_s) or self.delay_s > MOST_DELAY * self.period_s * (1.0 + 1e-9):
+            raise ValueError(f"delay_s {self.delay_s:g} must be 0 to {MOST_DELAY} whole control periods")
 
     @property
     def period_s(self) -> float:

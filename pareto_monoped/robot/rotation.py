@@ -14,15 +14,11 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pareto_monoped.actuator.actuator import Actuator, turning_terms
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.thigh import thigh_parts
 
-Floats = NDArray[np.float64]
 _LENGTHS_M = (0.3, 0.5)  # two lengths fix a straight line; any two do
 
 

@@ -9,6 +9,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CalibrationError
+from pareto_monoped.jump import calibration, controller
 from pareto_monoped.jump.calibration import calibration_of, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.single import simulate
@@ -89,3 +90,8 @@ def test_periods_that_do_not_fit_are_refused(changes, complaint):
     values["simulation"] |= changes
     with pytest.raises(CalibrationError, match=complaint):
         calibration_of(values, source="test")
+
+
+def test_a_calibration_allows_as_much_delay_as_the_controller_keeps_commands():
+    """The limit stands in both files: importing the controller imports numba, and reading a calibration must not."""
+    assert calibration.MOST_DELAY == controller.MOST_DELAY
