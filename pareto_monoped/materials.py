@@ -1,8 +1,11 @@
 """Every material of the robot; the values and their sources stand in ``data/materials.toml``."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib import resources
-from typing import Annotated
+from types import MappingProxyType
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -43,6 +46,39 @@ class GearMaterial(Material):
     mesh_friction_coefficient: Positive
 
 
+Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearGrade:
+    """A steel grade in one heat treatment, as ISO 6336-5 rates it.
+
+    Attributes:
+        name: steel and treatment in words, as it stands in parts lists.
+        treatment: which S-N curves and notch factors apply.
+        quality: quality grade of material and treatment.
+        hardness_hv: Vickers hardness of the flank.
+        flank_limit_mpa: allowable contact stress number sigma_H,lim.
+        root_limit_mpa: nominal bending stress number sigma_F,lim of the standard test gear.
+        yield_mpa: 0.2 % proof stress of the core.
+        slip_layer_mm: thickness rho' of the slip layer.
+        youngs_modulus_mpa, poisson_ratio: of elasticity.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    name: str
+    treatment: Treatment
+    quality: Literal["ML", "MQ", "ME"]
+    hardness_hv: Positive
+    flank_limit_mpa: Positive
+    root_limit_mpa: Positive
+    yield_mpa: Positive
+    slip_layer_mm: Positive
+    youngs_modulus_mpa: Positive
+    poisson_ratio: Share
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Materials:
     """All materials: one table of ``data/materials.toml`` each."""
@@ -60,12 +96,28 @@ class Materials:
     rubber: Material
 
 
-def _shipped() -> Materials:
+_GRADES = "gear_grades"
+"""The one table of the file whose own tables are no materials, but grades of gear steel."""
+
+
+@lru_cache(maxsize=1)
+def _file() -> dict[str, Any]:
     with resources.as_file(resources.files("pareto_monoped") / "data" / "materials.toml") as path:
-        tables = read_toml(path, what="materials")
-    named = {key: {"name": key.replace("_", " ")} | table for key, table in tables.items()}
+        return read_toml(path, what="materials")
+
+
+def _shipped() -> Materials:
+    named = {key: {"name": key.replace("_", " ")} | table for key, table in _file().items() if key != _GRADES}
     return checked(Materials, named, source="materials")
+
+
+def _shipped_grades() -> Mapping[str, GearGrade]:
+    tables = _file()[_GRADES]
+    grades = {key: checked(GearGrade, table, source=f"materials: {_GRADES}.{key}") for key, table in tables.items()}
+    return MappingProxyType(grades)
 
 
 MATERIALS = _shipped()
 """The materials that ship with the package."""
+GEAR_GRADES = _shipped_grades()
+"""The steel grades that ship with the package, by the names that the settings use."""

@@ -1,15 +1,17 @@
 """One actuator: motor, gearbox, parts, and what it can do."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pareto_monoped.actuator.external import external_parts
+from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency
 from pareto_monoped.actuator.internal import BACK_THREAD_MM, internal_parts
 from pareto_monoped.actuator.layout import Family, Layout, layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.sheet import Rating, rate
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.strength import face_width_mm
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import SCREWS, Group, Role
 from pareto_monoped.geometry.screws import M3
@@ -71,6 +73,7 @@ class Actuator:
         length_mm: from the output face to the back, without the screw heads that stand out there.
         output, mount: where the links are bolted on.
         parts: every part, including the screws that hold a framed motor.
+        rating: of the gears after ISO 6336; None under the rules ``paper``.
     """
 
     motor: Motor
@@ -90,6 +93,7 @@ class Actuator:
     output: OutputInterface
     mount: MountInterface
     parts: tuple[Part, ...]
+    rating: Rating | None = None
 
     @property
     def parts_bolted_at_back(self) -> tuple[Part, ...]:
@@ -117,9 +121,13 @@ def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: Actuato
 
 def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings) -> Actuator:
     """The actuator around one gear set. No constraint is checked."""
-    width = float(face_width_mm(gears, motor, settings))
+    width = float(face_width_mm(gears, motor, family, settings))
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
+    rating = None
+    if settings.rules == "iso6336":
+        rating = rate(build_stage(gears, motor, family, settings), width)
+        parts = tuple(_with_safeties(part, rating) for part in parts)
     ratio = float(gears.ratio)
     outer, inner = contact_ratios(gears)
     return Actuator(
@@ -140,7 +148,20 @@ def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: Actua
         output=output_interface(settings),
         mount=mount_interface(motor, family, settings),
         parts=parts,
+        rating=rating,
     )
+
+
+_GEAR_OF_GROUP = {Group.ROTOR: "sun", Group.PLANET: "planet", Group.HOUSING: "ring"}
+"""Group of a gear -> which one it is; the rating names them so."""
+
+
+def _with_safeties(part: Part, rating: Rating) -> Part:
+    """A gear with its least safety factors in the note, any other part as it is."""
+    if part.role is not Role.GEAR:
+        return part
+    flank, root = rating.of(_GEAR_OF_GROUP[part.group])
+    return replace(part, note=f"{part.note}; S_H {flank:.2f}, S_F {root:.2f} (ISO 6336)")
 
 
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:

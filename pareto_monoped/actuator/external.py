@@ -8,6 +8,7 @@ from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     GEAR_NOTE,
     MOTOR_TAPPED_HOLE_MM,
+    gear_making,
     motor_holes,
     note_with,
     slab,
@@ -70,7 +71,12 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
             group=Group.ROTOR,
-            note=note_with(GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm),
+            note=note_with(
+                GEAR_NOTE + gear_making(settings, settings.gear_steels.sun),
+                at.gears.sun_teeth,
+                at.gears.module_mm,
+                data.gears.backlash_mm,
+            ),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="sun_shaft"),
         ),
         Part(

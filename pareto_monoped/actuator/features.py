@@ -10,9 +10,9 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
-from pareto_monoped.materials import Material
+from pareto_monoped.materials import GearGrade, Material
 
-GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm; hardened steel, wire-cut"
+GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm; "
 SPIGOT_MM = 1.5
 """Height of the backplate's step that centres it in the casing; our own choice."""
 RING_GROOVE_MM = 1.0
@@ -23,6 +23,18 @@ MOTOR_CLEARANCE_HOLE_MM = 0.5
 """Clearance hole less screw diameter for the motor's mounting pattern (ISO 273, medium, M4 and M5)."""
 MOTOR_TAPPED_HOLE_MM = -0.8
 """Tapping hole less thread diameter for the motor's mounting pattern (ISO 2306: 4.2 mm for M5)."""
+
+
+def gear_making(settings: ActuatorSettings, grade: GearGrade) -> str:
+    """Steel and making of a gear, the end of its note.
+
+    Args:
+        settings: of stage 1.
+        grade: the gear's steel under ``iso6336``. Wire-cutting after hardening would take a hard case off.
+    """
+    if settings.rules == "paper":
+        return "hardened steel, wire-cut"
+    return f"{grade.name}, ISO 1328-1 class {settings.parts.rating.accuracy_class}"
 
 
 def note_with(text: str, *numbers: Numbers) -> str:

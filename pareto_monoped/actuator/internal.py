@@ -8,6 +8,7 @@ from pareto_monoped.actuator.features import (
     MOTOR_TAPPED_HOLE_MM,
     bought_bearing,
     casing_holes,
+    gear_making,
     motor_holes,
     note_with,
     slab,
@@ -83,7 +84,10 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             process="machined",
             group=Group.ROTOR,
             note=note_with(
-                "one piece with its shaft; " + GEAR_NOTE, at.gears.sun_teeth, at.gears.module_mm, data.gears.backlash_mm
+                "one piece with its shaft; " + GEAR_NOTE + gear_making(settings, settings.gear_steels.sun),
+                at.gears.sun_teeth,
+                at.gears.module_mm,
+                data.gears.backlash_mm,
             ),
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
         ),

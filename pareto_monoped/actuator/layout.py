@@ -74,6 +74,14 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
     return motor.framed.outer_diameter_mm - settings.diameter_clearance_mm
 
 
+def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -> Numbers:
+    """Outer radius of the ring gear."""
+    data = settings.parts.gears
+    return gears.ring_pitch_radius_mm + (
+        data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm
+    )
+
+
 def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers, settings: ActuatorSettings) -> Layout:
     """The common layout of an actuator."""
     data = settings.parts
@@ -87,7 +95,6 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
     assert body is not None
     r_motor = 0.5 * body.outer_diameter_mm
     stator_in, stator_out = motor.stator_diameters_mm
-    ring_width = data.gears.ring_width_internal_mm if family == "ISSPG" else data.gears.ring_width_external_mm
     z_bearing_front = -(carrier.flange_thickness_mm + RING_GROOVE_WALL_MM + RETAINING_RING_MM)
     z_bearing_back = z_bearing_front - bearing.width_mm
     z_shoulder = z_bearing_back - carrier.shoulder_thickness_mm
@@ -112,7 +119,7 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         r_seat=0.5 * bearing.outer_diameter_mm,
         r_open=0.5 * bearing.outer_diameter_mm - casing.lip_mm,
         r_pins=r_pins,
-        r_ring=gears.ring_pitch_radius_mm + ring_width,
+        r_ring=ring_radius_mm(gears, family, settings),
         r_carrier_in=r_pins - pin_reach,
         r_secondary_in=np.maximum(r_pins - pin_reach, gears.sun().tip_radius_mm + carrier.sun_clearance_mm),
         r_secondary_out=r_pins + pin_reach,

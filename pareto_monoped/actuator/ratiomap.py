@@ -10,6 +10,7 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.errors import DesignError
 
@@ -18,6 +19,12 @@ RATIO_HIGH = 15
 RATIO_STEP = 0.1
 """The map covers the half-open intervals [4.0, 4.1) to [14.9, 15.0) (paper, section III-A)."""
 
+
+STAND_IN_WITHIN = 1.5
+"""How far a gearbox may be from a ratio that has none and stand in for it, under the rules ``iso6336``.
+
+Our own choice: it covers the paper's 7.9:1. Farther away, a robot has little to do with the one that was asked for.
+"""
 
 _EDGE_DECIMALS = 8
 """To which decimal ten times a ratio is rounded, so that 0.1 x 87, a hair below 8.7, is 8.7."""
@@ -95,7 +102,8 @@ class ActuatorMap:
     """Ratio -> lightest actuator, for one motor.
 
     Stage 2 searches over a continuous ratio. It gets the gearbox of the interval in which the ratio lies and simulates
-    the real ratio of that gearbox, which differs from the searched one by less than 0.1.
+    the real ratio of that gearbox, which differs from the searched one by less than 0.1. Under the rules ``iso6336``,
+    an interval without a gearbox is served by the nearest one within ``STAND_IN_WITHIN``; ``stand_in`` says so.
     """
 
     motor: Motor
@@ -103,15 +111,37 @@ class ActuatorMap:
     entries: tuple[MapEntry, ...]
 
     def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
-        """Index into ``entries`` for each ratio, shape (n,) -> (n,); -1 where the map has no gearbox."""
-        values = np.asarray(ratios, dtype=np.float64)
-        index = _tenths(np.where(np.isfinite(values), values, -1.0)) - 10 * RATIO_LOW
+        """Index into ``entries`` of the gearbox for each ratio, shape (n,) -> (n,); -1 where there is none."""
+        index = _index(np.asarray(ratios, dtype=np.float64))
         inside = (index >= 0) & (index < len(self.entries))
+        return np.where(inside, self._serving()[np.where(inside, index, 0)], -1)
+
+    def _serving(self) -> NDArray[np.intp]:
+        """For each interval the index of the entry whose gearbox serves it, shape (intervals,), or -1."""
+        own = np.arange(len(self.entries))
         present = np.array([entry.actuator is not None for entry in self.entries])
-        return np.where(inside & present[np.where(inside, index, 0)], index, -1)
+        serving = np.where(present, own, -1)
+        if self.settings.rules == "paper" or not present.any():
+            return serving
+        real = np.array([np.inf if entry.actuator is None else entry.actuator.ratio for entry in self.entries])
+        away = np.abs(real - (self.ratios_low + 0.5 * RATIO_STEP)[:, None])
+        nearest = np.argmin(away, axis=1)
+        return np.where(present | (away[own, nearest] > STAND_IN_WITHIN), serving, nearest)
+
+    def stand_in(self, ratio: float) -> str:
+        """One line on the gearbox that stands in at a ratio whose interval has none; '' where nothing stands in."""
+        index = int(self.interval_index([ratio])[0])
+        if index < 0 or index == int(_index(np.asarray(ratio, dtype=np.float64))):
+            return ""
+        actuator = self.entries[index].actuator
+        assert actuator is not None
+        return (
+            f"gear ratio {ratio:g}: {self.why_not(ratio)}; the nearest gearbox stands in, {actuator.family} "
+            f"{actuator.gears}, {actuator.ratio:.4f}:1"
+        )
 
     def entry(self, ratio: float) -> MapEntry:
-        """The interval that the ratio lies in, which has an actuator.
+        """The interval that the ratio lies in, or the one that stands in for it; it has an actuator.
 
         Raises:
             DesignError: the ratio lies outside the map, or no gearbox exists there; the message names the constraint.
@@ -122,7 +152,7 @@ class ActuatorMap:
         return self.entries[index]
 
     def lookup(self, ratio: float) -> Actuator:
-        """The actuator of the interval that the ratio lies in; raises as ``entry`` does."""
+        """The actuator of ``entry``; raises as it does."""
         actuator = self.entry(ratio).actuator
         assert actuator is not None
         return actuator
@@ -149,8 +179,9 @@ class ActuatorMap:
             return (
                 f"outside the map of {self.motor.name}, which covers {RATIO_LOW} up to but not including {RATIO_HIGH}"
             )
-        index = int(_tenths(np.asarray(ratio))) - 10 * RATIO_LOW
-        return f"{self.motor.name} has {self.entries[min(index, len(self.entries) - 1)].why_not()}"
+        entry = self.entries[min(int(_index(np.asarray(ratio))), len(self.entries) - 1)]
+        reason = f"{self.motor.name} has {entry.why_not()}"
+        return reason if self.settings.rules == "paper" else f"{reason}; would help: {_cures(entry)}"
 
     def _existing(self) -> str:
         lows = [round(10 * entry.ratio_low) for entry in self.entries if entry.actuator is not None]
@@ -163,6 +194,18 @@ class ActuatorMap:
             else:
                 runs.append([low, low + 1])
         return " or ".join(f"[{start / 10:.1f}, {stop / 10:.1f})" for start, stop in runs)
+
+
+def _cures(entry: MapEntry) -> str:
+    """What would help where there is no gearbox, for the family that the fewest rules forbid."""
+    names = min(entry.forbidden_by.values(), key=lambda names: (not names, len(names)), default=())
+    cures = dict.fromkeys(cure for name in names for cure in CONSTRAINTS[name].cures)
+    return " or ".join(cures) or "another motor"
+
+
+def _index(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Index of the interval that each ratio lies in; beyond the entries, or negative, outside the map."""
+    return _tenths(np.where(np.isfinite(ratios), ratios, -1.0)) - 10 * RATIO_LOW
 
 
 def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
+from pareto_monoped.actuator.rating.width import strength_margins
+from pareto_monoped.actuator.settings import RULE_SETS, ActuatorSettings, ConstraintName, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.shapes import Numbers
 
@@ -19,7 +21,10 @@ TOLERANCE_MM = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSets:
-    """What the rules look at: one gear set or arrays of them, with what was laid out around them."""
+    """What the rules look at: one gear set or arrays of them, with what was laid out around them.
+
+    ``strength`` has the margins of ``rating.width.strength_margins``, where they are known already.
+    """
 
     gears: GearSet
     face_width_mm: Numbers
@@ -27,15 +32,26 @@ class CandidateSets:
     motor: Motor
     family: Family
     settings: ActuatorSettings
+    strength: Mapping[str, Numbers] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constraint:
-    """One rule: what it says, its source, and its margin, which must not be negative."""
+    """One rule.
+
+    Attributes:
+        says: what it says.
+        source: where it comes from.
+        margin: what is left until it is broken, negative beyond.
+        cures: what would help where it forbids every gearbox.
+        rule_sets: the sets of rules that it belongs to.
+    """
 
     says: str
     source: str
     margin: Callable[[CandidateSets], Numbers]
+    cures: tuple[str, ...]
+    rule_sets: tuple[RuleSet, ...] = RULE_SETS
 
 
 def _meshing(sets: CandidateSets) -> Numbers:
@@ -97,21 +113,40 @@ def _bearing_room(sets: CandidateSets) -> Numbers:
     return sets.at.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.at.r_seat
 
 
+def _face_width(sets: CandidateSets) -> Numbers:
+    return face_limit_mm(sets.gears, sets.settings) - sets.face_width_mm
+
+
+def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
+    """The margin of a rule about safety factors."""
+
+    def margin(sets: CandidateSets) -> Numbers:
+        if sets.strength is not None:
+            return sets.strength[rule]
+        stage = build_stage(sets.gears, sets.motor, sets.family, sets.settings)
+        return strength_margins(stage.safeties(sets.face_width_mm), stage)[rule]
+
+    return margin
+
+
 CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "meshing": Constraint(
         says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh",
         source="paper, III (eq. 3)",
         margin=_meshing,
+        cures=("another number of planets",),
     ),
     "no_interference": Constraint(
         says="2 m (Ns + Np) sin(pi / n_p) - 2 m Np >= delta_p, so that planets keep clear of each other",
         source="paper, IV (eq. 4)",
         margin=_no_interference,
+        cures=("a smaller planet_gap_mm", "fewer planets"),
     ),
     "teeth_min": Constraint(
         says="Ns, Np >= N_min, against undercutting",
         source="paper, V (eq. 5)",
         margin=lambda sets: np.minimum(sets.gears.sun_teeth, sets.gears.planet_teeth) - sets.settings.teeth_min,
+        cures=("a smaller module", "fewer teeth with profile shift"),
     ),
     "gearbox_diameter": Constraint(
         says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",
@@ -119,6 +154,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=lambda sets: (
             radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_pitch_radius_mm
         ),
+        cures=("a wider motor", "a smaller module"),
     ),
     "ring_root": Constraint(
         says="m (Nr + 2.5) <= D_GB: so does the ring's root circle",
@@ -126,46 +162,83 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=lambda sets: (
             radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_root_radius_mm
         ),
+        cures=("a wider motor", "a smaller module"),
     ),
     "sun_rim": Constraint(
         says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG; the ISSPG's sun has no bore)",
         source="AGMA 2001-D04, rim thickness factor 1",
         margin=_sun_rim,
+        cures=("a smaller bore of the sun", "a larger module"),
     ),
     "planet_rim": Constraint(
         says="wall between the planet's bore and its roots >= 1.2 tooth depths",
         source="AGMA 2001-D04, rim thickness factor 1",
         margin=_planet_rim,
+        cures=("a smaller bore of the planets", "a larger module"),
     ),
     "ring_rim": Constraint(
         says="wall behind the ring's roots >= 3.5 modules",
         source="ISO 6336-3, rim thickness factor 1 of internal gears",
         margin=_ring_rim,
+        cures=("a thicker ring", "a smaller module"),
     ),
     "ring_interference": Constraint(
         says="the ring's tips meet the planet's flanks outside its base circle",
         source="involute interference of internal gears: Colbourne, The Geometry of Involute Gears, ch. 8",
         margin=_ring_interference,
+        cures=("more planet teeth", "profile shift"),
     ),
     "contact_ratio": Constraint(
         says="contact ratio of either mesh at least 1.2",
         source="Shigley, section 13-6",
         margin=_contact_ratio,
+        cures=("more teeth",),
     ),
     "within_stator": Constraint(
         says="face width <= height of the stator that the gears sit in (ISSPG)",
         source="paper, section II-A: the ISSPG is integrated within the stator",
         margin=_within_stator,
+        cures=("a longer stator", "a stronger steel", "more planets"),
     ),
     "bearing": Constraint(
         says="the catalogue has a main bearing of the bore needed",
         source="bearing catalogue, ISO 15",
         margin=_bearing,
+        cures=("a larger bearing in the catalogue",),
     ),
     "bearing_room": Constraint(
         says="the main bearing passes the ring's shoulder (ESSPG), its seat stays inside the casing (ISSPG)",
         source="assembly",
         margin=_bearing_room,
+        cures=("a bearing of smaller section", "a wider motor"),
+    ),
+    "face_width": Constraint(
+        says="face width <= 1.5 sun diameters and 40 modules",
+        source="Niemann/Winter, Maschinenelemente II; limits in data/actuator_parts.toml, table rating",
+        margin=_face_width,
+        cures=("a larger sun", "a larger face_over_sun_max"),
+        rule_sets=("iso6336",),
+    ),
+    "flank_strength": Constraint(
+        says="S_H of every flank at least flank_safety within the face width allowed",
+        source="ISO 6336-2, ISO 6336-6",
+        margin=_strength("flank_strength"),
+        cures=("a larger sun", "a harder steel", "carriers tied by webs"),
+        rule_sets=("iso6336",),
+    ),
+    "root_strength": Constraint(
+        says="S_F of every root at least root_safety within the face width allowed",
+        source="ISO 6336-3, ISO 6336-6",
+        margin=_strength("root_strength"),
+        cures=("a larger module in a thicker ring", "a stronger steel", "carriers tied by webs"),
+        rule_sets=("iso6336",),
+    ),
+    "overload_strength": Constraint(
+        says="S_H and S_F at least those required against static failure under one overload",
+        source="ISO 6336-2 and -3, static limits",
+        margin=_strength("overload_strength"),
+        cures=("a softer end stop", "a stronger steel"),
+        rule_sets=("iso6336",),
     ),
 }
 """Name -> rule. Three of the paper's constraints are not here: I (ratio) selects the interval, II (Nr = Ns + 2 Np) and
@@ -178,7 +251,12 @@ def violations(sets: CandidateSets) -> tuple[tuple[ConstraintName, ...], NDArray
     Returns:
         The names, and an array of shape (names, sets), True where broken.
     """
-    names = tuple(name for name in CONSTRAINTS if name not in sets.settings.constraints_off)
+    settings = sets.settings
+    names = tuple(
+        name
+        for name, rule in CONSTRAINTS.items()
+        if settings.rules in rule.rule_sets and name not in settings.constraints_off
+    )
     shape = np.shape(sets.gears.sun_teeth)
     broken = [np.broadcast_to(CONSTRAINTS[name].margin(sets), shape) < -TOLERANCE_MM for name in names]
     return names, np.array(broken, dtype=bool).reshape(len(names), *shape)

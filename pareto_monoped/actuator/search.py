@@ -1,5 +1,6 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from itertools import pairwise
 
@@ -7,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
+from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor, load_motor
+from pareto_monoped.actuator.rating.width import STRENGTH_RULES
 from pareto_monoped.actuator.ratiomap import (
     RATIO_HIGH,
     RATIO_LOW,
@@ -19,8 +22,8 @@ from pareto_monoped.actuator.ratiomap import (
     MapEntry,
 )
 from pareto_monoped.actuator.rules import CandidateSets, violations
-from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.strength import face_width_mm
+from pareto_monoped.actuator.settings import DEFAULT_RULES, ActuatorSettings, ConstraintName, RuleSet
+from pareto_monoped.geometry.shapes import Numbers
 
 _BEYOND_MM = 12.0
 """How far beyond the room candidates are enumerated, so that the rules can say why a gearbox is missing."""
@@ -43,7 +46,7 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
         ring = sun + 2 * planet
         tenths = interval_tenths(sun, ring)
         keep = (ring <= ring_most) & (tenths >= intervals[0]) & (tenths < intervals[1])
-        for planets in range(settings.planets_min, settings.planets_max + 1):
+        for planets in range(settings.planets_least, settings.planets_max + 1):
             shape = int(keep.sum())
             sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
     columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
@@ -64,12 +67,11 @@ def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64])
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
     """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
     gears = candidates(radial_room_mm(motor, family, settings), settings)
-    width = np.asarray(face_width_mm(gears, motor, settings))
-    at = layout(motor, family, gears, width, settings)
-    names, broken = violations(
-        CandidateSets(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=settings)
-    )
+    width, names, broken = _judged(gears, motor, family, settings)
     count = broken.sum(axis=0)
+    # A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
+    weak = np.isin(names, list(STRENGTH_RULES))
+    nearness = np.where(broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
     # Only sets that break at most one rule are weighed: others are neither solutions nor kept out by a single rule.
     near = np.flatnonzero(count <= 1)
     mass = np.full(len(count), np.inf)
@@ -87,7 +89,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
         if len(ranked):
             rivals = inside[(count[inside] == 1) & (mass[inside] < mass[ranked[0]])]
         else:
-            rivals = inside[count[inside] == count[inside].min()] if len(inside) else inside
+            rivals = inside[nearness[inside] == nearness[inside].min()] if len(inside) else inside
         in_the_way = tuple(name for name, row in zip(names, broken[:, rivals], strict=True) if row.any())
         best, runner_up = (
             Candidate(
@@ -102,6 +104,47 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
         )
         found[low] = FamilyResult(best=best, runner_up=runner_up, in_the_way=in_the_way)
     return found
+
+
+def _judged(
+    gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings
+) -> tuple[NDArray[np.float64], tuple[ConstraintName, ...], NDArray[np.bool_]]:
+    """Face widths, and which rule each set breaks, as ``violations`` returns them.
+
+    To rate a gear set costs more than all other rules together. Under ``iso6336``, sets that break more than one of
+    the others at the least face width are neither solutions nor kept out by a single rule, and are not rated.
+    """
+    if settings.rules == "paper":
+        width = np.asarray(face_width_mm(gears, motor, family, settings))
+        return width, *_rules_broken(gears, width, motor, family, settings)
+    unrated = dict.fromkeys(STRENGTH_RULES, np.zeros(np.shape(gears.sun_teeth)))
+    width = settings.parts.rating.face_width_min_mm + unrated["flank_strength"]
+    names, broken = _rules_broken(gears, width, motor, family, settings, unrated)
+    near = np.flatnonzero(broken.sum(axis=0) <= 1)
+    chosen = gears.where(near)
+    width[near] = face_width_mm(chosen, motor, family, settings)
+    broken[:, near] = _rules_broken(chosen, width[near], motor, family, settings)[1]
+    return width, names, broken
+
+
+def _rules_broken(
+    gears: GearSet,
+    width: NDArray[np.float64],
+    motor: Motor,
+    family: Family,
+    settings: ActuatorSettings,
+    strength: Mapping[str, Numbers] | None = None,
+) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
+    sets = CandidateSets(
+        gears=gears,
+        face_width_mm=width,
+        at=layout(motor, family, gears, width, settings),
+        motor=motor,
+        family=family,
+        settings=settings,
+        strength=strength,
+    )
+    return violations(sets)
 
 
 def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> ActuatorMap:
@@ -130,16 +173,21 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
     return ActuatorMap(motor=motor, settings=settings, entries=tuple(entries))
 
 
+def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:
+    """The map of a motor under a set of rules, with default settings otherwise; kept for the next call."""
+    return _kept_map(motor, rules)
+
+
+# Without defaults, so that one map is kept however its rules were named.
 @lru_cache(maxsize=16)
-def map_of(motor: Motor) -> ActuatorMap:
-    """The map of a motor with default settings; kept for the next call."""
-    return build_map(motor)
+def _kept_map(motor: Motor, rules: RuleSet) -> ActuatorMap:
+    return build_map(motor, ActuatorSettings(rules=rules))
 
 
-def map_for(motor_name_or_path: str) -> ActuatorMap:
-    """The map of a shipped motor or of one in a TOML file, with default settings; cached.
+def map_for(motor_name_or_path: str, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:
+    """The map of a shipped motor or of one in a TOML file under a set of rules; cached.
 
     Raises:
         MotorError: see ``load_motor``.
     """
-    return map_of(load_motor(motor_name_or_path))
+    return map_of(load_motor(motor_name_or_path), rules)

@@ -7,8 +7,9 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.errors import InputError
+from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -28,6 +29,10 @@ ConstraintName = Literal[
     "within_stator",
     "bearing",
     "bearing_room",
+    "face_width",
+    "flank_strength",
+    "root_strength",
+    "overload_strength",
 ]
 """Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings."""
 CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)
@@ -136,6 +141,8 @@ class PartData:
     casing: CasingData
     coupling: CouplingData
     interface: InterfaceData
+    rating: RatingData
+    duty: DutyData
 
 
 @lru_cache(maxsize=1)
@@ -146,13 +153,25 @@ def default_parts() -> PartData:
     return checked(PartData, values, source="part data")
 
 
+RuleSet = Literal["paper", "iso6336"]
+"""Names of the sets of rules: see ``ActuatorSettings.rules``."""
+RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
+DEFAULT_RULES: RuleSet = "paper"
+"""The rules of every command and study that names none."""
+_LEAST_PLANETS: dict[RuleSet, int] = {"paper": 2, "iso6336": 3}
+"""``paper``: range of n_p in its eq. 5. Two planets do not centre the sun, and load the carrier's bearing unevenly."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorSettings:
     """Settings of stage 1.
 
     Attributes:
         modules_mm: modules to choose from.
-        planets_min, planets_max: range of n_p (paper, eq. 5).
+        rules: ``paper``, face width by Lewis with the paper's limits, or ``iso6336``, flanks and roots of all gears
+            rated after ISO 6336, see ``rating``.
+        planets_min: least n_p; None is that of the rules: 2 (paper, eq. 5), or 3 under ``iso6336``.
+        planets_max: largest n_p (paper, eq. 5).
         teeth_min: N_min of sun and planet (paper, eq. 5).
         planet_gap_mm: delta_p of the no-interference constraint (paper, eq. 4).
         diameter_clearance_mm: delta_clr between D_GB and the motor (paper, section III-A).
@@ -161,10 +180,12 @@ class ActuatorSettings:
         bearings: source of the main bearing's mass: the catalogue, or the paper's regression over the bore.
         parts: dimensions and safety factors.
         materials: what the parts are made of.
+        steels: grades of the gears under ``iso6336``; None takes those that ``parts.rating`` names.
     """
 
+    rules: RuleSet = DEFAULT_RULES
     modules_mm: tuple[float, ...] = tuple(sorted(ISO_54_SERIES_1_MM + ISO_54_SERIES_2_MM))
-    planets_min: int = 2
+    planets_min: int | None = None
     planets_max: int = 7
     teeth_min: int = 18
     planet_gap_mm: float = 5.0
@@ -174,8 +195,11 @@ class ActuatorSettings:
     bearings: Literal["catalogue", "regression"] = "catalogue"
     parts: PartData = field(default_factory=default_parts)
     materials: Materials = MATERIALS
+    steels: GearSteels | None = None
 
     def __post_init__(self) -> None:
+        if self.rules not in RULE_SETS:
+            raise InputError(complaint("rules", self.rules, f"one of {', '.join(RULE_SETS)}", "correct the name"))
         for name in sorted(self.constraints_off):
             if name not in CONSTRAINT_NAMES:
                 raise InputError(
@@ -183,8 +207,18 @@ class ActuatorSettings:
                 )
         if not self.modules_mm or min(self.modules_mm) <= 0.0:
             raise InputError(f"modules_mm = {self.modules_mm!r}: must be one or more positive numbers; correct it")
-        if not 2 <= self.planets_min <= self.planets_max:
+        if not 2 <= self.planets_least <= self.planets_max:
             raise InputError(
-                f"planets_min, planets_max = {self.planets_min}, {self.planets_max}: must be 2 or more, in order; "
+                f"planets_min, planets_max = {self.planets_least}, {self.planets_max}: must be 2 or more, in order; "
                 "correct them"
             )
+
+    @property
+    def planets_least(self) -> int:
+        """Least number of planets."""
+        return _LEAST_PLANETS[self.rules] if self.planets_min is None else self.planets_min
+
+    @property
+    def gear_steels(self) -> GearSteels:
+        """Steel grades of the gears under ``iso6336``."""
+        return chosen_steels(self.parts.rating) if self.steels is None else self.steels

@@ -6,7 +6,7 @@ from pareto_monoped.errors import InputError
 
 def test_defaults_are_the_papers_limits():
     settings = ActuatorSettings()
-    assert (settings.planets_min, settings.planets_max, settings.teeth_min) == (2, 7, 18)
+    assert (settings.planets_least, settings.planets_max, settings.teeth_min) == (2, 7, 18)
     assert (settings.planet_gap_mm, settings.diameter_clearance_mm) == (5.0, 10.0)
     assert min(settings.modules_mm) == 0.5
     assert max(settings.modules_mm) <= 1.2

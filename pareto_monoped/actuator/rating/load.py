@@ -1,0 +1,161 @@
+"""Load factors of ISO 6336-1 for one spur gear mesh: K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha.
+
+Loads per face width are in N/mm, deviations in micrometres, stiffnesses in N/(mm um).
+"""
+
+import numpy as np
+
+from pareto_monoped.actuator.rating.geometry import (
+    TOOTH_DEPTH,
+    contact_ratio_factor,
+    root_contact_ratio_factor,
+)
+from pareto_monoped.geometry.gears import DEDENDUM
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.materials import GearGrade
+
+_K1 = {3: 2.1, 4: 3.9, 5: 7.5, 6: 14.9, 7: 26.8, 8: 39.1, 9: 52.8, 10: 76.6}
+"""K_1 of method C by accuracy class, spur gears (ISO 6336-1, table 7)."""
+_K2 = 0.0193
+"""K_2 of method C, spur gears (the same table)."""
+_PACE_MAX = 2.9
+"""v z1 / 100 u / sqrt(1 + u^2) at which the product with K_3 stops growing; faster gears keep the K_3 from there.
+
+Method C is not meant for more; what is done beyond is our own choice and errs to the safe side.
+"""
+LIGHT_LOAD_N_PER_MM = 100.0
+"""Load per face width below which method C takes this value, and teeth count as softer (ISO 6336-1, clauses 6.5, 9)."""
+_ACTUAL_STIFFNESS = 0.8
+"""C_M: measured over theoretical stiffness of a tooth pair (ISO 6336-1, clause 9.3.2.2)."""
+_RACK_STIFFNESS = 1.0 + 0.5 * (1.2 - DEDENDUM)
+"""C_B for this dedendum and 20 degrees (ISO 6336-1, clause 9.3.2.4); C_R is 1, as for solid discs."""
+FACE_STIFFNESS_SHARE = 0.85
+"""c_gamma,beta over c_gamma,alpha (ISO 6336-1, clause 9.3.1)."""
+_TORSION_TO_MISALIGNMENT = 1.33
+"""Misalignment that stands for an elastic deflection f_sh, without modified helix (ISO 6336-1, clause 7.5.2)."""
+
+
+def dynamic_factor(
+    load_n_per_mm: Numbers, speed_m_per_s: Numbers, pinion_teeth: Numbers, ratio: Numbers, accuracy_class: int
+) -> Numbers:
+    """K_V by method C (ISO 6336-1, clause 6.5.3).
+
+    Args:
+        load_n_per_mm: K_A F_t / b.
+        speed_m_per_s: of the pitch point against the carrier.
+        pinion_teeth: of the smaller gear.
+        ratio: u.
+        accuracy_class: ISO 1328-1.
+    """
+    pace = 0.01 * speed_m_per_s * pinion_teeth * ratio / np.sqrt(1.0 + np.square(ratio))
+    slope = np.where(pace <= 0.2, 2.0, 2.071 - 0.357 * np.minimum(pace, _PACE_MAX))
+    return 1.0 + (_K1[accuracy_class] / np.maximum(load_n_per_mm, LIGHT_LOAD_N_PER_MM) + _K2) * pace * slope
+
+
+def pair_stiffness(pinion_teeth: Numbers, wheel_teeth: Numbers, *, internal: bool) -> Numbers:
+    """Stiffness c' of one tooth pair under full load, method B (ISO 6336-1, clause 9.3.2); a ring counts as a rack."""
+    wheel = 0.0 if internal else 1.0 / wheel_teeth
+    compliance = 0.04723 + 0.15551 / pinion_teeth + 0.25791 * wheel
+    return _ACTUAL_STIFFNESS * _RACK_STIFFNESS / compliance
+
+
+def mesh_stiffness(pair: Numbers, contact_ratio: Numbers, load_n_per_mm: Numbers) -> Numbers:
+    """c_gamma,alpha of a mesh (ISO 6336-1, clause 9.3), softer under a light load K_A F_t / b."""
+    light = np.power(np.minimum(load_n_per_mm / LIGHT_LOAD_N_PER_MM, 1.0), 0.25)
+    return pair * light * (0.75 * contact_ratio + 0.25)
+
+
+def pitch_deviation_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
+    """Tolerance f_pT of a single pitch (ISO 1328-1:2013, clause 5)."""
+    return (0.001 * diameter_mm + 0.4 * module_mm + 5.0) * np.sqrt(2.0) ** (accuracy_class - 5)
+
+
+def helix_deviation_um(diameter_mm: Numbers, width_mm: Numbers, accuracy_class: int) -> Numbers:
+    """Tolerance f_HbetaT of the helix slope (ISO 1328-1:2013, clause 5)."""
+    return (0.05 * np.sqrt(diameter_mm) + 0.35 * np.sqrt(width_mm) + 4.0) * np.sqrt(2.0) ** (accuracy_class - 5)
+
+
+def face_running_in(steel: GearGrade) -> float:
+    """y_beta over F_beta,x: how much of a misalignment wears away (ISO 6336-1, clause 7.4.2)."""
+    return 0.15 if steel.treatment != "through_hardened" else min(320.0 / steel.flank_limit_mpa, 1.0)
+
+
+def pitch_running_in(steel: GearGrade) -> float:
+    """y_alpha over f_pb (ISO 6336-1, clause 8.3.5)."""
+    return 0.075 if steel.treatment != "through_hardened" else min(160.0 / steel.flank_limit_mpa, 1.0)
+
+
+def sun_twist_um(
+    load_n_per_mm: Numbers, width_mm: Numbers, diameter_mm: Numbers, planets: Numbers, steel: GearGrade
+) -> Numbers:
+    """Misalignment by the twist of a sun whose torque enters at one end.
+
+    n_p meshes load a solid cylinder evenly along its face: the pitch circle at the far end lags by
+    4 n_p F_m b / (pi G d^2). With one mesh this is the torsional part, 0.0161 um, of the 0.023 um in the f_sh of
+    ISO 6336-1, clause 7.5.3; the bending part vanishes, because the planets' forces balance.
+    """
+    shear = steel.youngs_modulus_mpa / (2.0 * (1.0 + steel.poisson_ratio))
+    lag_mm = 4.0 * planets * load_n_per_mm / (np.pi * shear) * np.square(width_mm / diameter_mm)
+    return 1e3 * _TORSION_TO_MISALIGNMENT * lag_mm
+
+
+def pin_tilt_um(
+    force_n: Numbers,
+    width_mm: Numbers,
+    gap_mm: float,
+    pin_diameter_mm: float,
+    face_stiffness: Numbers,
+    steel: GearGrade,
+) -> Numbers:
+    """Misalignment by the tilt of a planet on its pin.
+
+    The pins are all that ties the second carrier to the first. Each is a beam of length L, clamped in the carrier, and
+    guided without slope in the second carrier, which gives way sideways. Twice the mesh force in its middle tilts the
+    planet by 2 F L^2 / (16 E I). Both meshes hold against it with c b^3 / 12 each, the pin itself with 4 E I / L.
+
+    Args:
+        force_n: F_m of one mesh.
+        width_mm: face width.
+        gap_mm: between planet and carrier, on either side.
+        pin_diameter_mm: of the pin.
+        face_stiffness: c_gamma,beta of both meshes together.
+        steel: for the pin's modulus of elasticity.
+    """
+    length = width_mm + 2.0 * gap_mm
+    bending = steel.youngs_modulus_mpa * np.pi * pin_diameter_mm**4 / 64.0
+    meshes = 1e3 * face_stiffness * width_mm**3 / 12.0
+    return 1e3 * width_mm * 0.5 * force_n * length / (4.0 * bending / length + meshes)
+
+
+def face_load_factor(misalignment_um: Numbers, face_stiffness: Numbers, load_n_per_mm: Numbers) -> Numbers:
+    """K_Hbeta by the mesh's own stiffness (ISO 6336-1, clause 7.3.2): with contact across the face, or on part of it.
+
+    Args:
+        misalignment_um: F_beta,y, after running in.
+        face_stiffness: c_gamma,beta.
+        load_n_per_mm: F_m / b, with K_A, K_V and the load sharing.
+    """
+    excess = 0.5 * misalignment_um * face_stiffness / load_n_per_mm
+    return np.where(excess <= 1.0, 1.0 + excess, 2.0 * np.sqrt(np.maximum(excess, 1.0)))[()]
+
+
+def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Numbers) -> Numbers:
+    """K_Fbeta = K_Hbeta^N_F, h the tooth depth (ISO 6336-1, clause 7.6)."""
+    slender = np.maximum(width_mm / (TOOTH_DEPTH * module_mm), 1e-9)
+    return np.power(face_factor, 1.0 / (1.0 + 1.0 / slender + 1.0 / np.square(slender)))
+
+
+def transverse_load_factors(
+    load_n_per_mm: Numbers, stiffness: Numbers, deviation_um: Numbers, contact_ratio: Numbers
+) -> tuple[Numbers, Numbers]:
+    """K_Halpha and K_Falpha by method B for contact ratios up to 2, within their bounds (ISO 6336-1, clause 8.3).
+
+    Args:
+        load_n_per_mm: F_tH / b, with K_A, K_V, K_Hbeta and the load sharing.
+        stiffness: c_gamma,alpha.
+        deviation_um: f_pb - y_alpha.
+        contact_ratio: epsilon_alpha.
+    """
+    free = 0.5 * contact_ratio * (0.9 + 0.4 * stiffness * deviation_um / load_n_per_mm)
+    flank = np.clip(free, 1.0, 1.0 / np.square(contact_ratio_factor(contact_ratio)))
+    return flank, np.clip(free, 1.0, 1.0 / root_contact_ratio_factor(contact_ratio))

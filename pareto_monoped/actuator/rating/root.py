@@ -1,0 +1,72 @@
+"""Roots after ISO 6336-3: bending stress, and the load per face width that a root may carry."""
+
+import numpy as np
+
+from pareto_monoped.actuator.rating.geometry import ToothForm
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.materials import GearGrade
+
+SPECIMEN_FACTOR = 2.0
+"""Y_ST, stress correction of the standard test gear (ISO 6336-3, clause 5.3)."""
+SIZE_FACTOR = 1.0
+"""Y_X: 1 up to a module of 5 mm (ISO 6336-3, clause 14)."""
+_TEST_NOTCH = 2.5
+"""q_sT, notch parameter of the standard test gear."""
+
+
+def bending_stress_mpa(load_n_per_mm: Numbers, module_mm: Numbers, form: ToothForm, rim_factor: Numbers) -> Numbers:
+    """sigma_F = F_t K / (b m) Y_F Y_S Y_B (ISO 6336-3, clause 5.2, method B).
+
+    Y_beta is 1 for spur gears, and Y_DT for contact ratios below 2. ``load_n_per_mm`` has all load factors in it.
+    """
+    return load_n_per_mm / module_mm * form.form_factor * form.stress_correction * rim_factor
+
+
+def root_load_n_per_mm(permissible_mpa: Numbers, module_mm: Numbers, form: ToothForm, rim_factor: Numbers) -> Numbers:
+    """Load per face width at which ``bending_stress_mpa`` is ``permissible_mpa``."""
+    return permissible_mpa * module_mm / (form.form_factor * form.stress_correction * rim_factor)
+
+
+def notch_sensitivity_factor(steel: GearGrade, notch: Numbers) -> Numbers:
+    """Y_delta rel T at the reference number of load cycles, method B (ISO 6336-3, clause 12.3)."""
+    gradient, test_gradient = 0.2 * (1.0 + 2.0 * notch), 0.2 * (1.0 + 2.0 * _TEST_NOTCH)
+    layer = steel.slip_layer_mm
+    return (1.0 + np.sqrt(layer * gradient)) / (1.0 + np.sqrt(layer * test_gradient))
+
+
+def static_notch_factor(steel: GearGrade, form: ToothForm) -> Numbers:
+    """Y_delta rel T for static stress (ISO 6336-3, clause 12.3.2)."""
+    if steel.treatment == "case_hardened":
+        return 0.44 * form.stress_correction + 0.12
+    if steel.treatment == "nitrided":
+        return 0.20 * form.stress_correction + 0.60
+    support = 0.82 * (300.0 / steel.yield_mpa) ** 0.25
+    return (1.0 + support * (form.stress_correction - 1.0)) / (1.0 + support)
+
+
+def roughness_factor(steel: GearGrade, roughness_um: float) -> float:
+    """Y_R rel T for Rz from 1 to 40 micrometres, method B (ISO 6336-3, clause 13.3)."""
+    if steel.treatment == "nitrided":
+        return float(4.299 - 3.259 * (roughness_um + 1.0) ** 0.0058)
+    return float(1.674 - 0.529 * (roughness_um + 1.0) ** 0.1)
+
+
+def root_limit_mpa(
+    steel: GearGrade, form: ToothForm, life_factor: Numbers, *, roughness_um: float, bending_factor: float
+) -> Numbers:
+    """sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M, the stress at a safety of 1.
+
+    Args:
+        steel: of the tooth.
+        form: of its root.
+        life_factor: Y_NT.
+        roughness_um: Rz of the fillet.
+        bending_factor: Y_M: 1 for teeth bent one way, less for those bent both ways.
+    """
+    surface = notch_sensitivity_factor(steel, form.notch) * roughness_factor(steel, roughness_um)
+    return steel.root_limit_mpa * SPECIMEN_FACTOR * life_factor * surface * SIZE_FACTOR * bending_factor
+
+
+def static_root_limit_mpa(steel: GearGrade, form: ToothForm, life_factor: float) -> Numbers:
+    """The same for a few load cycles: roughness, size and reversal do not matter then."""
+    return steel.root_limit_mpa * SPECIMEN_FACTOR * life_factor * static_notch_factor(steel, form)

@@ -1,0 +1,166 @@
+"""The full rating of one gear set: every stress, limit, factor and safety, as on a gear calculation sheet."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from pareto_monoped.actuator.rating.flank import contact_stress_mpa
+from pareto_monoped.actuator.rating.root import bending_stress_mpa
+from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, safeties_of
+from pareto_monoped.geometry.shapes import Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearRating:
+    """One gear in one mesh; stresses at the motor's peak torque with all load factors.
+
+    Attributes:
+        gear: ``sun``, ``planet`` or ``ring``.
+        steel: name of its grade.
+        contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H.
+        bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F.
+        overload_flank_safety, overload_root_safety: against static failure under the overload.
+        single_contact_factor: Z_B or Z_D.
+        form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B.
+        flank_cycles, root_cycles: load cycles at the peak torque that do the damage of the whole duty.
+        flank_life_factor, root_life_factor: Z_NT, Y_NT.
+    """
+
+    gear: str
+    steel: str
+    contact_stress_mpa: float
+    contact_limit_mpa: float
+    flank_safety: float
+    bending_stress_mpa: float
+    bending_limit_mpa: float
+    root_safety: float
+    overload_flank_safety: float
+    overload_root_safety: float
+    single_contact_factor: float
+    form_factor: float
+    stress_correction: float
+    rim_factor: float
+    flank_cycles: float
+    root_cycles: float
+    flank_life_factor: float
+    root_life_factor: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshRating:
+    """Sun with planet, or planet with ring.
+
+    Attributes:
+        tangential_force_n: F_t at the motor's peak torque, if the planets shared it evenly.
+        pitch_speed_m_per_s: against the carrier, at the motor's no-load speed.
+        contact_ratio: epsilon_alpha.
+        application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V.
+        face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta.
+        transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha.
+        pinion, wheel: the gears.
+    """
+
+    tangential_force_n: float
+    pitch_speed_m_per_s: float
+    contact_ratio: float
+    application_factor: float
+    sharing_factor: float
+    dynamic_factor: float
+    face_load_factor: float
+    root_face_load_factor: float
+    transverse_load_factor: float
+    root_transverse_load_factor: float
+    pinion: GearRating
+    wheel: GearRating
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rating:
+    """Rating of a gear set at its face width."""
+
+    sun_mesh: MeshRating
+    ring_mesh: MeshRating
+
+    @property
+    def gears(self) -> Iterator[GearRating]:
+        """Sun, planet against the sun, planet against the ring, ring."""
+        for mesh in (self.sun_mesh, self.ring_mesh):
+            yield mesh.pinion
+            yield mesh.wheel
+
+    @property
+    def flank_safety(self) -> float:
+        """The least S_H of all flanks."""
+        return min(gear.flank_safety for gear in self.gears)
+
+    @property
+    def root_safety(self) -> float:
+        """The least S_F of all roots."""
+        return min(gear.root_safety for gear in self.gears)
+
+    def of(self, gear: str) -> tuple[float, float]:
+        """The least S_H and S_F of ``sun``, ``planet`` or ``ring``."""
+        found = [one for one in self.gears if one.gear == gear]
+        return min(one.flank_safety for one in found), min(one.root_safety for one in found)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        return asdict(self)
+
+
+def rate(stage: Stage, width_mm: float) -> Rating:
+    """The rating of a stage of plain numbers at a face width."""
+    sun, ring = stage.loads(width_mm)
+    return Rating(sun_mesh=_mesh(stage, stage.sun_mesh, sun), ring_mesh=_mesh(stage, stage.ring_mesh, ring))
+
+
+def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad) -> MeshRating:
+    acting = stage.acting(mesh, at)
+    return MeshRating(
+        tangential_force_n=float(mesh.force_n),
+        pitch_speed_m_per_s=float(mesh.speed_m_per_s),
+        contact_ratio=float(mesh.contact_ratio),
+        application_factor=stage.settings.parts.rating.application_factor,
+        sharing_factor=float(mesh.sharing),
+        dynamic_factor=float(at.dynamic),
+        face_load_factor=float(at.face_flank),
+        root_face_load_factor=float(at.face_root),
+        transverse_load_factor=float(at.transverse_flank),
+        root_transverse_load_factor=float(at.transverse_root),
+        pinion=_gear(stage, mesh, mesh.pinion, acting),
+        wheel=_gear(stage, mesh, mesh.wheel, acting),
+    )
+
+
+def _gear(stage: Stage, mesh: Mesh, member: Member, acting: Safeties) -> GearRating:
+    safeties = safeties_of(member.carries, acting)
+    contact = contact_stress_mpa(
+        acting.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
+    )
+    bending = bending_stress_mpa(acting.root, stage.gears.module_mm, member.form, member.rim_factor)
+    return GearRating(
+        gear=member.gear,
+        steel=member.steel.name,
+        contact_stress_mpa=_number(contact),
+        contact_limit_mpa=_number(member.flank_limit_mpa),
+        flank_safety=_number(safeties.flank),
+        bending_stress_mpa=_number(bending),
+        bending_limit_mpa=_number(member.root_limit_mpa),
+        root_safety=_number(safeties.root),
+        overload_flank_safety=_number(safeties.overload_flank),
+        overload_root_safety=_number(safeties.overload_root),
+        single_contact_factor=_number(member.single_contact),
+        form_factor=_number(member.form.form_factor),
+        stress_correction=_number(member.form.stress_correction),
+        rim_factor=_number(member.rim_factor),
+        flank_cycles=_number(member.flank_cycles),
+        root_cycles=_number(member.root_cycles),
+        flank_life_factor=_number(member.flank_life),
+        root_life_factor=_number(member.root_life),
+    )
+
+
+def _number(value: Numbers) -> float:
+    return float(np.asarray(value))

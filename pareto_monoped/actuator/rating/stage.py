@@ -1,0 +1,226 @@
+"""A planetary stage, or thousands of them at once, rated at any face width.
+
+Everything that does not depend on the face width is computed once: what each mesh and each flank and root may carry per
+face width. What they have to carry then takes a few dozen operations per width, which makes the search fast.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.rating import load
+from pareto_monoped.actuator.rating.geometry import ToothForm
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.materials import GearGrade
+
+
+class Safeties(NamedTuple):
+    """S_H and S_F, under the duty and under one overload."""
+
+    flank: Numbers
+    root: Numbers
+    overload_flank: Numbers
+    overload_root: Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """One gear in one mesh, with everything that its rating needs besides the load.
+
+    Attributes:
+        gear: ``sun``, ``planet`` or ``ring``.
+        steel: its grade.
+        contact_factors: Z_H Z_E Z_epsilon, and Z_B or Z_D.
+        single_contact: Z_B or Z_D alone.
+        form: of its tooth.
+        rim_factor: Y_B.
+        flank_cycles, root_cycles: equivalent load cycles at the peak torque.
+        flank_life, root_life: Z_NT and Y_NT at these.
+        flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG.
+        overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure.
+        carries: load per face width at a safety of 1, each with its own load factors.
+    """
+
+    gear: str
+    steel: GearGrade
+    contact_factors: Numbers
+    single_contact: Numbers
+    form: ToothForm
+    rim_factor: Numbers
+    flank_cycles: Numbers
+    root_cycles: Numbers
+    flank_life: Numbers
+    root_life: Numbers
+    flank_limit_mpa: Numbers
+    root_limit_mpa: Numbers
+    overload_flank_limit_mpa: float
+    overload_root_limit_mpa: Numbers
+    carries: Safeties
+
+
+class MeshLoad(NamedTuple):
+    """What a mesh carries at a face width: the nominal load per face width in N/mm, and its factors."""
+
+    nominal_n_per_mm: Numbers
+    dynamic: Numbers
+    face_flank: Numbers
+    face_root: Numbers
+    transverse_flank: Numbers
+    transverse_root: Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mesh:
+    """Sun with planet, or planet with ring; the pinion is the smaller gear.
+
+    Attributes:
+        internal: whether the wheel is the ring.
+        pinion, wheel: both gears.
+        pinion_teeth, wheel_teeth, diameter_mm, contact_ratio: z1, z2, d1, epsilon_alpha.
+        force_n: tangential force at the motor's peak torque, shared evenly by the planets.
+        sharing: K_gamma.
+        speed_m_per_s: of the pitch point against the carrier, at the motor's no-load speed.
+        pair_stiffness: c'.
+        pitch_deviation_um: f_pb less running in.
+    """
+
+    internal: bool
+    pinion: Member
+    wheel: Member
+    pinion_teeth: Numbers
+    wheel_teeth: Numbers
+    diameter_mm: Numbers
+    contact_ratio: Numbers
+    force_n: Numbers
+    sharing: Numbers
+    speed_m_per_s: Numbers
+    pair_stiffness: Numbers
+    pitch_deviation_um: Numbers
+
+    @property
+    def ratio(self) -> Numbers:
+        """Gear ratio u."""
+        return self.wheel_teeth / self.pinion_teeth
+
+    @property
+    def least_carried(self) -> Safeties:
+        """Load per face width at a safety of 1 of the weaker gear."""
+        return Safeties(*map(np.minimum, self.pinion.carries, self.wheel.carries))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stage:
+    """Both meshes of one gear set, or of arrays of them, with the limits of the face width.
+
+    Attributes:
+        gears: the gear sets.
+        sun_mesh, ring_mesh: the meshes.
+        settings: of stage 1.
+        width_low_mm, width_high_mm: least and largest face width allowed.
+        carried: ``Mesh.least_carried`` of both meshes.
+    """
+
+    gears: GearSet
+    sun_mesh: Mesh
+    ring_mesh: Mesh
+    settings: ActuatorSettings
+    width_low_mm: Numbers
+    width_high_mm: Numbers
+    carried: tuple[Safeties, Safeties]
+
+    def loads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
+        """Load factors of sun mesh and ring mesh at a face width.
+
+        F_m has the load sharing, K_A and K_V in it. The planet's tilt on its pin misaligns both meshes.
+        """
+        data, steels = self.settings.parts.rating, self.settings.gear_steels
+        meshes = (self.sun_mesh, self.ring_mesh)
+        nominal = [mesh.force_n / width_mm for mesh in meshes]
+        applied = [data.application_factor * mesh.sharing * w for mesh, w in zip(meshes, nominal, strict=True)]
+        dynamic = [
+            load.dynamic_factor(w, mesh.speed_m_per_s, mesh.pinion_teeth, mesh.ratio, data.accuracy_class)
+            for mesh, w in zip(meshes, applied, strict=True)
+        ]
+        mean = [w * factor for w, factor in zip(applied, dynamic, strict=True)]
+        stiff = [
+            load.mesh_stiffness(mesh.pair_stiffness, mesh.contact_ratio, w)
+            for mesh, w in zip(meshes, applied, strict=True)
+        ]
+        tilt: Numbers = 0.0
+        if data.second_carrier == "pins":
+            carrier = self.settings.parts.carrier
+            tilt = load.pin_tilt_um(
+                0.5 * (mean[0] + mean[1]) * width_mm,
+                width_mm,
+                carrier.planet_clearance_mm,
+                carrier.pin_diameter_mm,
+                load.FACE_STIFFNESS_SHARE * (stiff[0] + stiff[1]),
+                steels.planet,
+            )
+        twist = load.sun_twist_um(mean[0], width_mm, self.sun_mesh.diameter_mm, self.gears.planets, steels.sun)
+        return (
+            self._load(self.sun_mesh, width_mm, nominal[0], dynamic[0], mean[0], stiff[0], tilt + twist),
+            self._load(self.ring_mesh, width_mm, nominal[1], dynamic[1], mean[1], stiff[1], tilt),
+        )
+
+    def _load(
+        self,
+        mesh: Mesh,
+        width_mm: Numbers,
+        nominal: Numbers,
+        dynamic: Numbers,
+        mean: Numbers,
+        stiffness: Numbers,
+        elastic_um: Numbers,
+    ) -> MeshLoad:
+        """The factors of one mesh from its mean load per face width and its elastic misalignment."""
+        grade, module = self.settings.parts.rating.accuracy_class, self.gears.module_mm
+        made = np.hypot(
+            load.helix_deviation_um(mesh.diameter_mm, width_mm, grade),
+            load.helix_deviation_um(mesh.wheel_teeth * module, width_mm, grade),
+        )
+        worn = 0.5 * (load.face_running_in(mesh.pinion.steel) + load.face_running_in(mesh.wheel.steel))
+        face = load.face_load_factor((1.0 - worn) * (elastic_um + made), load.FACE_STIFFNESS_SHARE * stiffness, mean)
+        flank, root = load.transverse_load_factors(mean * face, stiffness, mesh.pitch_deviation_um, mesh.contact_ratio)
+        return MeshLoad(nominal, dynamic, face, load.root_face_load_factor(face, width_mm, module), flank, root)
+
+    def acting(self, mesh: Mesh, at: MeshLoad) -> Safeties:
+        """Load per face width with all its factors, for flank and root, under the duty and under the overload.
+
+        An overload is a single event: K_A and K_V do not apply. The load distribution is that of the duty, which errs
+        to the safe side, because a higher load evens it out.
+        """
+        data = self.settings.parts.rating
+        shared = at.nominal_n_per_mm * mesh.sharing
+        flank, root = at.face_flank * at.transverse_flank, at.face_root * at.transverse_root
+        duty, over = data.application_factor * at.dynamic * shared, data.overload_factor * shared
+        return Safeties(duty * flank, duty * root, over * flank, over * root)
+
+    def safeties(self, width_mm: Numbers) -> Safeties:
+        """The least safety factors of all flanks and roots at a face width."""
+        both = [
+            safeties_of(carried, self.acting(mesh, at))
+            for mesh, carried, at in zip(
+                (self.sun_mesh, self.ring_mesh), self.carried, self.loads(width_mm), strict=True
+            )
+        ]
+        return Safeties(*map(np.minimum, *both))
+
+
+def safeties_of(carries: Safeties, acting: Safeties) -> Safeties:
+    """Safety factors: contact stress grows with the root of the load, bending stress with the load."""
+    return Safeties(
+        np.sqrt(carries.flank / acting.flank),
+        carries.root / acting.root,
+        np.sqrt(carries.overload_flank / acting.overload_flank),
+        carries.overload_root / acting.overload_root,
+    )
+
+
+def required(settings: ActuatorSettings) -> Safeties:
+    """The least safety factors that the settings allow."""
+    data = settings.parts.rating
+    return Safeties(data.flank_safety, data.root_safety, data.overload_flank_safety, data.overload_root_safety)

@@ -1,0 +1,353 @@
+"""ISO 6336 once more, plainly and slowly, one gear set at a time: an oracle for ``pareto_monoped.actuator.rating``.
+
+Written from the standard's equations and from geometry, with other means than the product: the fillet is traced as the
+envelope of the rack's rounding and the 30 or 60 degree tangent is found by bisection; contact stress is Hertz' at the
+point in question; the pin is a beam solved by stiffness matrices; the sun's twist is summed slice by slice.
+Lengths in mm, forces in N, stresses in MPa.
+"""
+
+from dataclasses import dataclass
+from math import atan2, ceil, cos, hypot, log, pi, sin, sqrt, tan
+
+import numpy as np
+
+ALPHA = pi / 9.0
+RACK_ADDENDUM, RACK_DEDENDUM, RACK_FILLET = 1.0, 1.25, 0.38
+E_STEEL, NU_STEEL = 206000.0, 0.3
+K1 = {5: 7.5, 6: 14.9, 7: 26.8}
+STATIC_LIFE = {
+    ("case_hardened", "flank"): (1e5, 1.6, 5e7),
+    ("case_hardened", "root"): (1e3, 2.5, 3e6),
+    ("nitrided", "flank"): (1e5, 1.3, 2e6),
+    ("nitrided", "root"): (1e3, 1.6, 3e6),
+    ("through_hardened", "flank"): (1e5, 1.6, 5e7),
+    ("through_hardened", "root"): (1e4, 2.5, 3e6),
+}
+
+
+def inv(angle):
+    return tan(angle) - angle
+
+
+def bisect(function, low, high):
+    """Root of a function that changes its sign between two places."""
+    below = function(low) > 0.0
+    assert below != (function(high) > 0.0)
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if (function(middle) > 0.0) == below:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@dataclass
+class Fillet:
+    """The fillet of one tooth, module 1, with the tooth's centre line as y axis and the gear's centre as origin."""
+
+    teeth: int
+    internal: bool
+
+    def point(self, shift):
+        """Point and direction of the normal where the rack has moved by ``shift`` along the pitch line.
+
+        The rounding's centre, the pitch point and the point of contact lie on one line.
+        """
+        sign = -1.0 if self.internal else 1.0
+        radius = sign * self.teeth / 2.0
+        half_rack_tooth = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
+        centre = (half_rack_tooth + shift, -(RACK_DEDENDUM - RACK_FILLET))
+        far = hypot(*centre)
+        normal = (centre[0] / far, centre[1] / far)
+        touch = (centre[0] + RACK_FILLET * normal[0], centre[1] + RACK_FILLET * normal[1])
+        # The gear's centre lies below the pitch point (external) or above it (internal). Turn the gear back, then turn
+        # the middle of the tooth on the right, half a pitch away, onto the y axis.
+        turn = shift / radius + pi / (sign * self.teeth)
+        x, y = touch[0], touch[1] + radius
+        return (
+            (x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn)),
+            (normal[0] * cos(turn) - normal[1] * sin(turn), normal[0] * sin(turn) + normal[1] * cos(turn)),
+        )
+
+    def tangent_to_axis(self, shift):
+        """Angle between the fillet's tangent and the tooth's centre line, 90 degrees at the bottom of the space."""
+        _, (nx, ny) = self.point(shift)
+        return atan2(-ny, nx)
+
+    def critical(self):
+        """Half thickness, height and fillet radius of the critical section."""
+        wanted = pi / 3.0 if self.internal else pi / 6.0
+        # At the first shift the rounding's centre is below the pitch point; its normal then points down the space.
+        half = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
+        shift = bisect(lambda s: self.tangent_to_axis(s) - wanted, -half, -half + 2.0)
+        step = 1e-4
+        (x0, y0), (x1, y1), (x2, y2) = (self.point(shift + k * step)[0] for k in (-1, 0, 1))
+        dx, dy, ddx, ddy = (x2 - x0) / 2, (y2 - y0) / 2, x2 - 2 * x1 + x0, y2 - 2 * y1 + y0
+        return abs(x1), abs(y1), (dx * dx + dy * dy) ** 1.5 / abs(dx * ddy - dy * ddx)
+
+
+def tip(teeth, internal):
+    return teeth / 2.0 - RACK_ADDENDUM if internal else teeth / 2.0 + RACK_ADDENDUM
+
+
+def base(teeth):
+    return teeth / 2.0 * cos(ALPHA)
+
+
+def on_path(pinion, wheel, internal):
+    """Where contact begins (the wheel's tip) and ends (the pinion's), as the pinion's radii of curvature, module 1."""
+    distance = (wheel - pinion if internal else wheel + pinion) / 2.0
+    wheel_curvature = sqrt(tip(wheel, internal) ** 2 - base(wheel) ** 2)
+    line = distance * sin(ALPHA)
+    begin = wheel_curvature - line if internal else line - wheel_curvature
+    return begin, sqrt(tip(pinion, False) ** 2 - base(pinion) ** 2)
+
+
+def contact_ratio(pinion, wheel, internal):
+    begin, end = on_path(pinion, wheel, internal)
+    return (end - begin) / (pi * cos(ALPHA))
+
+
+def form_and_notch(teeth, mate, internal, ring):
+    """Y_F, Y_S and q_s of a gear; ``internal`` says whether the mesh has a ring, ``ring`` whether the gear is it."""
+    pitch = pi * cos(ALPHA)
+    if ring:
+        begin, end = on_path(mate, teeth, True)
+        # Single contact nearest to the ring's tip: one base pitch before the pair leaves at the planet's tip. Curvature
+        # of the ring is that of the planet plus the distance of the base circles' tangent points.
+        curvature = (teeth - mate) / 2.0 * sin(ALPHA) + end - pitch
+    elif internal:
+        begin, end = on_path(teeth, mate, True)
+        curvature = begin + pitch
+    else:
+        begin, end = on_path(teeth, mate, False)
+        curvature = begin + pitch
+    angle = atan2(curvature, base(teeth))
+    half_thickness, height, radius = Fillet(teeth, ring).critical()
+    if ring:
+        force_angle = angle + (pi / (2.0 * teeth) - inv(ALPHA) + inv(angle))
+        arm = height - base(teeth) / cos(force_angle)
+    else:
+        force_angle = angle - (pi / (2.0 * teeth) + inv(ALPHA) - inv(angle))
+        arm = base(teeth) / cos(force_angle) - height
+    chord = 2.0 * half_thickness
+    form = 6.0 * arm * cos(force_angle) / (chord**2 * cos(ALPHA))
+    slender, notch = chord / arm, chord / (2.0 * radius)
+    return form, (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender)), notch
+
+
+def hertz_load(stress, pinion, wheel, module, internal, at_wheel):
+    """Tangential load per face width, with Z_epsilon, at which the contact stress of a gear is ``stress``.
+
+    At the inner point of single pair contact of the gear or at the pitch point, whichever has less curvature radius.
+    """
+    begin, end = on_path(pinion, wheel, internal)
+    line = (wheel - pinion if internal else wheel + pinion) / 2.0 * sin(ALPHA)
+    places = [pinion / 2.0 * sin(ALPHA)]
+    if not at_wheel:
+        places.append(end - pi * cos(ALPHA))
+    elif not internal:
+        places.append(begin + pi * cos(ALPHA))
+    reduced = []
+    for first in places:
+        second = line + first if internal else line - first
+        reduced.append(first * second / (second - first if internal else second + first))
+    radius = module * min(reduced)
+    compliance = 2.0 * (1.0 - NU_STEEL**2) / E_STEEL
+    normal = stress**2 * pi * compliance * radius
+    epsilon = contact_ratio(pinion, wheel, internal)
+    return normal * cos(ALPHA) / ((4.0 - epsilon) / 3.0)
+
+
+def life(treatment, kind, cycles):
+    """Z_NT or Y_NT, by interpolation in logarithms between the standard's points."""
+    start, factor, reference = STATIC_LIFE[treatment, kind]
+    return float(np.exp(np.interp(log(cycles), [log(start), log(reference), log(1e10)], [log(factor), 0.0, log(0.85)])))
+
+
+def damage_cycles(passes, levels, treatment, kind, jumps):
+    """Cycles at full torque that use up as much life as the levels do: sums of n / N along the sloping line."""
+    start, factor, reference = STATIC_LIFE[treatment, kind]
+    slope = log(reference / start) / log(factor)
+
+    def allowed(stress):
+        return reference * stress ** (-slope)
+
+    total = 0.0
+    for share, angle in levels:
+        stress = sqrt(share) if kind == "flank" else share
+        total += jumps * ceil(passes * angle - 1e-9) / allowed(stress)
+    return total * allowed(1.0)
+
+
+def pin_tilt(force, width, gap, diameter, stiffness):
+    """Slope of the planet on its pin: two beam elements, clamped at one end, guided without slope at the other.
+
+    ``stiffness`` is that of both meshes against tilting, in N mm per rad; twice ``force`` acts in the middle.
+    """
+    length = (width + 2.0 * gap) / 2.0
+    bending = E_STEEL * pi * diameter**4 / 64.0
+    one = (
+        bending
+        / length**3
+        * np.array(
+            [
+                [12, 6 * length, -12, 6 * length],
+                [6 * length, 4 * length**2, -6 * length, 2 * length**2],
+                [-12, -6 * length, 12, -6 * length],
+                [6 * length, 2 * length**2, -6 * length, 4 * length**2],
+            ]
+        )
+    )
+    whole = np.zeros((6, 6))
+    whole[:4, :4] += one
+    whole[2:, 2:] += one
+    whole[3, 3] += stiffness
+    free = [2, 3, 4]  # deflection and slope in the middle, deflection at the guided end
+    loads = np.array([2.0 * force, 0.0, 0.0])
+    return float(np.linalg.solve(whole[np.ix_(free, free)], loads)[1])
+
+
+def sun_lag(load, width, diameter, planets, slices=20000):
+    """How far the pitch circle of the sun's far end lags behind that of the driven end, summed slice by slice."""
+    polar, shear = pi * diameter**4 / 32.0, E_STEEL / (2.0 * (1.0 + NU_STEEL))
+    x = (np.arange(slices) + 0.5) / slices * width
+    torque = planets * load * (width - x) * diameter / 2.0
+    return float(np.sum(torque / (shear * polar)) * width / slices * diameter / 2.0)
+
+
+def mesh_loads(sets, data, width, meshes):
+    """K factors of both meshes; ``sets`` holds what the gear set and motor give, ``data`` the settings."""
+    found = []
+    for mesh in meshes:
+        epsilon = contact_ratio(mesh["z1"], mesh["z2"], mesh["internal"])
+        load = data.application_factor * sets["sharing"] * sets["force"] / width
+        pace = sets["speed"] * mesh["z1"] / 100.0 * sqrt(mesh["u"] ** 2 / (1.0 + mesh["u"] ** 2))
+        slope = 2.0 if pace <= 0.2 else max(2.071 - 0.357 * pace, 2.071 - 0.357 * 2.9)
+        dynamic = 1.0 + (K1[data.accuracy_class] / max(load, 100.0) + 0.0193) * pace * slope
+        q = 0.04723 + 0.15551 / mesh["z1"] + (0.0 if mesh["internal"] else 0.25791 / mesh["z2"])
+        single = 0.8 / q * (1.0 + 0.5 * (1.2 - 1.25)) * min(load / 100.0, 1.0) ** 0.25
+        found.append(
+            {"K_V": dynamic, "mean": load * dynamic, "stiff": single * (0.75 * epsilon + 0.25), "eps": epsilon}
+        )
+    both = sum(0.85e3 * one["stiff"] * width**3 / 12.0 for one in found)
+    force = 0.5 * (found[0]["mean"] + found[1]["mean"]) * width
+    tilt = pin_tilt(force, width, sets["gap"], sets["pin"], both) if data.second_carrier == "pins" else 0.0
+    lag = sun_lag(found[0]["mean"], width, sets["module"] * meshes[0]["z1"], sets["planets"])
+    for one, mesh, twist in zip(found, meshes, (lag, 0.0), strict=True):
+        grade = sqrt(2.0) ** (data.accuracy_class - 5)
+        slopes = [
+            grade * (0.05 * sqrt(sets["module"] * z) + 0.35 * sqrt(width) + 4.0) for z in (mesh["z1"], mesh["z2"])
+        ]
+        run_in = sum(
+            0.15 if steel.treatment != "through_hardened" else 320.0 / steel.flank_limit_mpa for steel in mesh["steels"]
+        )
+        left = (1.0 - run_in / 2.0) * (1e3 * (1.33 * twist + tilt * width) + hypot(*slopes))
+        # Load per width rises by c times the misalignment across the face, or over the part that still touches.
+        rise = 0.85 * one["stiff"] * left
+        one["K_Hb"] = (one["mean"] + rise / 2.0) / one["mean"]
+        if rise > 2.0 * one["mean"]:
+            one["K_Hb"] = sqrt(2.0 * rise / one["mean"])
+        slender = width / (2.25 * sets["module"])
+        one["K_Fb"] = one["K_Hb"] ** (slender**2 / (1.0 + slender + slender**2))
+        run_in = sum(
+            0.075 if steel.treatment != "through_hardened" else 160.0 / steel.flank_limit_mpa
+            for steel in mesh["steels"]
+        )
+        pitch = grade * (0.001 * sets["module"] * mesh["z2"] + 0.4 * sets["module"] + 5.0) * cos(ALPHA)
+        over = one["mean"] * one["K_Hb"]
+        share = one["eps"] / 2.0 * (0.9 + 0.4 * one["stiff"] * (1.0 - run_in / 2.0) * pitch / over)
+        one["K_Ha"] = min(max(share, 1.0), 3.0 / (4.0 - one["eps"]))
+        one["K_Fa"] = min(max(share, 1.0), 1.0 / (0.25 + 0.75 / one["eps"]))
+    return found
+
+
+def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
+    """Safety factors by gear and mesh: {(gear, mesh): (S_H, S_F, overload S_H, overload S_F)}, and the K factors."""
+    data, duty, steels = settings.parts.rating, settings.parts.duty, settings.gear_steels
+    zs, zp, zr, module, planets = (
+        gears.sun_teeth,
+        gears.planet_teeth,
+        gears.ring_teeth,
+        gears.module_mm,
+        gears.planets,
+    )
+    table = data.load_sharing_fixed if data.sun_support == "fixed" else data.load_sharing_floating
+    ratio = 1.0 + zr / zs
+    sets = {
+        "force": motor.peak_torque_n_m * 1e3 / planets / (module * zs / 2.0),
+        "speed": module * zs / 2000.0 * motor.no_load_speed_rad_per_s * (ratio - 1.0) / ratio,
+        "sharing": table[planets - 2],
+        "module": module,
+        "planets": planets,
+        "gap": settings.parts.carrier.planet_clearance_mm,
+        "pin": settings.parts.carrier.pin_diameter_mm,
+    }
+    meshes = [
+        {"z1": zs, "z2": zp, "u": zp / zs, "internal": False, "steels": (steels.sun, steels.planet)},
+        {"z1": zp, "z2": zr, "u": zr / zp, "internal": True, "steels": (steels.planet, steels.ring)},
+    ]
+    loads = mesh_loads(sets, data, width, meshes)
+    turns = (ratio - 1.0) / (2.0 * pi)
+    passes = {"sun": planets * turns, "planet": turns * zs / zp, "ring": planets * turns * zs / zr}
+    bores = {"sun": sun_bore, "planet": settings.parts.gears.planet_bore_mm}
+    safety = {}
+    for name, mesh, load in zip(("sun mesh", "ring mesh"), meshes, loads, strict=True):
+        members = ("sun", "planet") if name == "sun mesh" else ("planet", "ring")
+        nominal = sets["sharing"] * sets["force"] / width
+        for which, gear in enumerate(members):
+            steel, mate = mesh["steels"][which], mesh["steels"][1 - which]
+            teeth, other = (mesh["z1"], mesh["z2"]) if which == 0 else (mesh["z2"], mesh["z1"])
+            form, notch_stress, notch = form_and_notch(teeth, other, mesh["internal"], gear == "ring")
+            if gear == "ring":
+                rim = ring_wall / module
+                y_b = 1.0 if rim >= 3.5 else 1.15 * log(8.324 / rim)
+            elif bores[gear] is None:
+                y_b = 1.0
+            else:
+                rim = (module * (teeth / 2.0 - 1.25) - bores[gear] / 2.0) / (2.25 * module)
+                y_b = 1.0 if rim >= 1.2 else 1.6 * log(2.242 / rim)
+            limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty)
+            acting_h, acting_f = load["K_Hb"] * load["K_Ha"] * nominal, load["K_Fb"] * load["K_Fa"] * nominal
+            duty_factor = data.application_factor * load["K_V"]
+            hertz = [
+                hertz_load(limit, mesh["z1"], mesh["z2"], module, mesh["internal"], which == 1) for limit in limits[::2]
+            ]
+            bend = [limit * module / (form * notch_stress * y_b) for limit in limits[1::2]]
+            safety[gear, name] = (
+                sqrt(hertz[0] / (acting_h * duty_factor)),
+                bend[0] / (acting_f * duty_factor),
+                sqrt(hertz[1] / (acting_h * data.overload_factor)),
+                bend[1] / (acting_f * data.overload_factor),
+            )
+    return safety, loads
+
+
+def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
+    """sigma_HG, sigma_FG, and both against static failure."""
+    levels = list(zip(duty.torque_shares, duty.output_angles_rad, strict=True))
+    kind = steel.treatment
+    z_nt = life(kind, "flank", damage_cycles(passes, levels, kind, "flank", duty.jumps))
+    y_nt = life(kind, "root", damage_cycles(passes, levels, kind, "root", duty.jumps))
+    soft = kind == "through_hardened" and mate.treatment != "through_hardened"
+    z_w = 1.2 - (steel.hardness_hv - 130.0) / 1700.0 if soft else 1.0
+    support = (1.0 + sqrt(steel.slip_layer_mm * 0.2 * (1.0 + 2.0 * notch))) / (
+        1.0 + sqrt(steel.slip_layer_mm * 0.2 * 6.0)
+    )
+    rough = data.root_roughness_um + 1.0
+    rough = 4.299 - 3.259 * rough**0.0058 if kind == "nitrided" else 1.674 - 0.529 * rough**0.1
+    reversal = data.reversed_bending_factor if gear == "planet" else 1.0
+    if kind == "case_hardened":
+        static = 0.44 * notch_stress + 0.12
+    elif kind == "nitrided":
+        static = 0.20 * notch_stress + 0.60
+    else:
+        weight = 0.82 * (300.0 / steel.yield_mpa) ** 0.25
+        static = (1.0 + weight * (notch_stress - 1.0)) / (1.0 + weight)
+    return (
+        steel.flank_limit_mpa * z_nt * data.flank_finish_factor * z_w,
+        2.0 * steel.root_limit_mpa * y_nt * support * rough * reversal,
+        steel.flank_limit_mpa * STATIC_LIFE[kind, "flank"][1] * z_w,
+        2.0 * steel.root_limit_mpa * STATIC_LIFE[kind, "root"][1] * static,
+    )

@@ -1,0 +1,168 @@
+"""Single factors: points of the standard's own curves, closed forms and limits."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.rating import load
+from pareto_monoped.actuator.rating.build import load_sharing
+from pareto_monoped.actuator.rating.flank import elasticity_factor, work_hardening_factor
+from pareto_monoped.actuator.rating.geometry import (
+    external_rim_factor,
+    internal_rim_factor,
+    single_contact_factors,
+    tooth_form,
+    zone_factor,
+)
+from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, equivalent_cycles, passes_per_rad
+from pareto_monoped.actuator.rating.root import roughness_factor
+from pareto_monoped.actuator.rating_data import DutyData
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.errors import InputError
+from pareto_monoped.materials import GEAR_GRADES
+
+CASE_HARDENED = GEAR_GRADES["case_hardened_18crnimo7_6"]
+TEMPERED = GEAR_GRADES["through_hardened_42crmo4"]
+
+
+def test_figures_that_every_handbook_prints():
+    """Z_H of 20 degrees on standard centres, and Z_E of steel on steel: ISO 6336-2, Niemann/Winter, Shigley."""
+    assert zone_factor() == pytest.approx(2.495, abs=5e-4)
+    assert elasticity_factor(CASE_HARDENED, TEMPERED) == pytest.approx(189.8, abs=0.05)
+
+
+def test_a_rack_has_the_form_factor_of_a_straight_sided_tooth():
+    """In the limit of many teeth, by hand: fillet of 0.38 modules round a point 0.87 below the pitch line."""
+    a = np.pi / 9
+    centre = np.pi / 4 + 0.87 * np.tan(a) + 0.38 / np.cos(a)  # from the tooth's middle
+    epsilon = 1.98
+    chord = 2 * (centre - 0.38 * np.cos(np.pi / 6))
+    # The load's height on a rack: back from the tip by the path's share beyond single contact.
+    height = 1.0 - (epsilon - 1.0) * np.pi * np.cos(a) * np.sin(a)
+    # It meets the middle of the tooth at the height of its flank point less what the slope takes.
+    arm = height + (1.25 - 0.38 * (1 - np.sin(np.pi / 6))) - (np.pi / 4 - height * np.tan(a)) * np.tan(a)
+    found = tooth_form(1e7, epsilon, internal=False)
+    assert found.form_factor == pytest.approx(6 * arm / chord**2, rel=1e-4)
+    assert found.notch == pytest.approx(chord / (2 * 0.38), rel=1e-4)
+
+
+def test_life_curves_pass_through_their_points():
+    for curves, points in (
+        (FLANK_CURVES, {"case_hardened": (1e5, 1.6, 5e7), "nitrided": (1e5, 1.3, 2e6)}),
+        (
+            ROOT_CURVES,
+            {"case_hardened": (1e3, 2.5, 3e6), "nitrided": (1e3, 1.6, 3e6), "through_hardened": (1e4, 2.5, 3e6)},
+        ),
+    ):
+        for treatment, (start, factor, reference) in points.items():
+            cycles = np.array([1.0, start, reference, 1e10, 1e12])
+            assert curves[treatment].factor(cycles) == pytest.approx([factor, factor, 1.0, 0.85, 0.85])
+
+
+@pytest.mark.parametrize(
+    ("curve", "torque_exponent"),
+    [
+        (FLANK_CURVES["case_hardened"], 6.610),
+        (FLANK_CURVES["nitrided"], 5.709),
+        (ROOT_CURVES["case_hardened"], 8.738),
+        (ROOT_CURVES["nitrided"], 17.035),
+        (ROOT_CURVES["through_hardened"], 6.225),
+    ],
+)
+def test_slopes_are_those_that_iso_6336_6_prints(curve, torque_exponent):
+    """Table A.1 of ISO 6336-6 gives the exponents of the equivalent torque; ours follow from the curves' points."""
+    half = 0.5 if curve in FLANK_CURVES.values() else 1.0
+    assert half / curve.exponent == pytest.approx(torque_exponent, abs=2e-3)
+
+
+def test_equivalent_cycles_by_hand():
+    """Levels of 1.0 and 0.5 over 1 and 2 rad; 0.6 passes per rad make 1 and 2 whole ones; slope 8.738."""
+    duty = DutyData(jumps=1e4, torque_shares=(1.0, 0.5), output_angles_rad=(1.0, 2.0))
+    expected = 1e4 * (1.0 + 2.0 * 0.5**8.738)
+    found = equivalent_cycles(0.6, duty, ROOT_CURVES["case_hardened"].exponent, flank=False)
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+def test_passes_by_counting_meshes():
+    """18/36/90 with three planets, carrier held: over one turn of the output the sun turns 5 times against it."""
+    one = GearSet(sun_teeth=18, planet_teeth=36, ring_teeth=90, module_mm=0.5, planets=3)
+    per_turn = [2.0 * np.pi * passes for passes in passes_per_rad(one)]
+    assert per_turn == pytest.approx([5.0 * 3, 2.5, 3.0])
+
+
+@given(cycles=st.floats(1.0, 1e11), more=st.floats(1.0, 1e3))
+def test_life_falls_with_cycles(cycles, more):
+    for curve in (*FLANK_CURVES.values(), *ROOT_CURVES.values()):
+        assert curve.factor(cycles * more) <= curve.factor(cycles)
+
+
+def test_rim_factors_meet_one_where_the_standard_ends_them():
+    assert external_rim_factor(1.2) == 1.0
+    assert external_rim_factor(1.2 - 1e-9) == pytest.approx(1.0, abs=2e-4)
+    assert external_rim_factor(0.5) == pytest.approx(1.6 * np.log(4.484))
+    assert internal_rim_factor(3.5) == 1.0
+    assert internal_rim_factor(1.75) == pytest.approx(1.15 * np.log(8.324 / 1.75))
+
+
+def test_single_contact_factors_by_hand():
+    """18/36: M1 = 0.36397 / sqrt(0.28188 x 0.40512) with the contact ratio of 1.61; the wheel's is below 1."""
+    pinion, wheel = single_contact_factors(18, 36, 1.61, internal=False)
+    assert (pinion, wheel) == (pytest.approx(1.077, abs=1e-3), 1.0)
+    assert single_contact_factors(36, 90, 1.94, internal=True)[1] == 1.0
+
+
+def test_twist_of_a_single_mesh_is_the_torsional_share_of_iso_6336_1():
+    """0.0161 um per N/mm and (b/d)^2: 70 percent of the 0.023 that stand for bending and torsion together."""
+    twist = load.sun_twist_um(1.0, 20.0, 20.0, 1, CASE_HARDENED) / 1.33
+    assert twist == pytest.approx(0.7 * 0.023, rel=5e-3)
+
+
+def test_a_planet_on_stiff_pins_does_not_tilt_and_on_soft_ones_the_meshes_hold_it():
+    tilt = [load.pin_tilt_um(400.0, 20.0, 1.5, pin, 10.0, CASE_HARDENED) for pin in (6.0, 60.0, 600.0)]
+    assert tilt[0] > 100.0 * tilt[1] > 1e5 * tilt[2]
+    # Without pins, both meshes carry the moment F L / 2 between them: c b^3 / 12 against it.
+    soft = load.pin_tilt_um(400.0, 20.0, 1.5, 1e-3, 10.0, CASE_HARDENED)
+    assert soft == pytest.approx(1e3 * 20.0 * 400.0 * 23.0 / 2 / (1e4 * 20.0**3 / 12), rel=1e-6)
+
+
+def test_face_load_factor_is_continuous_where_contact_parts():
+    below, above = (load.face_load_factor(misalignment, 10.0, 20.0) for misalignment in (4.0 - 1e-9, 4.0 + 1e-9))
+    assert below == pytest.approx(2.0)
+    assert above == pytest.approx(2.0)
+
+
+def test_dynamic_factor_by_hand():
+    """V = 1.885 m/s, z1 = 18, u = 2, class 6, light load: pace 0.3035, slope 1.963: 1 + (0.149 + 0.0193) x 0.596."""
+    assert load.dynamic_factor(20.0, 1.885, 18, 2.0, 6) == pytest.approx(1.1003, abs=1e-4)
+
+
+def test_dynamic_factor_never_falls_with_speed():
+    speeds = np.linspace(0.0, 40.0, 400)
+    assert (np.diff(load.dynamic_factor(50.0, speeds, 30, 3.0, 6)) > 0.0).all()
+
+
+def test_load_sharing_is_read_by_the_number_of_planets():
+    settings = ActuatorSettings(rules="iso6336")
+    assert load_sharing(np.array([2, 3, 7, 9]), settings).tolist() == [1.16, 1.23, 1.47, 1.47]
+
+
+def test_only_a_soft_flank_gains_by_a_hard_mate():
+    assert work_hardening_factor(TEMPERED, CASE_HARDENED) == pytest.approx(1.2 - 170.0 / 1700.0)
+    assert work_hardening_factor(TEMPERED, TEMPERED) == work_hardening_factor(CASE_HARDENED, TEMPERED) == 1.0
+
+
+def test_roughness_of_the_test_gear_changes_nothing():
+    for grade in GEAR_GRADES.values():
+        assert roughness_factor(grade, 10.0) == pytest.approx(1.0, abs=6e-3)
+
+
+def test_levels_of_the_duty_need_an_angle_each():
+    with pytest.raises(ValueError, match="2 and 1 values: must be one per level"):
+        DutyData(jumps=1.0, torque_shares=(1.0, 0.5), output_angles_rad=(1.0,))
+
+
+def test_unknown_rules_are_refused():
+    with pytest.raises(InputError, match="rules = 'agma': must be one of paper, iso6336"):
+        ActuatorSettings(rules="agma")

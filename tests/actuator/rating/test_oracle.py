@@ -1,0 +1,129 @@
+"""The rating against the slow one of ``iso6336``, on twenty gear sets, and against measured and published figures."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.gearset import GearSet, contact_ratios
+from pareto_monoped.actuator.motors import load_motor, motor_names
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.flank import contact_stress_mpa
+from pareto_monoped.actuator.rating.geometry import tooth_form
+from pareto_monoped.actuator.rating.sheet import rate
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.strength import face_width_mm
+from pareto_monoped.materials import GEAR_GRADES
+from tests.actuator.rating import iso6336
+
+SETTINGS = ActuatorSettings(rules="iso6336")
+PUBLISHED = [(30, 30, 0.5, 5, 7.2), (18, 36, 0.5, 3, 20.7), (22, 65, 0.5, 3, 16.9)]
+
+
+def gears(sun, planet, module, planets):
+    return GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
+
+
+def twenty():
+    """The three published sets and seventeen others of all modules, planets, families, motors and steels."""
+    rng = np.random.default_rng(6336)
+    for k in range(20):
+        if k < len(PUBLISHED):
+            sun, planet, module, planets, width = PUBLISHED[k]
+        else:
+            sun = int(rng.integers(17, 45))
+            planet = int(rng.integers(sun, 3 * sun))
+            module, planets = float(rng.choice([0.5, 0.6, 0.8, 1.0])), int(rng.integers(2, 8))
+            width = float(np.round(rng.uniform(6.0, 1.5 * module * sun + 6.0), 1))
+        grades = rng.choice(list(GEAR_GRADES), 3) if k >= 8 else ["", "", ""]
+        yield (
+            gears(sun, planet, module, planets),
+            width,
+            motor_names()[k % 5],
+            "ISSPG" if k % 2 else "ESSPG",
+            tuple(map(str, grades)),
+        )
+
+
+def settings_with(grades, k):
+    """Other steels, and for some sets another accuracy, support and duty."""
+    data, duty = SETTINGS.parts.rating, SETTINGS.parts.duty
+    if grades[0]:
+        sun, planet, ring = grades
+        data = replace(data, sun_grade=sun, planet_grade=planet, ring_grade=ring)
+    if k % 3 == 2:
+        data = replace(data, sun_support="floating", second_carrier="webs", accuracy_class=5 + k % 2)
+        duty = replace(duty, jumps=3e3 * 10.0 ** (k % 6), torque_shares=(0.9, 0.6, 0.3), output_angles_rad=(0.3, 1, 4))
+    return replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data, duty=duty))
+
+
+@pytest.mark.parametrize("k", range(20))
+def test_twenty_gear_sets_are_rated_as_by_the_slow_rating(k):
+    one, width, motor_name, family, grades = list(twenty())[k]
+    settings, motor = settings_with(grades, k), load_motor(motor_name)
+    data = settings.parts.gears
+    wall = (data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm) - 1.25 * one.module_mm
+    expected, loads = iso6336.rate(
+        one, motor, width, settings, ring_wall=wall, sun_bore=None if family == "ISSPG" else data.sun_bore_mm
+    )
+    found = rate(build_stage(one, motor, family, settings), width)
+    for mesh, name, factors in ((found.sun_mesh, "sun mesh", loads[0]), (found.ring_mesh, "ring mesh", loads[1])):
+        got = (mesh.dynamic_factor, mesh.face_load_factor, mesh.root_face_load_factor)
+        assert got == pytest.approx([factors[key] for key in ("K_V", "K_Hb", "K_Fb")], rel=1e-5)
+        got = (mesh.transverse_load_factor, mesh.root_transverse_load_factor)
+        assert got == pytest.approx([factors[key] for key in ("K_Ha", "K_Fa")], rel=1e-5)
+        for gear in (mesh.pinion, mesh.wheel):
+            got = (gear.flank_safety, gear.root_safety, gear.overload_flank_safety, gear.overload_root_safety)
+            # One percent is asked for; what is left is the finite difference of the fillet's curvature.
+            assert got == pytest.approx(expected[gear.gear, name], rel=1e-4)
+    assert len(expected) == 4
+
+
+def test_many_at_once_are_rated_as_one_by_one():
+    sets = [one for one, *_ in twenty()]
+    many = GearSet(
+        **{
+            name: np.array([getattr(one, name) for one in sets])
+            for name in ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets")
+        }
+    )
+    motor, width = load_motor("U8"), np.linspace(6.0, 30.0, 20)
+    together = build_stage(many, motor, "ESSPG", SETTINGS).safeties(width)
+    for k, one in enumerate(sets):
+        alone = build_stage(one, motor, "ESSPG", SETTINGS).safeties(width[k])
+        assert [values[k] for values in together] == pytest.approx(list(alone), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sun", "planet", "planets", "bare_mpa", "with_factors_mpa"),
+    [(30, 30, 5, 695.0, 1079.0), (18, 36, 3, 824.0, 1102.0), (22, 65, 3, 686.0, 917.0)],
+)
+def test_contact_stress_of_the_published_sets_as_measured_apart(sun, planet, planets, bare_mpa, with_factors_mpa):
+    """An independent program gave these stresses at the widths of the rules ``paper``.
+
+    Its factors were K_A 1.25, K_V 1.1, K_Hbeta 1.3, and K_gamma 1.35 for five planets.
+    """
+    motor = load_motor("VT8020")
+    one = gears(sun, planet, 0.5, planets)
+    mesh, width = build_stage(one, motor, "ESSPG", SETTINGS).sun_mesh, face_width_mm(one, motor, ActuatorSettings())
+    factors = 1.25 * 1.1 * 1.3 * (1.35 if planets == 5 else 1.0)
+    for load, expected in ((1.0, bare_mpa), (factors, with_factors_mpa)):
+        stress = contact_stress_mpa(
+            load * mesh.force_n / width, mesh.diameter_mm, mesh.ratio, mesh.pinion.contact_factors, internal=False
+        )
+        assert stress == pytest.approx(expected, abs=1.0)
+
+
+@pytest.mark.parametrize(("sun", "planet"), [(17, 17), (18, 36), (30, 30), (24, 70), (60, 90), (17, 120)])
+def test_form_and_notch_are_those_of_the_traced_fillet(sun, planet):
+    one = gears(sun, planet, 0.5, 3)
+    outer, inner = contact_ratios(one)
+    for teeth, mate, ratio, internal, ring in (
+        (sun, planet, outer, False, False),
+        (planet, sun, outer, False, False),
+        (planet, sun + 2 * planet, inner, True, False),
+        (sun + 2 * planet, planet, inner, True, True),
+    ):
+        found = tooth_form(teeth, ratio, internal=ring)
+        expected = iso6336.form_and_notch(teeth, mate, internal, ring)
+        assert (found.form_factor, found.stress_correction, found.notch) == pytest.approx(expected, rel=1e-4)

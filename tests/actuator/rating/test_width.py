@@ -1,0 +1,122 @@
+"""The least face width: nothing narrower is enough, and it follows torque and steel as it must."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.stage import required
+from pareto_monoped.actuator.rating.width import least_width_mm, strength_margins
+from pareto_monoped.actuator.settings import ActuatorSettings
+
+SETTINGS = ActuatorSettings(rules="iso6336")
+MOTOR = load_motor("U8")
+
+
+def drawn(count, seed):
+    rng = np.random.default_rng(seed)
+    sun = rng.integers(18, 45, count)
+    planet = (sun * rng.uniform(1.0, 3.0, count)).astype(int)
+    return GearSet(
+        sun_teeth=sun,
+        planet_teeth=planet,
+        ring_teeth=sun + 2 * planet,
+        module_mm=rng.choice([0.5, 0.6, 0.7, 0.8], count),
+        planets=rng.integers(3, 6, count),
+    )
+
+
+def keeps(stage, width):
+    """Whether all safety factors are kept, without the product's margins."""
+    least = required(SETTINGS)
+    return np.all([got >= wanted for got, wanted in zip(stage.safeties(width), least, strict=True)], axis=0)
+
+
+def test_it_is_the_first_of_all_widths_that_is_enough():
+    """Every multiple of 0.1 mm tried, one after the other, for 400 gear sets and a strong motor."""
+    stage = build_stage(drawn(400, 1), load_motor("U12"), "ESSPG", SETTINGS)
+    found = least_width_mm(stage)
+    expected = np.full(400, np.nan)
+    for steps in range(int(np.max(stage.width_high_mm) / 0.1) + 1, 59, -1):
+        width = np.full(400, steps / 10.0)
+        inside = (width >= stage.width_low_mm - 1e-9) & (width <= stage.width_high_mm + 1e-9)
+        expected = np.where(inside & keeps(stage, width), width, expected)
+    possible = np.isfinite(expected)
+    assert 0.1 < np.mean(~possible) < 0.9
+    assert found[possible].tolist() == expected[possible].tolist()
+    assert not keeps(stage, found)[~possible].any()
+
+
+def test_one_gear_set_gets_the_width_that_it_has_among_others():
+    many = drawn(30, 2)
+    together = least_width_mm(build_stage(many, MOTOR, "ISSPG", SETTINGS))
+    for k in range(30):
+        alone = least_width_mm(build_stage(many.chosen(k), MOTOR, "ISSPG", SETTINGS))
+        assert alone.shape == ()
+        assert alone == together[k]
+
+
+def test_a_limit_that_is_off_does_not_widen_the_gears():
+    stage = build_stage(drawn(300, 3), MOTOR, "ESSPG", SETTINGS)
+    everything = least_width_mm(stage)
+    kept = keeps(stage, everything)
+    for rule in strength_margins(stage.safeties(everything), stage):
+        relaxed = least_width_mm(stage, {rule})
+        assert (relaxed[kept] <= everything[kept]).all()
+    assert np.allclose(least_width_mm(stage, strength_margins(stage.safeties(everything), stage)), stage.width_low_mm)
+
+
+factors = st.floats(1.01, 1.5)
+
+
+@settings(max_examples=15)
+@given(factor=factors, seed=st.integers(0, 10_000))
+def test_more_torque_never_gives_a_thinner_face_or_more_safety(factor, seed):
+    gears = drawn(100, seed)
+    strong = replace(MOTOR, peak_torque_n_m=factor * MOTOR.peak_torque_n_m)
+    before, after = (build_stage(gears, motor, "ESSPG", SETTINGS) for motor in (MOTOR, strong))
+    width = least_width_mm(before)
+    for less, more in zip(after.safeties(width), before.safeties(width), strict=True):
+        assert (less < more).all()
+    kept = keeps(after, least_width_mm(after))
+    assert (least_width_mm(after)[kept] >= width[kept]).all()
+
+
+@settings(max_examples=15)
+@given(
+    factor=factors,
+    seed=st.integers(0, 10_000),
+    grade=st.sampled_from(["case_hardened_16mncr5", "nitrided_42crmo4", "through_hardened_42crmo4"]),
+)
+def test_a_stronger_steel_never_needs_a_wider_face(factor, seed, grade):
+    gears = drawn(100, seed)
+    data = replace(SETTINGS.parts.rating, sun_grade=grade, planet_grade=grade, ring_grade=grade)
+    plain = replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data))
+    steel = plain.gear_steels.sun
+    better = replace(
+        steel, flank_limit_mpa=factor * steel.flank_limit_mpa, root_limit_mpa=factor * steel.root_limit_mpa
+    )
+    strong = replace(plain, steels=replace(plain.gear_steels, sun=better, planet=better, ring=better))
+    before, after = (build_stage(gears, MOTOR, "ESSPG", chosen) for chosen in (plain, strong))
+    width = least_width_mm(before)
+    kept = keeps(before, width)
+    assert (least_width_mm(after)[kept] <= width[kept]).all()
+
+
+@pytest.mark.parametrize("rule", ["face_over_sun_max", "face_modules_max"])
+def test_no_face_is_wider_than_its_limits(rule):
+    data = replace(SETTINGS.parts.rating, **{rule: getattr(SETTINGS.parts.rating, rule) * 0.7})
+    chosen = replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data))
+    gears = drawn(200, 4)
+    width = least_width_mm(build_stage(gears, MOTOR, "ESSPG", chosen))
+    low = np.maximum(6.0, 6.0 * gears.module_mm)
+    high = np.minimum(
+        data.face_over_sun_max * gears.module_mm * gears.sun_teeth, data.face_modules_max * gears.module_mm
+    )
+    assert (width <= np.maximum(high, np.ceil(low / 0.1 - 1e-9) * 0.1) + 1e-9).all()
+    assert (width >= low - 1e-9).all()

@@ -1,0 +1,217 @@
+"""The map under the rules ``iso6336``: every winner keeps every limit, and where there is none, the reason helps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.actuator import build_actuator
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.layout import layout
+from pareto_monoped.actuator.motors import load_motor, motor_names
+from pareto_monoped.actuator.ratiomap import STAND_IN_WITHIN
+from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
+from pareto_monoped.actuator.search import build_map, map_for, map_of
+from pareto_monoped.actuator.settings import RULE_SETS, ActuatorSettings
+from pareto_monoped.cad.as_built import as_built
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.robot.build import build_robot
+from tests.actuator.loop import allowed
+from tests.actuator.rating import iso6336
+
+SETTINGS = ActuatorSettings(rules="iso6336")
+DATA = SETTINGS.parts.rating
+DESIGNS = pytest.mark.parametrize("case", PAPER_CASES)
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_every_winner_keeps_every_limit(name):
+    motor = load_motor(name)
+    found = map_of(motor, "iso6336")
+    bests = [
+        (family, one)
+        for entry in found.entries
+        for family, result in entry.families.items()
+        for one in (result.best, result.runner_up)
+        if one is not None
+    ]
+    assert bests
+    for family, one in bests:
+        gears, width = one.gears, one.face_width_mm
+        assert gears.planets >= 3
+        assert width >= max(6.0, 6.0 * gears.module_mm) - 1e-9
+        assert width <= min(1.5 * gears.module_mm * gears.sun_teeth, 40.0 * gears.module_mm) + 1e-9
+        assert round(10.0 * width, 9) == round(10.0 * width)
+        # Without the margins that the search used: the rules rate the set again.
+        at = layout(motor, family, gears, width, SETTINGS)
+        sets = CandidateSets(gears=gears, face_width_mm=width, at=at, motor=motor, family=family, settings=SETTINGS)
+        names, broken = violations(sets)
+        assert {"flank_strength", "root_strength", "overload_strength", "face_width"} < set(names)
+        assert not broken.any()
+    for actuator in (entry.actuator for entry in found.entries if entry.actuator is not None):
+        assert actuator.rating.flank_safety >= DATA.flank_safety
+        assert actuator.rating.root_safety >= DATA.root_safety
+        for gear in actuator.rating.gears:
+            assert gear.overload_flank_safety >= DATA.overload_flank_safety
+            assert gear.overload_root_safety >= DATA.overload_root_safety
+        assert actuator.mass_kg == pytest.approx(sum(actuator.mass_breakdown_kg().values()))
+
+
+def least_width(gears, motor, family):
+    """By the slow rating, from the least width allowed upwards; None if no width up to the limits is enough."""
+    data = SETTINGS.parts.gears
+    wall = data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm
+    bore = None if family == "ISSPG" else data.sun_bore_mm
+    least = (DATA.flank_safety, DATA.root_safety, DATA.overload_flank_safety, DATA.overload_root_safety)
+    high = min(1.5 * gears.module_mm * gears.sun_teeth, 40.0 * gears.module_mm)
+    for steps in range(60, int(np.floor(10.0 * high + 1e-6)) + 1):
+        safety, _ = iso6336.rate(
+            gears, motor, steps / 10.0, SETTINGS, ring_wall=wall - 1.25 * gears.module_mm, sun_bore=bore
+        )
+        if all(got >= wanted for one in safety.values() for got, wanted in zip(one, least, strict=True)):
+            return max(steps / 10.0, np.ceil(60.0 * gears.module_mm - 1e-9) / 10.0)
+    return None
+
+
+@pytest.mark.parametrize(("family", "tenths"), [("ISSPG", 40), ("ESSPG", 54), ("ESSPG", 60), ("ESSPG", 79)])
+def test_search_finds_what_a_slow_loop_with_the_slow_rating_finds(vt8020, family, tenths):
+    best = None
+    for module in SETTINGS.modules_mm:
+        for sun in range(18, 45):
+            for planet in range(18, 75):
+                ring = sun + 2 * planet
+                if not tenths * sun <= 10 * (sun + ring) < (tenths + 1) * sun:
+                    continue
+                for planets in range(3, 8):
+                    if not allowed(vt8020, family, sun, planet, ring, module, planets, 6.0):
+                        continue
+                    gears = GearSet(
+                        sun_teeth=sun, planet_teeth=planet, ring_teeth=ring, module_mm=module, planets=planets
+                    )
+                    width = least_width(gears, vt8020, family)
+                    if width is None or not allowed(vt8020, family, sun, planet, ring, module, planets, width):
+                        continue
+                    mass = build_actuator(vt8020, family, gears, SETTINGS).mass_kg
+                    if best is None or mass < best[0]:
+                        best = (mass, gears, width)
+    got = map_for("VT8020", "iso6336").entries[tenths - 40].families[family].best
+    if best is None:
+        assert got is None
+        return
+    assert (got.gears, got.face_width_mm) == best[1:]
+    assert got.mass_kg == pytest.approx(best[0], rel=1e-12)
+
+
+def test_two_planets_only_if_asked_for(vt8020):
+    def planets(settings):
+        return {e.actuator.gears.planets for e in build_map(vt8020, settings).entries if e.actuator is not None}
+
+    assert min(planets(SETTINGS)) == 3
+    assert min(planets(replace(SETTINGS, planets_min=2))) == 2
+
+
+def test_a_stronger_steel_never_makes_an_actuator_heavier_and_closes_no_interval(vt8020):
+    grades = {
+        "flank": {"flank_limit_mpa": 1.1 * SETTINGS.gear_steels.sun.flank_limit_mpa},
+        "root": {"root_limit_mpa": 1.1 * SETTINGS.gear_steels.sun.root_limit_mpa},
+    }
+    before = map_of(vt8020, "iso6336").masses_kg()
+    have = np.isfinite(before)
+    for change in grades.values():
+        steels = SETTINGS.gear_steels
+        better = replace(steels, sun=replace(steels.sun, **change), planet=replace(steels.planet, **change))
+        after = build_map(vt8020, replace(SETTINGS, steels=better)).masses_kg()
+        assert (after[have] <= before[have]).all()
+        assert (after[have] < before[have]).any()
+
+
+def test_a_weaker_steel_closes_intervals_and_the_reason_is_strength(vt8020):
+    data = replace(DATA, sun_grade="through_hardened_42crmo4", planet_grade="through_hardened_42crmo4")
+    weak = build_map(vt8020, replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data)))
+    strong = map_of(vt8020, "iso6336")
+    assert np.isfinite(weak.masses_kg()).sum() < np.isfinite(strong.masses_kg()).sum()
+    closed = weak.entries[20]
+    assert closed.actuator is None
+    assert "flank_strength" in closed.forbidden_by["ESSPG"]
+    assert set(closed.forbidden_by["ESSPG"]) <= {"flank_strength", "root_strength", "overload_strength"}
+    assert "a harder steel" in weak.why_not(6.0)
+
+
+def test_a_limit_that_is_off_opens_an_interval(vt8020):
+    """[7.9, 8.0) lacks strength of flank and root; without these rules there is a gearbox, and only then."""
+    names = map_of(vt8020, "iso6336").entries[39].forbidden_by["ESSPG"]
+    assert names == ("flank_strength", "root_strength")
+    for off in (names, names[:1], names[1:]):
+        relaxed = build_map(vt8020, replace(SETTINGS, constraints_off=frozenset(off)))
+        assert (relaxed.entries[39].actuator is not None) == (off == names)
+
+
+def test_carriers_tied_by_webs_and_a_floating_sun_open_intervals(vt8020):
+    data = replace(DATA, second_carrier="webs", sun_support="floating")
+    better = build_map(vt8020, replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data)))
+    before = map_of(vt8020, "iso6336").masses_kg()
+    have = np.isfinite(before)
+    assert (better.masses_kg()[have] <= before[have]).all()
+    assert np.isfinite(better.masses_kg()).sum() > have.sum()
+
+
+@DESIGNS
+@pytest.mark.parametrize("rules", RULE_SETS)
+def test_the_papers_designs_have_gearboxes_under_both_sets_of_rules(case, rules):
+    found = map_for("VT8020", rules)
+    design = PAPER_CASES[case].design
+    robot = build_robot(design, found)
+    for actuator, ratio in ((robot.hip, design.hip_ratio), (robot.knee, design.knee_ratio)):
+        note = found.stand_in(ratio)
+        assert (abs(actuator.ratio - ratio) > 0.1) == bool(note)
+        assert (actuator.rating is None) == (rules == "paper")
+        assert not note or rules == "iso6336"
+    built = as_built(design, found)
+    # The real ratios have gearboxes of their own: nothing stands in for what is built.
+    assert not found.stand_in(built.hip_ratio)
+    assert found.lookup(built.knee_ratio) is robot.knee
+
+
+def test_a_stand_in_says_why_and_what_it_is():
+    found = map_for("VT8020", "iso6336")
+    note = found.stand_in(7.9)
+    actuator = found.lookup(7.9)
+    for words in ("7.9", "flank_strength", "would help", str(actuator.gears), f"{actuator.ratio:.4f}:1"):
+        assert words in note
+    assert "\n" not in note
+    assert found.stand_in(6.0) == ""
+    lows = [e.ratio_low for e in found.entries if e.actuator is not None]
+    assert found.entry(7.9).ratio_low == max(lows)
+    assert found.entry(5.95).ratio_low in (5.7, 6.0)
+
+
+def test_far_from_every_gearbox_nothing_stands_in():
+    found = map_for("VT8020", "iso6336")
+    with pytest.raises(DesignError, match=r"no gearbox in .*would help"):
+        found.lookup(max(e.actuator.ratio for e in found.entries if e.actuator) + STAND_IN_WITHIN + 0.2)
+    assert found.interval_index([3.9, np.nan, 14.9, 15.1]).tolist() == [-1] * 4
+    paper = map_for("VT8020")
+    assert paper.interval_index([9.0, 8.85]).tolist() == [-1, -1]
+    assert paper.stand_in(9.0) == ""
+
+
+def test_gears_carry_grade_and_safety_in_their_notes():
+    actuator = map_for("VT8020", "iso6336").lookup(6.0)
+    notes = [part.note for part in actuator.parts if part.role is Role.GEAR]
+    assert len(notes) == 3
+    for note in notes:
+        assert "ISO 1328-1 class 6; S_H " in note
+        assert "wire-cut" not in note
+    assert sum("18CrNiMo7-6" in note for note in notes) == 2
+    least = min(float(note.split("S_H ")[1].split(",")[0]) for note in notes)
+    assert least == pytest.approx(actuator.rating.flank_safety, abs=0.005)
+
+
+def test_every_rule_belongs_to_a_set_and_says_what_would_help():
+    for rule in CONSTRAINTS.values():
+        assert rule.cures
+        assert set(rule.rule_sets) <= set(RULE_SETS)
+    paper = [name for name, rule in CONSTRAINTS.items() if "paper" in rule.rule_sets]
+    assert not {"flank_strength", "root_strength", "overload_strength", "face_width"} & set(paper)
