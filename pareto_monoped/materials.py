@@ -34,7 +34,39 @@ class Material:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GearMaterial(Material):
+class ElasticMaterial(Material):
+    """A material whose parts give way under load.
+
+    Attributes:
+        youngs_modulus_mpa, poisson_ratio: of elasticity.
+    """
+
+    youngs_modulus_mpa: Positive
+    poisson_ratio: Annotated[float, Field(gt=0.0, lt=0.5)]
+
+    @property
+    def shear_modulus_mpa(self) -> float:
+        """Of an isotropic material."""
+        return 0.5 * self.youngs_modulus_mpa / (1.0 + self.poisson_ratio)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BushMaterial(Material):
+    """A material for plain bushes.
+
+    Attributes:
+        friction_coefficient: of a hardened pin in a greased bush.
+        pv_limit_mpa_m_per_s, pv_short_limit_mpa_m_per_s: largest pressure times sliding speed, for good and for short
+            periods.
+    """
+
+    friction_coefficient: Positive
+    pv_limit_mpa_m_per_s: Positive
+    pv_short_limit_mpa_m_per_s: Positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearMaterial(ElasticMaterial):
     """A material for gears.
 
     Attributes:
@@ -85,11 +117,11 @@ class Materials:
 
     __pydantic_config__ = _STRICT
 
-    aluminium: Material
-    steel: Material
+    aluminium: ElasticMaterial
+    steel: ElasticMaterial
     gear_steel: GearMaterial
     bearing_steel: Material
-    bush_bronze: Material
+    bush_bronze: BushMaterial
     motor_stator: Material
     motor_rotor: Material
     printed_plastic: Material

@@ -1,5 +1,6 @@
 """The actuator map as plain values, for tables and JSON: one row per interval, gaps, and one interval in full."""
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -7,6 +8,9 @@ from typing import Any
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry
 from pareto_monoped.actuator.rules import CONSTRAINTS
+from pareto_monoped.actuator.service.bearing_life import BearingService
+from pareto_monoped.actuator.service.losses import BushLoad
+from pareto_monoped.actuator.service.sheet import ServiceSheet
 from pareto_monoped.actuator.settings import ConstraintName
 from pareto_monoped.geometry.parts import Part
 
@@ -25,8 +29,8 @@ class Gap:
     in_the_way: Mapping[Family, tuple[ConstraintName, ...]]
 
 
-def summary(entry: MapEntry) -> dict[str, Any]:
-    """One row of the map, for an interval that has a gearbox."""
+def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
+    """One row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
     actuator = entry.actuator
     assert actuator is not None
     gears = actuator.gears
@@ -43,20 +47,33 @@ def summary(entry: MapEntry) -> dict[str, Any]:
         "mass_kg": actuator.mass_kg,
         "peak_torque_n_m": actuator.peak_torque_n_m,
         "efficiency": actuator.efficiency,
+        "continuous_torque_n_m": actuator.continuous_torque_n_m,
+        "no_load_speed_rad_per_s": actuator.no_load_speed_rad_per_s,
+        "length_mm": actuator.length_mm,
+        "reflected_inertia_kg_m2": actuator.reflected_inertia_kg_m2,
+        "efficiency_mesh": sheet.losses.efficiency_mesh,
+        "efficiency_bushes": sheet.losses.efficiency_bushes,
+        "efficiency_bearings": sheet.losses.efficiency_bearings,
+        "efficiency_total": sheet.losses.efficiency_total,
+        "bearing_life_h": sheet.bearing_life_h,
+        "output_tilt_n_m": sheet.output_tilt_n_m,
+        "backlash_arcmin": sheet.backlash_arcmin,
+        "stiffness_n_m_per_rad": sheet.stiffness.stiffness_n_m_per_rad,
     }
 
 
-def details(entry: MapEntry) -> dict[str, Any]:
+def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
     """Everything known about an interval that has a gearbox; its parts from the heaviest to the lightest."""
     actuator = entry.actuator
     assert actuator is not None
-    return summary(entry) | {
-        "continuous_torque_n_m": actuator.continuous_torque_n_m,
-        "no_load_speed_rad_per_s": actuator.no_load_speed_rad_per_s,
-        "reflected_inertia_kg_m2": actuator.reflected_inertia_kg_m2,
+    return summary(entry, sheet) | {
         "contact_ratio_sun": actuator.contact_ratio_sun,
         "contact_ratio_ring": actuator.contact_ratio_ring,
-        "length_mm": actuator.length_mm,
+        "efficiency_churning": sheet.losses.efficiency_churning,
+        "compliance_rad_per_n_m": dataclasses.asdict(sheet.stiffness),
+        "bearings": [_bearing(found) for found in sheet.bearings],
+        "bush": _bush(sheet.bush),
+        "bush_duty": _bush(sheet.bush_duty),
         "runner_up": None if entry.runner_up is None else {"type": entry.runner_up.family, **_best(entry.runner_up)},
         "binding": {name: CONSTRAINTS[name].says for name in entry.binding},
         "families": {
@@ -94,6 +111,32 @@ def _gap(entries: list[MapEntry]) -> Gap:
 
 def _best(found: Candidate | None) -> dict[str, Any]:
     return {"gears": None, "mass_kg": None} if found is None else {"gears": str(found.gears), "mass_kg": found.mass_kg}
+
+
+def _bearing(found: BearingService) -> dict[str, Any]:
+    rated = found.bearing
+    return {
+        "place": found.place,
+        "designation": rated.designation,
+        "size_mm": [rated.inner_diameter_mm, rated.outer_diameter_mm, rated.width_mm],
+        "dynamic_rating_n": rated.dynamic_rating_n,
+        "static_rating_n": rated.static_rating_n,
+        "force_n": found.force_n,
+        "tilt_n_m": found.tilt_n_m,
+        "equivalent_n": found.equivalent_n,
+        "tilt_rad": found.tilt_rad,
+        "life_h": found.life_h,
+        "static_safety": found.static_safety,
+        "overload_safety": found.overload_safety,
+    }
+
+
+def _bush(load: BushLoad) -> dict[str, float]:
+    return {
+        "pressure_mpa": load.pressure_mpa,
+        "speed_m_per_s": load.speed_m_per_s,
+        "pv_mpa_m_per_s": load.pv_mpa_m_per_s,
+    }
 
 
 def _part(part: Part) -> dict[str, Any]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
+    from pareto_monoped.actuator.service.sheet import ServiceSheet
 
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
@@ -30,6 +31,13 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--csv", "csv_file", metavar="FILE", type=_OUTPUT, help="Also write the table to a CSV file.")
+@click.option(
+    "--figure",
+    "figure_file",
+    metavar="FILE",
+    type=_OUTPUT,
+    help="Also draw the mass over the ratio, both families: .svg, .png or .pdf.",
+)
 def actuators(
     motor: str,
     ratio: float | None,
@@ -37,6 +45,7 @@ def actuators(
     bearings: Literal["catalogue", "regression"],
     as_json: bool,
     csv_file: Path | None,
+    figure_file: Path | None,
 ) -> None:
     """Print the lightest actuator for every gear ratio.
 
@@ -45,6 +54,7 @@ def actuators(
     from pareto_monoped.actuator.explain import details, summary
     from pareto_monoped.actuator.motors import load_motor
     from pareto_monoped.actuator.search import build_map
+    from pareto_monoped.actuator.service.sheet import service_sheet
     from pareto_monoped.actuator.settings import ActuatorSettings
 
     settings = ActuatorSettings(constraints_off=frozenset(without), bearings=bearings)
@@ -53,15 +63,20 @@ def actuators(
         entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
     else:
         entries = [actuator_map.entry(ratio)]
-    rows = [summary(entry) for entry in entries]
+    if figure_file:
+        from pareto_monoped.report.figures import write_map_figure
+
+        write_map_figure({"": actuator_map}, figure_file)
+    sheets = [service_sheet(entry.actuator, settings) for entry in entries if entry.actuator is not None]
+    rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]
     if csv_file:
         _write_csv(csv_file, rows)
     if as_json:
-        click.echo(json.dumps(rows if ratio is None else details(entries[0]), indent=2))
+        click.echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]), indent=2))
     elif ratio is None:
         _print_map(actuator_map)
     else:
-        _print_details(actuator_map, entries[0])
+        _print_details(actuator_map, entries[0], sheets[0])
 
 
 def _write_csv(path: Path, rows: list[dict[str, Any]]) -> None:
@@ -129,12 +144,14 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
         console.print(f"No gearbox from {gap.ratio_low:.1f} to {gap.ratio_high:.1f}. In the way: {reasons}.")
 
 
-def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry") -> None:
+def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
     from rich.console import Console
 
     from pareto_monoped.actuator.explain import details
+    from pareto_monoped.actuator.service.data import default_service
+    from pareto_monoped.cli.service_lines import BEARING_COLUMNS, bearing_rows, duty_lines, service_lines
 
-    actuator, known = entry.actuator, details(entry)
+    actuator, known = entry.actuator, details(entry, sheet)
     assert actuator is not None
     console = Console(width=80, highlight=False)
     console.print(
@@ -150,8 +167,15 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry") -> None:
         ("reflected inertia", f"{actuator.reflected_inertia_kg_m2:.5f} kg m2"),
         ("contact ratios", f"{actuator.contact_ratio_sun:.2f} sun, {actuator.contact_ratio_ring:.2f} ring"),
         ("face width, length", f"{actuator.face_width_mm:.2f} mm, {actuator.length_mm:.1f} mm"),
+        *service_lines(sheet, actuator_map.settings),
     ):
         console.print(f"  {name:20} {value}", markup=False)
+    bearings = _table(*BEARING_COLUMNS, no_wrap="bearing")
+    for row in bearing_rows(sheet):
+        bearings.add_row(*row)
+    console.print(bearings)
+    for line in duty_lines(sheet, default_service()):
+        console.print(line, markup=False)
     console.print(_parts_table(known["parts"], actuator.mass_kg))
     for line in _rivals(actuator.family, known):
         console.print(line, markup=False)

@@ -1,15 +1,17 @@
 """The main figures for papers: SVG and PNG in a plain style that stays readable in black and white."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from pareto_monoped.actuator.layout import FAMILIES
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
-from pareto_monoped.errors import OutputError
+from pareto_monoped.errors import OutputError, complaint
 from pareto_monoped.files import replacing
 from pareto_monoped.report.quantities import QUANTITIES
 from pareto_monoped.report.schema import Column, Jump, Payload, StudyCard
@@ -21,7 +23,7 @@ _DPI = 300
 _FORMATS = ("svg", "png")
 Mark = tuple[float, float, str]
 """Energy in J, height in m, and name of a design."""
-_FIXED = {"svg": {"Date": None}, "png": {"Software": None}}
+_FIXED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
 """File information that would change from one run to the next, left out."""
 
 
@@ -195,14 +197,56 @@ def _along(payload: Payload, figure: Any) -> bool:
 def _map(payload: Payload, figure: Any) -> bool:
     axes = figure.add_subplot()
     for k, table in enumerate(payload.maps):
-        for family, (tint, symbol) in zip(("ISSPG", "ESSPG"), (_STYLES[1], _STYLES[0]), strict=True):
+        for family in _FAMILY_STYLES:
             points = [p for p in table.points if family in p.family_mass_kg]
-            label = family if len(payload.maps) == 1 else f"{family}, {table.motor}"
             x, y = [p.ratio_low for p in points], [p.family_mass_kg[family] for p in points]
-            axes.plot(x, y, symbol, ms=2.5, ls="", color=tint, mfc="white" if k else tint, label=label)
+            _family_points(axes, family, x, y, "" if len(payload.maps) == 1 else table.motor, hollow=k > 0)
+    _map_axes(axes)
+    return bool(payload.maps)
+
+
+_FAMILY_STYLES = {"ISSPG": _STYLES[1], "ESSPG": _STYLES[0]}
+
+
+def _family_points(axes: Any, family: str, x: ArrayLike, y: ArrayLike, of: str, *, hollow: bool) -> None:
+    """Masses of one family over the ratio; ``of`` tells several maps apart."""
+    tint, symbol = _FAMILY_STYLES[family]
+    fill = "white" if hollow else tint
+    axes.plot(x, y, symbol, ms=2.5, ls="", color=tint, mfc=fill, label=f"{family}, {of}" if of else family)
+
+
+def _map_axes(axes: Any) -> None:
     axes.set(xlabel="gear ratio", ylabel="actuator mass (kg)")
     axes.legend(loc="upper left")
-    return bool(payload.maps)
+
+
+def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path) -> None:
+    """Draw the least mass of both families over the ratio.
+
+    Args:
+        maps: by what tells them apart in the legend, such as the rules; the first is drawn filled, the others hollow.
+        path: ends in .svg, .png or .pdf.
+
+    Raises:
+        OutputError: another ending, or the file cannot be written.
+    """
+    kind = path.suffix.removeprefix(".").lower()
+    if kind not in _FIXED:
+        raise OutputError(complaint("figure", str(path), f"a file in {', '.join(_FIXED)}", "give another ending"))
+    with _style() as figure_class:
+        figure = figure_class(figsize=(_WIDTH_IN, _HEIGHT_IN), layout="constrained")
+        axes = figure.add_subplot()
+        for number, (name, actuator_map) in enumerate(maps.items()):
+            for family in FAMILIES:
+                masses = actuator_map.masses_kg(family)
+                found = np.isfinite(masses)
+                if found.any():
+                    points = actuator_map.ratios_low[found], masses[found]
+                    _family_points(axes, family, *points, name, hollow=number > 0)
+        _map_axes(axes)
+        axes.set_title(" and ".join(dict.fromkeys(m.motor.name for m in maps.values())), fontsize=8)
+        with replacing(path) as temporary:
+            figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
 
 
 def _links(payload: Payload, figure: Any) -> bool:

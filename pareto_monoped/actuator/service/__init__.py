@@ -1,0 +1,1 @@
+"""What an actuator is good for beside torque and mass: bearings under load, losses by source, stiffness, backlash."""

@@ -1,0 +1,146 @@
+"""Torsional stiffness and backlash of one actuator, both at its output, with the motor and the housing held."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.parts import Prism
+from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.materials import ElasticMaterial
+
+_CORRECTION, _BASIC_RACK = 0.8, 0.975  # C_M; C_B of ISO 53 teeth: dedendum 1.25 modules (ISO 6336-1, clause 9.3.1)
+_LIGHT_N_PER_MM = 100.0  # below this load per width, teeth are softer (same clause)
+_ARCMIN = 60.0 * 180.0 / np.pi
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stiffness:
+    """How far the output turns per torque, by part, in rad / (N m).
+
+    Attributes:
+        mesh: teeth of sun, planets and ring.
+        pins: bending of the planets' pins.
+        shaft: torsion of the sun's shaft up to the coupling.
+        carrier: torsion of the carrier up to the output face.
+    """
+
+    mesh: float
+    pins: float
+    shaft: float
+    carrier: float
+
+    @property
+    def stiffness_n_m_per_rad(self) -> float:
+        """Of all in series."""
+        return 1.0 / (self.mesh + self.pins + self.shaft + self.carrier)
+
+
+def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Stiffness:
+    """Torsional stiffness at the output at the peak torque, rotor and housing held.
+
+    Rings of gears, housing, bolted joints and the rotor itself are taken as rigid.
+    """
+    steel, gear = settings.materials.steel, settings.materials.gear_steel
+    shaft = gear if actuator.family == "ISSPG" else steel  # the ESSPG's sun sits on a dowel
+    return Stiffness(
+        mesh=mesh_compliance(actuator),
+        pins=pin_compliance(actuator.gears, at, settings.parts.carrier.pin_diameter_mm, steel),
+        shaft=_shaft_compliance(actuator, at, shaft) / actuator.ratio**2,
+        carrier=_carrier_compliance(actuator, at, settings.materials.aluminium),
+    )
+
+
+def mesh_compliance(actuator: Actuator) -> float:
+    """Of the teeth, in rad / (N m).
+
+    A planet is a lever: its tooth force F on the sun and on the ring moves its centre by the mean of what both meshes
+    give way. From the elastic energy of n planets with F = T / (2 n r cos alpha) in either mesh of stiffness k,
+    compliance = (1 / k_sun + 1 / k_ring) / (4 n r^2 cos^2 alpha).
+    """
+    gears = actuator.gears
+    radius_m, planets = 1e-3 * float(gears.carrier_radius_mm), float(gears.planets)
+    tangential_n = actuator.peak_torque_n_m / (2.0 * planets * radius_m)
+    load = tangential_n / actuator.face_width_mm
+    sun_teeth, planet_teeth = float(gears.sun_teeth), float(gears.planet_teeth)
+    sun = mesh_stiffness(sun_teeth, planet_teeth, actuator.contact_ratio_sun, load)
+    ring = mesh_stiffness(planet_teeth, np.inf, actuator.contact_ratio_ring, load)
+    softness = sum(1e-6 / (stiff * actuator.face_width_mm) for stiff in (sun, ring))  # m/N
+    return float(softness / (4.0 * planets * (radius_m * np.cos(PRESSURE_ANGLE_RAD)) ** 2))
+
+
+def mesh_stiffness(pinion_teeth: float, wheel_teeth: float, contact_ratio: float, load_n_per_mm: float) -> float:
+    """c_gamma,alpha per width, in N / (mm um), of spur gears of steel without profile shift (ISO 6336-1, method B).
+
+    Args:
+        pinion_teeth: of the external gear.
+        wheel_teeth: of its mate; infinite for an internal gear, as the standard says.
+        contact_ratio: epsilon_alpha.
+        load_n_per_mm: K_A F_t / b.
+    """
+    softness = 0.04723 + 0.15551 / pinion_teeth + 0.25791 / wheel_teeth
+    light = min(1.0, load_n_per_mm / _LIGHT_N_PER_MM) ** 0.25
+    return float(_CORRECTION * _BASIC_RACK * light / softness * (0.75 * contact_ratio + 0.25))
+
+
+def pin_compliance(gears: GearSet, at: Layout, pin_diameter_mm: float, steel: ElasticMaterial) -> float:
+    """Of the pins, in rad / (N m).
+
+    A pin is clamped in the carrier. The second carrier is held by the pins alone: it follows them around the axis, but
+    does not let their ends turn. Under a uniform load F over the length L between both carriers, the mean deflection of
+    a beam that is clamped at one end and guided at the other is F L^3 / (45 E I).
+    """
+    length_mm = float(at.z_shoulder - at.z_secondary_front)
+    second_moment_mm4 = np.pi * pin_diameter_mm**4 / 64.0
+    softness = 1e-3 * length_mm**3 / (45.0 * steel.youngs_modulus_mpa * second_moment_mm4)  # m/N
+    return float(softness / (float(gears.planets) * (1e-3 * float(gears.carrier_radius_mm)) ** 2))
+
+
+def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:
+    """Of the sun's shaft from the coupling's front to the middle of the teeth, at the sun.
+
+    The teeth of a sun in one piece with its shaft stiffen it; half their width is counted as plain shaft.
+    """
+    coupling = [prism for part in actuator.parts if part.role is Role.COUPLING for prism in part.prisms]
+    front = max(float(prism.z1_mm) for prism in coupling)
+    turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role in (Role.SHAFT, Role.GEAR)]
+    radii = [
+        float(prism.outline.radius_mm)
+        for part in turning
+        for prism in part.prisms
+        if isinstance(prism.outline, Circle) and prism.z0_mm < front <= prism.z1_mm
+    ]
+    middle = 0.5 * float(at.z_gear_back + at.z_gear_front)
+    return 1e3 * (middle - front) / (steel.shear_modulus_mpa * 0.5 * np.pi * max(radii) ** 4)
+
+
+def _carrier_compliance(actuator: Actuator, at: Layout, aluminium: ElasticMaterial) -> float:
+    """Of the carrier from the clamped ends of the pins to the output face."""
+    carriers = [part for part in actuator.parts if part.role is Role.CARRIER]
+    front = max(carriers, key=lambda part: max(float(prism.z1_mm) for prism in part.prisms))
+    softness = sum(_tube_softness(prism) for prism in front.prisms)
+    return 1e3 * softness / aluminium.shear_modulus_mpa
+
+
+def _tube_softness(prism: Prism) -> float:
+    """Length over polar second moment of a turned slab, in 1/mm3; its bolt holes and pin holes are left out."""
+    assert isinstance(prism.outline, Circle)
+    bores = [float(hole.radius_mm) for hole in prism.holes if isinstance(hole, Circle)]
+    inner = max(bores, default=0.0)
+    polar = 0.5 * np.pi * (float(prism.outline.radius_mm) ** 4 - inner**4)
+    return float((prism.z1_mm - prism.z0_mm) / polar)
+
+
+def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
+    """Play of the output between both stops, motor held.
+
+    Each tooth is thinned by ``thinning_mm`` on its pitch circle, so that either mesh has twice this as circumferential
+    backlash. The planet's centre moves by the mean of both. Play of bushes and bearings comes on top.
+    """
+    play_mm = 2.0 * thinning_mm
+    return float(_ARCMIN * play_mm / gears.carrier_radius_mm)

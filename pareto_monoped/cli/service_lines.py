@@ -1,0 +1,102 @@
+"""How ``actuators --ratio`` prints losses, stiffness, bushes and bearings."""
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.service.data import ServiceData
+    from pareto_monoped.actuator.service.sheet import ServiceSheet
+    from pareto_monoped.actuator.settings import ActuatorSettings
+
+BEARING_COLUMNS: tuple[tuple[str, Literal["left", "right"]], ...] = (
+    ("bearing", "left"),
+    ("type", "left"),
+    ("size, mm", "left"),
+    ("force\nN", "right"),
+    ("tilt\nN m", "right"),
+    ("P\nN", "right"),
+    ("tilt\nmrad", "right"),
+    ("L10\nh", "right"),
+    ("s0\npeak", "right"),
+    ("s0\nover", "right"),
+)
+"""Heading and alignment of each column of ``bearing_rows``."""
+_LONG_H = 1e6
+
+
+def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[tuple[str, str]]:
+    """Name and value of one line each."""
+    losses, stiffness, bush = sheet.losses, sheet.stiffness, sheet.bush
+    sources = [
+        f"{name} {100.0 * value:.1f}"
+        for name, value in (
+            ("mesh", losses.efficiency_mesh),
+            ("bushes", losses.efficiency_bushes),
+            ("bearings", losses.efficiency_bearings),
+            ("churning", losses.efficiency_churning),
+        )
+        if name != "churning" or value < 1.0
+    ]
+    whole = 1.0 / stiffness.stiffness_n_m_per_rad
+    shares = (
+        ("teeth", stiffness.mesh),
+        ("pins", stiffness.pins),
+        ("sun's shaft", stiffness.shaft),
+        ("carrier", stiffness.carrier),
+    )
+    bronze = settings.materials.bush_bronze
+    return [
+        ("with all losses", f"{100.0 * losses.efficiency_total:.1f} %: {', '.join(sources)} %"),
+        ("stiffness at output", f"{1e-3 * stiffness.stiffness_n_m_per_rad:.1f} kN m/rad"),
+        ("share in giving way", ", ".join(f"{name} {100.0 * part / whole:.0f}" for name, part in shares) + " %"),
+        ("backlash at output", f"{sheet.backlash_arcmin:.1f} arcmin"),
+        (
+            "planet bushes",
+            f"{bush.pressure_mpa:.1f} MPa at {bush.speed_m_per_s:.2f} m/s: pv {bush.pv_mpa_m_per_s:.1f} MPa m/s",
+        ),
+        (
+            "",
+            f"limit {bronze.pv_limit_mpa_m_per_s:g}, for short periods {bronze.pv_short_limit_mpa_m_per_s:g}; "
+            f"in the duty {sheet.bush_duty.pv_mpa_m_per_s:.1f}",
+        ),
+    ]
+
+
+def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
+    """One row for each bearing, under ``BEARING_COLUMNS``."""
+    rows: list[tuple[str, ...]] = []
+    for found in sheet.bearings:
+        rated = found.bearing
+        rows.append(
+            (
+                found.place,
+                rated.designation,
+                f"{rated.inner_diameter_mm:g}x{rated.outer_diameter_mm:g}x{rated.width_mm:g}",
+                f"{found.force_n:.0f}",
+                f"{found.tilt_n_m:.1f}",
+                f"{found.equivalent_n:.0f}",
+                f"{1e3 * found.tilt_rad:.1f}",
+                f"{found.life_h:.0f}" if found.life_h < _LONG_H else "> 1e6",
+                f"{found.static_safety:.2f}",
+                f"{found.overload_safety:.2f}",
+            )
+        )
+    return rows
+
+
+def duty_lines(sheet: "ServiceSheet", service: "ServiceData") -> list[str]:
+    """The duty that the lives belong to, and the bearings that the overload would mark."""
+    levels = " and ".join(
+        f"{angle:g} rad at {share:g}"
+        for share, angle in zip(service.torque_shares, service.output_angles_rad, strict=True)
+    )
+    lines = [
+        f"Duty: {service.jumps_per_minute:g} jumps per minute, each {levels} of the peak torque.",
+        f"Overload: {service.overload_factor:g} times the peak torque, or the foot force in the push-off.",
+    ]
+    lines += [
+        f"Bearing {found.place}: s0 = {found.overload_safety:.2f} under the overload, less than 1: "
+        "its balls leave marks."
+        for found in sheet.bearings
+        if found.overload_safety < 1.0
+    ]
+    return lines

@@ -1,0 +1,153 @@
+"""Stiffness and backlash at the output: finite elements, energy, rigid rolling, and handbook values."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pareto_monoped.actuator.actuator import build_actuator
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.layout import layout
+from pareto_monoped.actuator.service.sheet import service_sheet
+from pareto_monoped.actuator.service.stiffness import backlash_arcmin, mesh_compliance, mesh_stiffness, pin_compliance
+
+
+def layout_of(actuator, settings):
+    return layout(actuator.motor, actuator.family, actuator.gears, actuator.face_width_mm, settings)
+
+
+def test_mesh_stiffness_of_heavily_loaded_standard_gears_is_the_rule_of_thumb():
+    """ISO 6336-1: c' = 14 and c_gamma = 20 N/(mm um) for steel gears (method C), above 100 N/mm."""
+    assert mesh_stiffness(30, 60, 1.7, 500.0) == pytest.approx(20.0, rel=0.12)
+    assert mesh_stiffness(30, 60, 1.0, 500.0) == pytest.approx(14.0, rel=0.12)
+
+
+def test_mesh_stiffness_by_hand():
+    """20 and 40 teeth: q' = 0.04723 + 0.15551/20 + 0.25791/40 = 0.061453; times 0.78 and 0.5^0.25."""
+    stiff = 1.0 / 0.061453 * 0.8 * 0.975 * (0.75 * 1.6 + 0.25)
+    assert mesh_stiffness(20, 40, 1.6, 200.0) == pytest.approx(stiff, rel=1e-4)
+    assert mesh_stiffness(20, 40, 1.6, 50.0) == pytest.approx(stiff * 0.5**0.25, rel=1e-4)
+    assert mesh_stiffness(40, math.inf, 1.6, 200.0) > mesh_stiffness(40, 1000, 1.6, 200.0)
+
+
+@pytest.mark.parametrize("ratio", [4.0, 7.9])
+def test_teeth_give_way_as_two_springs_and_a_lever_do(vt_map, ratio):
+    """Statics of one planet written out: forces on its rim, springs along the line of action, motion of its centre."""
+    actuator = vt_map.lookup(ratio)
+    gears, width = actuator.gears, actuator.face_width_mm
+    r_carrier = 1e-3 * gears.carrier_radius_mm
+    pin_force = actuator.peak_torque_n_m / gears.planets / r_carrier
+    rim_force = 0.5 * pin_force  # sun and ring push alike, or the planet would spin
+    line_force = rim_force / math.cos(math.radians(20.0))
+    moved = []
+    for pair in (
+        (gears.sun_teeth, gears.planet_teeth, actuator.contact_ratio_sun),
+        (gears.planet_teeth, math.inf, actuator.contact_ratio_ring),
+    ):
+        spring = 1e6 * width * mesh_stiffness(*pair, rim_force / width)
+        moved.append(line_force / spring / math.cos(math.radians(20.0)))  # along the pitch circle
+    turned = 0.5 * sum(moved) / r_carrier
+    assert mesh_compliance(actuator) == pytest.approx(turned / actuator.peak_torque_n_m, rel=1e-9)
+
+
+def beam_mean_deflection_mm(length_mm, stiffness_n_mm2, force_n, elements=40):
+    """Finite elements: clamped at one end, the other end free to move but not to turn, uniform load."""
+    step = length_mm / elements
+    beam = (stiffness_n_mm2 / step**3) * np.array(
+        [
+            [12, 6 * step, -12, 6 * step],
+            [6 * step, 4 * step**2, -6 * step, 2 * step**2],
+            [-12, -6 * step, 12, -6 * step],
+            [6 * step, 2 * step**2, -6 * step, 4 * step**2],
+        ]
+    )
+    load = force_n / length_mm
+    loads = load * np.array([step / 2, step**2 / 12, step / 2, -(step**2) / 12])
+    size = 2 * (elements + 1)
+    matrix, right = np.zeros((size, size)), np.zeros(size)
+    for e in range(elements):
+        matrix[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += beam
+        right[2 * e : 2 * e + 4] += loads
+    free = [i for i in range(2, size) if i != size - 1]
+    moved = np.zeros(size)
+    moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], right[free])
+    return float(right @ moved) / force_n  # work of the load: its mean deflection
+
+
+@pytest.mark.parametrize("ratio", [4.0, 6.0, 7.9])
+def test_pins_bend_as_finite_elements_do(vt_map, ratio):
+    actuator, settings = vt_map.lookup(ratio), vt_map.settings
+    at = layout_of(actuator, settings)
+    length = actuator.face_width_mm + 2 * settings.parts.carrier.planet_clearance_mm
+    stiffness = 206e3 * math.pi * 6.0**4 / 64.0
+    radius = actuator.gears.carrier_radius_mm
+    force = 1e3 / (actuator.gears.planets * radius)  # of each pin at 1 N m
+    turned = beam_mean_deflection_mm(length, stiffness, force) / radius
+    found = pin_compliance(actuator.gears, at, 6.0, settings.materials.steel)
+    assert found == pytest.approx(turned, rel=1e-6)
+
+
+@pytest.mark.parametrize(("ratio", "radius_mm"), [(4.0, 5.0), (7.9, 3.0)])
+def test_shaft_and_carrier_twist_as_tubes_do(vt_map, ratio, radius_mm):
+    """ISSPG: 10 mm journal in one piece with the sun; ESSPG: 6 mm dowel. From coupling to the middle of the teeth."""
+    actuator, settings = vt_map.lookup(ratio), vt_map.settings
+    found = service_sheet(actuator, settings).stiffness
+    parts = {part.name: part for part in actuator.parts}
+    coupling = max(prism.z1_mm for prism in parts["coupling"].prisms)
+    ring = parts["ring"].prisms[0]
+    length = 0.5 * (ring.z0_mm + ring.z1_mm) - coupling
+    polar = math.pi / 32.0 * (2 * radius_mm) ** 4
+    shear = 206e3 / 2.6
+    assert found.shaft == pytest.approx(1e3 * length / (shear * polar) / actuator.ratio**2)
+    # The carrier is stiffer than a plain tube of the bearing's bore with the largest hole, and less than a solid bar.
+    bore = settings.parts and layout_of(actuator, settings).bearing.inner_diameter_mm
+    depth = -min(prism.z0_mm for prism in parts["carrier"].prisms)
+    bar = 1e3 * depth / (70e3 / 2.66 * math.pi / 32.0 * float(bore) ** 4)
+    assert bar < found.carrier < 4.0 * bar
+
+
+def test_parts_in_series_make_the_whole(vt_map):
+    found = service_sheet(vt_map.lookup(6.0), vt_map.settings).stiffness
+    whole = found.mesh + found.pins + found.shaft + found.carrier
+    assert found.stiffness_n_m_per_rad == pytest.approx(1.0 / whole)
+    assert found.stiffness_n_m_per_rad < min(1.0 / found.pins, 1.0 / found.shaft)
+
+
+def test_a_stiffer_steel_and_more_planets_never_soften(vt_map, vt8020, settings):
+    actuator = vt_map.lookup(4.0)
+    stiff = replace(
+        settings,
+        materials=replace(settings.materials, steel=replace(settings.materials.steel, youngs_modulus_mpa=250e3)),
+    )
+    usual = service_sheet(actuator, settings).stiffness
+    assert service_sheet(actuator, stiff).stiffness.stiffness_n_m_per_rad > usual.stiffness_n_m_per_rad
+    fewer = build_actuator(vt8020, "ISSPG", replace(actuator.gears, planets=4), settings)
+    same_width = replace(actuator, gears=fewer.gears)
+    assert mesh_compliance(same_width) > mesh_compliance(actuator)
+
+
+teeth = st.integers(18, 80)
+
+
+@given(teeth, teeth, st.floats(0.3, 1.2), st.floats(0.001, 0.1))
+def test_backlash_is_that_of_rigid_wheels_with_play(sun, planet, module, thinning):
+    """Turn the sun through the play of both meshes with the carrier held, then divide by the ratio."""
+    gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=3)
+    r_sun = 0.5 * module * sun
+    play = 2 * (2 * thinning)  # two meshes, each with both of its teeth thinned; the planet only passes motion on
+    at_sun = play / r_sun
+    assert backlash_arcmin(gears, thinning) == pytest.approx(math.degrees(at_sun / gears.ratio) * 60.0)
+
+
+def test_teeth_of_the_cad_are_as_thin_as_the_backlash_says(vt_map):
+    """On the pitch circle, tooth and mating tooth together leave 0.08 mm of the pitch free."""
+    gears, thinning = vt_map.lookup(6.0).gears, vt_map.settings.parts.gears.backlash_mm
+    areas = []
+    for wheel in (gears.sun, gears.planet):
+        plain, thin = wheel().moments().area, wheel(thinning).moments().area
+        height = wheel().tip_radius_mm - wheel().root_radius_mm
+        areas.append((plain - thin) / (int(wheel().teeth) * height))
+    assert sum(areas) == pytest.approx(2 * thinning, rel=0.1)
