@@ -174,7 +174,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
     for row in bearing_rows(sheet):
         bearings.add_row(*row)
     console.print(bearings)
-    for line in duty_lines(sheet, default_service()):
+    for line in duty_lines(sheet, actuator_map.settings, default_service()):
         console.print(line, markup=False)
     console.print(_parts_table(known["parts"], actuator.mass_kg))
     for line in _rivals(actuator.family, known):

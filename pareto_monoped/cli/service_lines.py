@@ -83,15 +83,15 @@ def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
     return rows
 
 
-def duty_lines(sheet: "ServiceSheet", service: "ServiceData") -> list[str]:
+def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "ServiceData") -> list[str]:
     """The duty that the lives belong to, and the bearings that the overload would mark."""
+    duty, overload = settings.parts.duty, settings.parts.rating.overload_factor
     levels = " and ".join(
-        f"{angle:g} rad at {share:g}"
-        for share, angle in zip(service.torque_shares, service.output_angles_rad, strict=True)
+        f"{angle:g} rad at {share:g}" for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
     )
     lines = [
         f"Duty: {service.jumps_per_minute:g} jumps per minute, each {levels} of the peak torque.",
-        f"Overload: {service.overload_factor:g} times the peak torque, or the foot force in the push-off.",
+        f"Overload: {overload:g} times the peak torque, or the foot force in the push-off.",
     ]
     lines += [
         f"Bearing {found.place}: s0 = {found.overload_safety:.2f} under the overload, less than 1: "

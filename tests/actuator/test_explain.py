@@ -4,6 +4,7 @@ import pytest
 
 from pareto_monoped.actuator.explain import details, gaps, summary
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.actuator.service.sheet import service_sheet
 
 
 @pytest.fixture(scope="module")
@@ -27,8 +28,9 @@ def test_separate_gaps_stay_separate():
 
 def test_details_begin_with_the_summary(actuator_map):
     entry = actuator_map.entry(6.05)
-    known = details(entry)
-    assert list(known)[: len(summary(entry))] == list(summary(entry))
+    sheet = service_sheet(entry.actuator, actuator_map.settings)
+    known, row = details(entry, sheet), summary(entry, sheet)
+    assert list(known)[: len(row)] == list(row)
     assert known["mass_kg"] == entry.actuator.mass_kg
     masses = [part["mass_kg"] for part in known["parts"]]
     assert masses == sorted(masses, reverse=True)
@@ -38,8 +40,26 @@ def test_details_begin_with_the_summary(actuator_map):
 
 def test_axial_inertia_is_that_about_the_gearbox_axis(actuator_map):
     entry = actuator_map.entry(6.0)
-    for part, known in zip(
-        sorted(entry.actuator.parts, key=lambda part: -part.mass_kg()), details(entry)["parts"], strict=True
-    ):
+    known_parts = details(entry, service_sheet(entry.actuator, actuator_map.settings))["parts"]
+    parts = sorted(entry.actuator.parts, key=lambda part: -part.mass_kg())
+    for part, known in zip(parts, known_parts, strict=True):
         x2, y2 = part.mass_properties().second_kg_m2[[0, 1], [0, 1]]
         assert known["axial_inertia_kg_m2"] == pytest.approx(x2 + y2)
+
+
+def test_a_row_of_the_map_tells_what_the_service_sheet_says(actuator_map):
+    entry = actuator_map.entry(6.0)
+    actuator, sheet = entry.actuator, service_sheet(entry.actuator, actuator_map.settings)
+    row, known = summary(entry, sheet), details(entry, sheet)
+    assert row["efficiency_mesh"] == row["efficiency"] == actuator.efficiency
+    product = row["efficiency_mesh"] * row["efficiency_bushes"] * row["efficiency_bearings"]
+    assert row["efficiency_total"] == pytest.approx(product * known["efficiency_churning"])
+    assert row["bearing_life_h"] == min(found["life_h"] for found in known["bearings"])
+    assert row["output_tilt_n_m"] == max(found["tilt_n_m"] for found in known["bearings"])
+    assert row["stiffness_n_m_per_rad"] == pytest.approx(1.0 / sum(known["compliance_rad_per_n_m"].values()))
+    assert row["backlash_arcmin"] == sheet.backlash_arcmin
+    for name in ("continuous_torque_n_m", "no_load_speed_rad_per_s", "length_mm", "reflected_inertia_kg_m2"):
+        assert row[name] == getattr(actuator, name)
+    bush = known["bush"]
+    assert bush["pv_mpa_m_per_s"] == pytest.approx(bush["pressure_mpa"] * bush["speed_m_per_s"])
+    assert known["bearings"][0]["size_mm"] == [40.0, 52.0, 7.0]

@@ -20,6 +20,18 @@ KEYS = [
     "mass_kg",
     "peak_torque_n_m",
     "efficiency",
+    "continuous_torque_n_m",
+    "no_load_speed_rad_per_s",
+    "length_mm",
+    "reflected_inertia_kg_m2",
+    "efficiency_mesh",
+    "efficiency_bushes",
+    "efficiency_bearings",
+    "efficiency_total",
+    "bearing_life_h",
+    "output_tilt_n_m",
+    "backlash_arcmin",
+    "stiffness_n_m_per_rad",
 ]
 
 
@@ -97,6 +109,8 @@ def test_another_motor(capsys):
         (("--ratio", "2"), ("outside the map",)),
         (("--without", "rim"), ("constraints_off = 'rim'",)),
         (("--csv", "/nonexistent/map.csv"), ("/nonexistent/map.csv", "cannot be written")),
+        (("--figure", "map.gif"), ("figure = 'map.gif'", "svg, png, pdf")),
+        (("--figure", "/nonexistent/map.svg"), ("/nonexistent/map.svg", "cannot be written")),
     ],
 )
 def test_wrong_input_is_one_line_and_code_2(capsys, arguments, words):
@@ -145,6 +159,45 @@ def test_units_and_rounding_of_the_printed_parts(capsys):
     assert f"Best {other}: {known['families'][other]['gears']}" in printed
     for name in known["binding"]:
         assert f"  {name}: " in printed
+
+
+def test_the_sheet_of_one_ratio_prints_losses_bearings_and_stiffness_in_80_columns(capsys):
+    known = json.loads(run(capsys, "--ratio", "6.0", "--json")[1].out)
+    printed = run(capsys, "--ratio", "6.0")[1].out
+    assert max(len(line) for line in printed.splitlines()) <= 80
+    percent = [f"{100 * known[f'efficiency_{source}']:.1f}" for source in ("total", "mesh", "bushes", "bearings")]
+    assert "{} %: mesh {}, bushes {}, bearings {} %".format(*percent) in printed
+    assert f"{1e-3 * known['stiffness_n_m_per_rad']:.1f} kN m/rad" in printed
+    assert f"{known['backlash_arcmin']:.1f} arcmin" in printed
+    assert f"pv {known['bush']['pv_mpa_m_per_s']:.1f} MPa m/s" in printed
+    main = known["bearings"][0]
+    (line,) = [line for line in printed.splitlines() if line.startswith(" main, knee")]
+    assert line.split()[2:] == [
+        "6808",
+        "40x52x7",
+        f"{main['force_n']:.0f}",
+        f"{main['tilt_n_m']:.1f}",
+        f"{main['equivalent_n']:.0f}",
+        f"{1e3 * main['tilt_rad']:.1f}",
+        f"{main['life_h']:.0f}",
+        f"{main['static_safety']:.2f}",
+        f"{main['overload_safety']:.2f}",
+    ]
+    assert "Duty: 10 jumps per minute, each 1 rad at 1 and 2 rad at 0.5 of the peak torque" in printed
+
+
+def test_a_bearing_that_the_overload_marks_is_named(capsys):
+    weak = run(capsys, "--motor", "U12", "--ratio", "7")[1].out
+    assert "Bearing main, knee: s0 = 0." in weak
+    assert "Bearing main, knee: s0" not in run(capsys, "--ratio", "6.0")[1].out
+
+
+@pytest.mark.parametrize(("kind", "head"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_the_map_as_a_figure(capsys, tmp_path, kind, head):
+    path = tmp_path / f"map.{kind}"
+    code, _ = run(capsys, "--figure", str(path), "--json")
+    assert code == 0
+    assert path.read_bytes().startswith(head)
 
 
 def test_one_ratio_as_csv_is_one_row(capsys, tmp_path):

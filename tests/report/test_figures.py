@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import _along, _front, _links, _states, write_figures
+from pareto_monoped.report.figures import _along, _front, _links, _states, write_figures, write_map_figure
 from pareto_monoped.report.payload import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
@@ -118,3 +120,45 @@ def test_a_folder_that_cannot_be_made_is_refused(payload, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be made"):
         write_figures(payload, tmp_path / "file" / "folder")
+
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def drawn(path):
+    """Words in a figure, and the number of markers."""
+    root = ElementTree.parse(path).getroot()
+    words = {node.text.strip() for node in root.iter(f"{SVG}text") if node.text}
+    return words, sum(1 for _ in root.iter(f"{SVG}use"))
+
+
+def test_the_figure_of_a_map_has_a_point_for_every_gearbox_of_either_family(tmp_path):
+    found = map_for("VT8020")
+    write_map_figure({"": found}, tmp_path / "map.svg")
+    words, markers = drawn(tmp_path / "map.svg")
+    assert {"VT8020", "ISSPG", "ESSPG", "gear ratio", "actuator mass (kg)"} <= words
+    points = sum(int(np.isfinite(found.masses_kg(family)).sum()) for family in ("ISSPG", "ESSPG"))
+    ticks = sum(1 for word in words if word.replace(".", "").isdigit())
+    assert markers == points + 2 + ticks  # the legend has one marker for each family, the axes one for each tick
+
+
+def test_two_maps_of_a_motor_lie_over_each_other(tmp_path):
+    found = map_for("VT8020")
+    other = build_map(found.motor, ActuatorSettings(constraints_off=frozenset({"sun_rim"})))
+    write_map_figure({"all rules": found, "without sun_rim": other}, tmp_path / "maps.svg")
+    words, _ = drawn(tmp_path / "maps.svg")
+    assert {"ISSPG, all rules", "ESSPG, all rules", "ISSPG, without sun_rim", "ESSPG, without sun_rim"} <= words
+    assert "VT8020" in words
+
+
+def test_a_motor_of_one_family_has_no_entry_for_the_other(tmp_path):
+    write_map_figure({"": map_for("MAD_M6C12")}, tmp_path / "map.svg")
+    words, _ = drawn(tmp_path / "map.svg")
+    assert "ESSPG" in words
+    assert "ISSPG" not in words
+
+
+def test_the_same_map_gives_the_same_bytes(tmp_path):
+    for name in ("a.svg", "b.svg"):
+        write_map_figure({"": map_for("VT8020")}, tmp_path / name)
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()

@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.bearings import RatedBearing, rated_bearing
 from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.rating.build import load_sharing
+from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.service.ball_row import row_load
 from pareto_monoped.actuator.service.data import ServiceData
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
 
@@ -51,29 +54,34 @@ class BearingService:
     turns_per_output: float
 
 
-def bearing_services(actuator: Actuator, at: Layout, service: ServiceData) -> tuple[BearingService, ...]:
+def bearing_services(
+    actuator: Actuator, at: Layout, settings: ActuatorSettings, service: ServiceData
+) -> tuple[BearingService, ...]:
     """Every bearing of an actuator at both joints; the same actuator is taken for hip and knee.
 
     Args:
         actuator: the actuator.
         at: its layout.
-        service: duty, forces and fits.
+        settings: of stage 1, with the duty.
+        service: pace, forces and fits.
     """
+    duty = settings.parts.duty
     main = rated_bearing(float(at.bearing.inner_diameter_mm))
-    levels = np.array([*service.torque_shares, 1.0, service.overload_factor])
+    levels = np.array([*duty.torque_shares, 1.0, settings.parts.rating.overload_factor])
     force, moment = chain_load(actuator, at, service)
     hip = hip_force_n(actuator, at, service)
     # Sun and rotor rest in two bearings; the carrier of an ESSPG and the motor's own bearings share the sun's load.
-    sun = 0.5 * uneven_force_n(actuator, service)
+    sun = 0.5 * uneven_force_n(actuator, settings)
     found = [
-        _service("main, knee", main, levels * force, levels * moment, 1.0, service),
-        _service("main, hip", main, levels * hip, 0.0 * levels, 1.0, service),
+        _service("main, knee", main, levels * force, levels * moment, 1.0, duty, service),
+        _service("main, hip", main, levels * hip, 0.0 * levels, 1.0, duty, service),
         _service(
             "end",
             rated_bearing(float(at.end_bearing.inner_diameter_mm)),
             levels * sun,
             0.0 * levels,
             actuator.ratio - 1.0,
+            duty,
             service,
         ),
     ]
@@ -81,7 +89,7 @@ def bearing_services(actuator: Actuator, at: Layout, service: ServiceData) -> tu
         assert actuator.motor.frameless is not None
         rotor = 0.5 * actuator.motor.rotor_share() * actuator.motor.frameless.mass_kg * GRAVITY_M_PER_S2
         bearing = rated_bearing(float(at.rear_bearing.inner_diameter_mm))
-        found.append(_service("rear", bearing, levels * sun + rotor, 0.0 * levels, actuator.ratio, service))
+        found.append(_service("rear", bearing, levels * sun + rotor, 0.0 * levels, actuator.ratio, duty, service))
     return tuple(found)
 
 
@@ -106,20 +114,32 @@ def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
     return (service.foot_force_n + service.leg_weight_n) * far / (near + far)
 
 
-def uneven_force_n(actuator: Actuator, service: ServiceData) -> float:
-    """Radial force on the sun at the peak torque: what the teeth of one planet press more than those of the others."""
+def uneven_force_n(actuator: Actuator, settings: ActuatorSettings) -> float:
+    """Radial force on the sun at the peak torque: what one planet's teeth press above the mean, (K_gamma - 1) of it."""
     gears = actuator.gears
     radius_m = 0.5e-3 * float(gears.module_mm) * float(gears.sun_teeth)
     tangential = actuator.motor.peak_torque_n_m / (radius_m * float(gears.planets))
-    return float(service.uneven_share * tangential / np.cos(PRESSURE_ANGLE_RAD))
+    uneven = float(load_sharing(gears.planets, settings)) - 1.0
+    return float(uneven * tangential / np.cos(PRESSURE_ANGLE_RAD))
+
+
+def output_turns_per_hour(duty: DutyData, service: ServiceData) -> float:
+    """Angle through which the output turns in an hour, in whole turns."""
+    return 60.0 * service.jumps_per_minute * sum(duty.output_angles_rad) / (2.0 * np.pi)
 
 
 def _service(
-    place: Place, bearing: RatedBearing, force: Floats, moment: Floats, turns: float, service: ServiceData
+    place: Place,
+    bearing: RatedBearing,
+    force: Floats,
+    moment: Floats,
+    turns: float,
+    duty: DutyData,
+    service: ServiceData,
 ) -> BearingService:
     """Rate a bearing; the loads are those of the duty's levels, of the peak torque and of the overload."""
     loads = row_load(bearing, force, moment, service.bearing_clearance_mm)
-    angles = np.array(service.output_angles_rad)
+    angles = np.array(duty.output_angles_rad)
     million_turns = (bearing.dynamic_rating_n / loads.equivalent_n[: len(angles)]) ** 3  # ISO 281, clause 5.3
     # Palmgren and Miner: each level takes its share of the turns.
     life_turns = 1e6 / float(np.sum(angles / np.sum(angles) / million_turns))
@@ -131,7 +151,7 @@ def _service(
         tilt_n_m=float(moment[peak]),
         equivalent_n=float(loads.equivalent_n[peak]),
         tilt_rad=float(loads.tilt_rad[peak]),
-        life_h=life_turns / (service.output_turns_per_hour * turns),
+        life_h=life_turns / (output_turns_per_hour(duty, service) * turns),
         static_safety=float(loads.static_safety[peak]),
         overload_safety=float(loads.static_safety[overload]),
         turns_per_output=turns,

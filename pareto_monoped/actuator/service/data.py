@@ -1,6 +1,5 @@
-"""What the joints ask of an actuator: forces, duty, fit; values and sources stand in ``data/service.toml``."""
+"""What the joints ask of an actuator: forces, pace, fit; values and sources stand in ``data/service.toml``."""
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
@@ -12,19 +11,15 @@ from pareto_monoped.config import checked, read_toml
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServiceData:
-    """Duty of the joints, forces on the output, fit and lubrication of the bearings.
+    """Pace of the joints, forces on the output, fit and lubrication of the bearings.
 
     Attributes:
-        torque_shares, output_angles_rad: of one jump: torque over the actuator's peak, and the angle through which the
-            output turns at it, one value per level.
         jumps_per_minute: on average.
         mean_speed_rad_per_s: of the output while it moves.
-        overload_factor: largest load of a single event over that at the peak torque.
         chain_radius_mm: of the knee's sprocket.
         chain_offset_mm: knee: how far the chain runs in front of the output face.
         leg_offset_mm: hip: how far the leg's middle plane lies in front of the output face.
@@ -32,18 +27,14 @@ class ServiceData:
         foot_force_n: largest in the push-off.
         leg_weight_n: of what hangs on the hip.
         bearing_clearance_mm: radial clearance of a fitted bearing.
-        uneven_share: part of one planet's tooth force that the other planets do not balance.
         bearing_friction_coefficient: of ball bearings, at the radius of the bore.
         lubricant_viscosity_mm2_per_s: of the oil that the bearings churn; 0 if they churn none.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
-    torque_shares: tuple[Share, ...]
-    output_angles_rad: tuple[Positive, ...]
     jumps_per_minute: Positive
     mean_speed_rad_per_s: Positive
-    overload_factor: Annotated[float, Field(ge=1.0, allow_inf_nan=False)]
     chain_radius_mm: Positive
     chain_offset_mm: NotNegative
     leg_offset_mm: NotNegative
@@ -51,22 +42,8 @@ class ServiceData:
     foot_force_n: NotNegative
     leg_weight_n: NotNegative
     bearing_clearance_mm: NotNegative
-    uneven_share: NotNegative
     bearing_friction_coefficient: Positive
     lubricant_viscosity_mm2_per_s: NotNegative
-
-    def __post_init__(self) -> None:
-        """Refuse levels without an angle."""
-        if len(self.torque_shares) != len(self.output_angles_rad) or not self.torque_shares:
-            raise ValueError(
-                f"torque_shares, output_angles_rad = {len(self.torque_shares)} and {len(self.output_angles_rad)} "
-                "values: must be one per level each; correct them"
-            )
-
-    @property
-    def output_turns_per_hour(self) -> float:
-        """Angle through which the output turns in an hour, in whole turns (radians over 2 pi)."""
-        return 60.0 * self.jumps_per_minute * sum(self.output_angles_rad) / (2.0 * math.pi)
 
 
 @lru_cache(maxsize=1)

@@ -55,20 +55,21 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
 
     Args:
         actuator: the actuator, as built with ``settings``.
-        settings: of stage 1.
-        service: duty, forces and fits; default ``default_service()``.
+        settings: of stage 1, with the duty.
+        service: pace, forces and fits; default ``default_service()``.
     """
     service = service or default_service()
     gears, materials = actuator.gears, settings.materials
     at = layout(actuator.motor, actuator.family, gears, actuator.face_width_mm, settings)
-    bearings = bearing_services(actuator, at, service)
+    bearings = bearing_services(actuator, at, settings, service)
     # The main bearing turns once; at the knee it carries more than at the hip.
     turning = [found for found in bearings if found.place != "main, hip"]
     pin_mm = settings.parts.carrier.pin_diameter_mm
     (bush,) = (part for part in actuator.parts if part.role is Role.BUSH)
     length_mm = sum(float(prism.z1_mm - prism.z0_mm) for prism in bush.prisms)
-    angles = service.output_angles_rad
-    mean_share = sum(a * b for a, b in zip(service.torque_shares, angles, strict=True)) / sum(angles)
+    duty = settings.parts.duty
+    levels = zip(duty.torque_shares, duty.output_angles_rad, strict=True)
+    mean_share = sum(share * angle for share, angle in levels) / sum(duty.output_angles_rad)
     return ServiceSheet(
         bearings=bearings,
         bush=bush_load(gears, actuator.continuous_torque_n_m, actuator.no_load_speed_rad_per_s, pin_mm, length_mm),

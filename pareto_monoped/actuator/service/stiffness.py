@@ -7,6 +7,7 @@ import numpy as np
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.rating.load import mesh_stiffness, pair_stiffness
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.parts import Prism
@@ -14,8 +15,6 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.materials import ElasticMaterial
 
-_CORRECTION, _BASIC_RACK = 0.8, 0.975  # C_M; C_B of ISO 53 teeth: dedendum 1.25 modules (ISO 6336-1, clause 9.3.1)
-_LIGHT_N_PER_MM = 100.0  # below this load per width, teeth are softer (same clause)
 _ARCMIN = 60.0 * 180.0 / np.pi
 
 
@@ -50,7 +49,7 @@ def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Sti
     shaft = gear if actuator.family == "ISSPG" else steel  # the ESSPG's sun sits on a dowel
     return Stiffness(
         mesh=mesh_compliance(actuator),
-        pins=pin_compliance(actuator.gears, at, settings.parts.carrier.pin_diameter_mm, steel),
+        pins=pin_compliance(actuator.gears, at, settings),
         shaft=_shaft_compliance(actuator, at, shaft) / actuator.ratio**2,
         carrier=_carrier_compliance(actuator, at, settings.materials.aluminium),
     )
@@ -61,43 +60,33 @@ def mesh_compliance(actuator: Actuator) -> float:
 
     A planet is a lever: its tooth force F on the sun and on the ring moves its centre by the mean of what both meshes
     give way. From the elastic energy of n planets with F = T / (2 n r cos alpha) in either mesh of stiffness k,
-    compliance = (1 / k_sun + 1 / k_ring) / (4 n r^2 cos^2 alpha).
+    compliance = (1 / k_sun + 1 / k_ring) / (4 n r^2 cos^2 alpha). The stiffness of a mesh is that of ISO 6336-1.
     """
     gears = actuator.gears
     radius_m, planets = 1e-3 * float(gears.carrier_radius_mm), float(gears.planets)
     tangential_n = actuator.peak_torque_n_m / (2.0 * planets * radius_m)
     load = tangential_n / actuator.face_width_mm
-    sun_teeth, planet_teeth = float(gears.sun_teeth), float(gears.planet_teeth)
-    sun = mesh_stiffness(sun_teeth, planet_teeth, actuator.contact_ratio_sun, load)
-    ring = mesh_stiffness(planet_teeth, np.inf, actuator.contact_ratio_ring, load)
+    outer = pair_stiffness(gears.sun_teeth, gears.planet_teeth, internal=False)
+    inner = pair_stiffness(gears.planet_teeth, gears.ring_teeth, internal=True)
+    sun = mesh_stiffness(outer, actuator.contact_ratio_sun, load)
+    ring = mesh_stiffness(inner, actuator.contact_ratio_ring, load)
     softness = sum(1e-6 / (stiff * actuator.face_width_mm) for stiff in (sun, ring))  # m/N
     return float(softness / (4.0 * planets * (radius_m * np.cos(PRESSURE_ANGLE_RAD)) ** 2))
 
 
-def mesh_stiffness(pinion_teeth: float, wheel_teeth: float, contact_ratio: float, load_n_per_mm: float) -> float:
-    """c_gamma,alpha per width, in N / (mm um), of spur gears of steel without profile shift (ISO 6336-1, method B).
-
-    Args:
-        pinion_teeth: of the external gear.
-        wheel_teeth: of its mate; infinite for an internal gear, as the standard says.
-        contact_ratio: epsilon_alpha.
-        load_n_per_mm: K_A F_t / b.
-    """
-    softness = 0.04723 + 0.15551 / pinion_teeth + 0.25791 / wheel_teeth
-    light = min(1.0, load_n_per_mm / _LIGHT_N_PER_MM) ** 0.25
-    return float(_CORRECTION * _BASIC_RACK * light / softness * (0.75 * contact_ratio + 0.25))
-
-
-def pin_compliance(gears: GearSet, at: Layout, pin_diameter_mm: float, steel: ElasticMaterial) -> float:
+def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> float:
     """Of the pins, in rad / (N m).
 
-    A pin is clamped in the carrier. The second carrier is held by the pins alone: it follows them around the axis, but
-    does not let their ends turn. Under a uniform load F over the length L between both carriers, the mean deflection of
-    a beam that is clamped at one end and guided at the other is F L^3 / (45 E I).
+    A pin is clamped in both carriers. A second carrier that is held by the pins alone follows them around the axis, but
+    does not let their ends turn: under a uniform load F over the length L between the carriers, the mean deflection of
+    a beam that is clamped at one end and guided at the other is F L^3 / (45 E I). Webs hold the second carrier as well:
+    F L^3 / (720 E I), clamped at both ends.
     """
+    divisor = 45.0 if settings.parts.rating.second_carrier == "pins" else 720.0
     length_mm = float(at.z_shoulder - at.z_secondary_front)
-    second_moment_mm4 = np.pi * pin_diameter_mm**4 / 64.0
-    softness = 1e-3 * length_mm**3 / (45.0 * steel.youngs_modulus_mpa * second_moment_mm4)  # m/N
+    second_moment_mm4 = np.pi * settings.parts.carrier.pin_diameter_mm**4 / 64.0
+    bending = settings.materials.steel.youngs_modulus_mpa * second_moment_mm4
+    softness = 1e-3 * length_mm**3 / (divisor * bending)  # m/N
     return float(softness / (float(gears.planets) * (1e-3 * float(gears.carrier_radius_mm)) ** 2))
 
 
