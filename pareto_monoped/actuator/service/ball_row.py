@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.bearings import RatedBearing
+from pareto_monoped.errors import SimulationError, complaint
 
 Floats = NDArray[np.float64]
 
 GROOVE = 0.52
 """Groove radius over ball diameter, as ISO 281 and ISO 76 assume for deep groove ball bearings."""
 _YOUNGS_MODULUS_MPA, _POISSON_RATIO = 207_000.0, 0.3  # bearing steel, as in ISO/TS 16281 and ISO 76
-_STEPS, _TOLERANCE = 60, 1e-10  # Newton's; the tolerance is relative to the load
+_STEPS, _TOLERANCE = 60, 1e-8  # Newton's; the tolerance is relative to the load
 _TRACE = 1e-9  # of the stiffness of a ball pressed by the free distance of the grooves
 _STRIBECK = 5.0  # ISO 76: the most loaded ball carries 5 / Z of a radial force
 
@@ -48,6 +49,9 @@ def row_load(bearing: RatedBearing, force_n: Floats, moment_n_m: Floats, clearan
         force_n: radial force, not negative, shape (n,).
         moment_n_m: tilting moment, likewise; force and moment are not both zero.
         clearance_mm: radial internal clearance when fitted.
+
+    Raises:
+        SimulationError: no balance was found.
     """
     force, moment = np.asarray(force_n, dtype=np.float64), 1e3 * np.asarray(moment_n_m, dtype=np.float64)
     row = _Row(bearing, clearance_mm)
@@ -89,6 +93,9 @@ class _Row:
 
         Newton's method on the elastic energy less the work of the loads, which is convex. Steps are halved until the
         energy falls.
+
+        Raises:
+            SimulationError: no balance was found.
         """
         load = force + moment / self.arm_mm
         press = (_STRIBECK * load / (self.balls * self.stiffness)) ** (2.0 / 3.0)
@@ -100,7 +107,7 @@ class _Row:
             pull = force - (ball * along * self.cosine).sum(-1)
             turn = moment - self.arm_mm * (ball * across * self.cosine).sum(-1)
             if np.max((np.abs(pull) + np.abs(turn) / self.arm_mm) / load) < _TOLERANCE:
-                break
+                return shift, tilt
             # Second derivatives of a ball's energy: along its line of contact, and across it.
             with np.errstate(divide="ignore", invalid="ignore"):
                 stiff = np.where(ball > 0.0, 1.5 * ball / (distance - self.free_mm), 0.0)
@@ -115,7 +122,9 @@ class _Row:
             determinant = a * c - b * b
             step_shift, step_tilt = (c * pull - b * turn) / determinant, (a * turn - b * pull) / determinant
             shift, tilt = self._shortened(shift, tilt, step_shift, step_tilt, force, moment)
-        return shift, tilt
+        raise SimulationError(
+            complaint("force, moment on a row", (force.tolist(), moment.tolist()), "finite and bearable", "lower them")
+        )
 
     def _shortened(
         self, shift: Floats, tilt: Floats, step_shift: Floats, step_tilt: Floats, force: Floats, moment: Floats
@@ -144,7 +153,7 @@ def contact_stiffness(bearing: RatedBearing) -> float:
     """
     ball = bearing.ball_diameter_mm
     gamma = ball / bearing.pitch_diameter_mm
-    modulus = 2.0 / (2.0 * (1.0 - _POISSON_RATIO**2) / _YOUNGS_MODULUS_MPA)
+    modulus = _YOUNGS_MODULUS_MPA / (1.0 - _POISSON_RATIO**2)  # E' of two bodies of the same steel
     across = 1.0 / (2.0 / ball - 1.0 / (GROOVE * ball))
     softness = 0.0
     for along in (0.5 * ball * (1.0 - gamma), 0.5 * ball * (1.0 + gamma)):  # inner ring, outer ring

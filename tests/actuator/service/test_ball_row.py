@@ -11,6 +11,7 @@ from scipy.special import ellipe, ellipk
 
 from pareto_monoped.actuator.bearings import rated_bearing, rated_bearings
 from pareto_monoped.actuator.service.ball_row import contact_stiffness, row_load
+from pareto_monoped.errors import SimulationError
 
 B6808 = rated_bearing(40.0)
 CLEARANCE_MM = 0.010
@@ -141,3 +142,16 @@ def test_loads_side_by_side_are_as_each_alone():
         alone = load(B6808, force, moment)
         assert together.equivalent_n[i] == pytest.approx(alone.equivalent_n[0], rel=1e-8)
         assert together.static_safety[i] == pytest.approx(alone.static_safety[0], rel=1e-8)
+
+
+@pytest.mark.parametrize("force_n", [1e-3, 1e6])
+@pytest.mark.parametrize("moment_n_m", [0.0, 1e-4, 1e4])
+def test_loads_of_every_size_are_balanced(force_n, moment_n_m):
+    found = load(B6808, force_n, moment_n_m)
+    assert found.largest_n[0] >= 2.0 * force_n / B6808.balls  # as if every ball carried its share
+    assert np.isfinite(found.equivalent_n[0])
+
+
+def test_loads_that_no_row_can_balance_are_refused():
+    with pytest.raises(SimulationError, match=r"must be finite and bearable"), np.errstate(invalid="ignore"):
+        load(B6808, math.inf, 0.0)
