@@ -35,6 +35,17 @@ def test_densities_of_our_own_choice_are_those_that_their_sources_give():
     assert MATERIALS.gear_steel.density_kg_per_m3 == MATERIALS.steel.density_kg_per_m3
 
 
+def test_stiffness_and_friction_are_those_of_their_sources():
+    """ISO 6336-2 for steel, EN 1999-1-1 for aluminium, a maker's table for PTFE bronze; G by hand."""
+    for steel in (MATERIALS.steel, MATERIALS.gear_steel):
+        assert (steel.youngs_modulus_mpa, steel.poisson_ratio) == (206e3, 0.3)
+        assert steel.shear_modulus_mpa == pytest.approx(79_231.0, abs=1.0)
+    assert MATERIALS.aluminium.shear_modulus_mpa == pytest.approx(26_316.0, abs=1.0)
+    bronze = MATERIALS.bush_bronze
+    assert 0.05 < bronze.friction_coefficient < 0.10
+    assert (bronze.pv_limit_mpa_m_per_s, bronze.pv_short_limit_mpa_m_per_s) == (1.8, 3.6)
+
+
 def test_names_are_unique_and_in_words():
     names = [material.name for material in ALL]
     assert len(set(names)) == len(names)
