@@ -6,6 +6,7 @@ others are optional: each has a default that leaves the paper's controller as it
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -252,6 +253,11 @@ PAPER_CASES: Mapping[str, PaperCase] = {
 }
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""
+RuleSet = Literal["paper", "iso6336"]
+"""Names of the sets of rules that gearboxes are chosen by: see ``actuator.settings.ActuatorSettings``."""
+RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
+DEFAULT_RULES: RuleSet = "paper"
+"""The rules of every command and study file that names none."""
 HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
 """Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
 GRAVITY_M_PER_S2 = 9.81

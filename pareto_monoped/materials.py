@@ -94,7 +94,6 @@ class GearGrade:
         root_limit_mpa: nominal bending stress number sigma_F,lim of the standard test gear.
         yield_mpa: 0.2 % proof stress of the core.
         slip_layer_mm: thickness rho' of the slip layer.
-        youngs_modulus_mpa, poisson_ratio: of elasticity.
     """
 
     __pydantic_config__ = _STRICT
@@ -107,8 +106,6 @@ class GearGrade:
     root_limit_mpa: Positive
     yield_mpa: Positive
     slip_layer_mm: Positive
-    youngs_modulus_mpa: Positive
-    poisson_ratio: Share
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.layout import Family
-from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry
+from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
 from pareto_monoped.actuator.service.losses import BushLoad
@@ -22,11 +23,13 @@ class Gap:
     Attributes:
         ratio_low, ratio_high: the gap is [ratio_low, ratio_high).
         in_the_way: for each family, the constraints that forbid its gearboxes; empty if it has no tooth set there.
+        cures: what would help in the first interval.
     """
 
     ratio_low: float
     ratio_high: float
     in_the_way: Mapping[Family, tuple[ConstraintName, ...]]
+    cures: tuple[str, ...]
 
 
 def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
@@ -59,7 +62,14 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "output_tilt_n_m": sheet.output_tilt_n_m,
         "backlash_arcmin": sheet.backlash_arcmin,
         "stiffness_n_m_per_rad": sheet.stiffness.stiffness_n_m_per_rad,
+        **_safeties(actuator),
     }
+
+
+def _safeties(actuator: Actuator) -> dict[str, float]:
+    """The least safety factors over the meshes, where the gears are rated."""
+    rating = actuator.rating
+    return {} if rating is None else {"flank_safety": rating.flank_safety, "root_safety": rating.root_safety}
 
 
 def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
@@ -80,6 +90,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
             family: {**_best(found.best), "constraints_in_the_way": list(found.in_the_way)}
             for family, found in entry.families.items()
         },
+        **({} if actuator.rating is None else {"rating": actuator.rating.as_dict()}),
         "parts": [_part(part) for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg()))],
     }
 
@@ -106,6 +117,7 @@ def _gap(entries: list[MapEntry]) -> Gap:
             family: tuple(sorted({name for entry in entries for name in entry.forbidden_by.get(family, ())}))
             for family in entries[0].forbidden_by
         },
+        cures=cures(entries[0]),
     )
 
 

@@ -1,6 +1,6 @@
 """The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.rating.width import STRENGTH_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.errors import DesignError
@@ -181,7 +182,7 @@ class ActuatorMap:
             )
         entry = self.entries[min(int(_index(np.asarray(ratio))), len(self.entries) - 1)]
         reason = f"{self.motor.name} has {entry.why_not()}"
-        return reason if self.settings.rules == "paper" else f"{reason}; would help: {_cures(entry)}"
+        return reason if self.settings.rules == "paper" else f"{reason}; would help: {either(cures(entry))}"
 
     def _existing(self) -> str:
         lows = [round(10 * entry.ratio_low) for entry in self.entries if entry.actuator is not None]
@@ -196,11 +197,23 @@ class ActuatorMap:
         return " or ".join(f"[{start / 10:.1f}, {stop / 10:.1f})" for start, stop in runs)
 
 
-def _cures(entry: MapEntry) -> str:
-    """What would help where there is no gearbox, for the family that the fewest rules forbid."""
-    names = min(entry.forbidden_by.values(), key=lambda names: (not names, len(names)), default=())
-    cures = dict.fromkeys(cure for name in names for cure in CONSTRAINTS[name].cures)
-    return " or ".join(cures) or "another motor"
+def cures(entry: MapEntry) -> tuple[str, ...]:
+    """What would help where there is no gearbox, for the family that the fewest rules forbid.
+
+    A family that lacks strength alone goes first: its gear sets fit.
+    """
+
+    def effort(names: tuple[ConstraintName, ...]) -> tuple[bool, bool, int]:
+        return not names, not set(names) <= set(STRENGTH_RULES), len(names)
+
+    names = min(entry.forbidden_by.values(), key=effort, default=())
+    found = tuple(dict.fromkeys(cure for name in names for cure in CONSTRAINTS[name].cures))
+    return found or ("another motor",)
+
+
+def either(choices: Sequence[str]) -> str:
+    """``a, b or c``."""
+    return " or ".join(filter(None, (", ".join(choices[:-1]), choices[-1])))
 
 
 def _index(ratios: NDArray[np.float64]) -> NDArray[np.intp]:

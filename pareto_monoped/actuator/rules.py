@@ -11,7 +11,8 @@ from pareto_monoped.actuator.layout import Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
-from pareto_monoped.actuator.settings import RULE_SETS, ActuatorSettings, ConstraintName, RuleSet
+from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.design import RULE_SETS, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.shapes import Numbers
 

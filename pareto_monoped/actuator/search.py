@@ -22,7 +22,8 @@ from pareto_monoped.actuator.ratiomap import (
     MapEntry,
 )
 from pareto_monoped.actuator.rules import CandidateSets, violations
-from pareto_monoped.actuator.settings import DEFAULT_RULES, ActuatorSettings, ConstraintName, RuleSet
+from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.design import DEFAULT_RULES, RuleSet
 from pareto_monoped.geometry.shapes import Numbers
 
 _BEYOND_MM = 12.0

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
 from pareto_monoped.config import checked, read_toml
+from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.materials import MATERIALS, Materials
 
@@ -153,11 +154,6 @@ def default_parts() -> PartData:
     return checked(PartData, values, source="part data")
 
 
-RuleSet = Literal["paper", "iso6336"]
-"""Names of the sets of rules: see ``ActuatorSettings.rules``."""
-RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
-DEFAULT_RULES: RuleSet = "paper"
-"""The rules of every command and study that names none."""
 _LEAST_PLANETS: dict[RuleSet, int] = {"paper": 2, "iso6336": 3}
 """``paper``: range of n_p in its eq. 5. Two planets do not centre the sun, and load the carrier's bearing unevenly."""
 

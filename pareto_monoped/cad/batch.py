@@ -17,7 +17,7 @@ def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[s
     """Export one design, see ``export_design``; returns the content of its ``design.json``."""
     return export_design(
         job.design,
-        map_of(job.motor),
+        map_of(job.motor, job.rules),
         job.calibration,
         job.folder,
         formats=job.formats,

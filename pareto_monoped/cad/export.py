@@ -109,6 +109,7 @@ def export_design(
         searched=design,
         built=built,
         robot=robot,
+        actuator_map=actuator_map,
         pose=pose,
         jumps=jumps,
         calibration=calibration,

@@ -11,7 +11,7 @@ from pareto_monoped.actuator.motors import Motor, load_motor
 from pareto_monoped.cad.write.design_record import MADE_BY
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.config import checked
-from pareto_monoped.design import DEFAULTS, NAMES, PAPER_CASES, Design
+from pareto_monoped.design import DEFAULT_RULES, DEFAULTS, NAMES, PAPER_CASES, RULE_SETS, Design, RuleSet
 from pareto_monoped.errors import InputError, MotorError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, load_calibration
 
@@ -30,6 +30,7 @@ class Job:
         design: as searched.
         motor: the motor of both actuators.
         calibration: the jump model.
+        rules: of the gearboxes.
         folder: where to.
         formats: of ``FORMATS``, in its order.
         force: replace an export of something else.
@@ -41,6 +42,7 @@ class Job:
     design: Design
     motor: Motor
     calibration: Calibration
+    rules: RuleSet = "paper"
     folder: Path
     formats: tuple[str, ...] = FORMATS
     force: bool = False
@@ -52,6 +54,7 @@ class Job:
 def case_job(
     case: str,
     *,
+    rules: RuleSet = DEFAULT_RULES,
     folder: Path,
     formats: Sequence[str] | None = None,
     force: bool = False,
@@ -62,6 +65,7 @@ def case_job(
 
     Args:
         case: name of the row.
+        rules: of the gearboxes.
         folder: where to.
         formats: some of ``FORMATS``; default all.
         force: replace an earlier export there.
@@ -75,6 +79,7 @@ def case_job(
         design=PAPER_CASES[case].design,
         motor=load_motor(_CASE_MOTOR),
         calibration=load_calibration(_CASE_CALIBRATION),
+        rules=rules,
         folder=folder,
         formats=chosen_formats(formats),
         force=force,
@@ -114,6 +119,7 @@ def trial_job(
         design=Design.from_array([row[name] for name in NAMES]),
         motor=data.motor,
         calibration=data.calibration,
+        rules=data.study.rules,
         folder=folder,
         formats=chosen_formats(formats),
         force=force,
@@ -172,6 +178,7 @@ def record_job(
         origin = dict(record["source"])
         wanted = [str(name) for name in record["formats"]]
         maker = str(record["made_by"])
+        rules = _rules(record.get("rules", "paper"))
     except OSError as problem:
         raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
@@ -183,6 +190,7 @@ def record_job(
         design=design,
         motor=checked(Motor, motor, source=source, error=MotorError),
         calibration=calibration_of(calibration, source=source),
+        rules=rules,
         folder=folder,
         formats=chosen_formats(wanted if formats is None else formats),
         force=force,
@@ -195,6 +203,14 @@ def _design(searched: Mapping[str, Any]) -> Design:
     """The design of a record; optional variables that it does not name have their defaults."""
     values = DEFAULTS | dict(searched)
     return Design.from_array([_finite(values[name]) for name in NAMES])
+
+
+def _rules(name: Any) -> RuleSet:
+    """The rules of a record, which names them if they are not those of the paper."""
+    for rules in RULE_SETS:
+        if name == rules:
+            return rules
+    raise ValueError(f"rules {name!r} are none of {', '.join(RULE_SETS)}")
 
 
 def _finite(value: Any) -> float:

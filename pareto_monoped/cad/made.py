@@ -63,7 +63,7 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
 
 def _expected(job: Job) -> dict[str, Any]:
     """The record that this version would write, without what is not compared."""
-    actuator_map = map_of(job.motor)
+    actuator_map = map_of(job.motor, job.rules)
     built = as_built(job.design, actuator_map)
     robot = build_robot(built, actuator_map)
     require_fit(robot, leg_dimensions(actuator_map))
@@ -72,6 +72,7 @@ def _expected(job: Job) -> dict[str, Any]:
         searched=job.design,
         built=built,
         robot=robot,
+        actuator_map=actuator_map,
         pose=assembly_pose(simulated, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad),
         jumps={},
         calibration=job.calibration,

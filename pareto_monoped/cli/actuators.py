@@ -3,16 +3,18 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from pareto_monoped.design import PAPER_MOTOR
+from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from pareto_monoped.actuator.actuator import Actuator
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
     from pareto_monoped.actuator.service.sheet import ServiceSheet
 
@@ -22,6 +24,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.command()
 @click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
 @click.option("--ratio", type=float, help="Show the gearbox for this ratio, part by part.")
+@click.option("--rules", type=click.Choice(RULE_SETS), default=DEFAULT_RULES, show_default=True, help="Set of rules.")
 @click.option("--without", metavar="CONSTRAINT", multiple=True, help="Switch a constraint off; may be repeated.")
 @click.option(
     "--bearings",
@@ -41,6 +44,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 def actuators(
     motor: str,
     ratio: float | None,
+    rules: RuleSet,
     without: tuple[str, ...],
     bearings: Literal["catalogue", "regression"],
     as_json: bool,
@@ -57,7 +61,7 @@ def actuators(
     from pareto_monoped.actuator.service.sheet import service_sheet
     from pareto_monoped.actuator.settings import ActuatorSettings
 
-    settings = ActuatorSettings(constraints_off=frozenset(without), bearings=bearings)
+    settings = ActuatorSettings(rules=rules, constraints_off=frozenset(without), bearings=bearings)
     actuator_map = build_map(load_motor(motor), settings)
     if ratio is None:
         entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
@@ -66,13 +70,22 @@ def actuators(
     if figure_file:
         from pareto_monoped.report.figures import write_map_figure
 
-        write_map_figure({"": actuator_map}, figure_file)
+        # The rules that were asked for come first; the others are there to compare.
+        maps: dict[str, ActuatorMap] = {rules: actuator_map}
+        for other in RULE_SETS:
+            if other != rules:
+                maps[other] = build_map(actuator_map.motor, replace(settings, rules=other))
+        write_map_figure(maps, figure_file)
     sheets = [service_sheet(entry.actuator, settings) for entry in entries if entry.actuator is not None]
     rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]
+    stand_in = "" if ratio is None else actuator_map.stand_in(ratio)
+    if stand_in:
+        click.echo(f"note: {stand_in}", err=True)
     if csv_file:
         _write_csv(csv_file, rows)
     if as_json:
-        click.echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]), indent=2))
+        label = {"stand_in": stand_in} if stand_in else {}
+        click.echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]) | label, indent=2))
     elif ratio is None:
         _print_map(actuator_map)
     else:
@@ -104,7 +117,9 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
     from rich.console import Console
 
     from pareto_monoped.actuator.explain import gaps
+    from pareto_monoped.actuator.ratiomap import either
 
+    rated = actuator_map.settings.rules != "paper"
     table = _table(
         ("from\nratio", "left"),
         ("real\nratio", "right"),
@@ -114,8 +129,7 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
         ("n_p", "right"),
         ("face\nmm", "right"),
         ("mass\nkg", "right"),
-        ("peak\nN m", "right"),
-        ("eff.\n%", "right"),
+        *((("eff.\n%", "right"), ("S_H", "right"), ("S_F", "right")) if rated else _UNRATED),
         no_wrap="sun/planet/\nring teeth",
     )
     for entry in actuator_map.entries:
@@ -132,8 +146,7 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
             f"{gears.planets}",
             f"{actuator.face_width_mm:.1f}",
             f"{actuator.mass_kg:.3f}",
-            f"{actuator.peak_torque_n_m:.1f}",
-            f"{100.0 * actuator.efficiency:.1f}",
+            *_last_cells(actuator),
         )
     console = Console(width=80, highlight=False)
     console.print(table)
@@ -142,6 +155,19 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
             f"{family}: {', '.join(names) or 'no tooth set'}" for family, names in gap.in_the_way.items()
         )
         console.print(f"No gearbox from {gap.ratio_low:.1f} to {gap.ratio_high:.1f}. In the way: {reasons}.")
+        if rated:
+            console.print(f"  Would help: {either(gap.cures)}.")
+
+
+_UNRATED: tuple[tuple[str, Literal["left", "right"]], ...] = (("peak\nN m", "right"), ("eff.\n%", "right"))
+"""The map's last columns where gears are not rated. Safety factors take the place of the torque, ratio times motor."""
+
+
+def _last_cells(actuator: "Actuator") -> tuple[str, ...]:
+    rating, efficiency = actuator.rating, f"{100.0 * actuator.efficiency:.1f}"
+    if rating is None:
+        return f"{actuator.peak_torque_n_m:.1f}", efficiency
+    return efficiency, f"{rating.flank_safety:.2f}", f"{rating.root_safety:.2f}"
 
 
 def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
@@ -149,6 +175,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
 
     from pareto_monoped.actuator.explain import details
     from pareto_monoped.actuator.service.data import default_service
+    from pareto_monoped.cli.gear_sheet import print_gear_sheet
     from pareto_monoped.cli.service_lines import BEARING_COLUMNS, bearing_rows, duty_lines, service_lines
 
     actuator, known = entry.actuator, details(entry, sheet)
@@ -170,6 +197,8 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
         *service_lines(sheet, actuator_map.settings),
     ):
         console.print(f"  {name:20} {value}", markup=False)
+    if actuator.rating is not None:
+        print_gear_sheet(console, actuator.rating, actuator_map.settings)
     bearings = _table(*BEARING_COLUMNS, no_wrap="bearing")
     for row in bearing_rows(sheet):
         bearings.add_row(*row)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.fronts import required, selector_options
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
     from pareto_monoped.cad.jobs import Job
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
 )
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
+@click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="FILE", help="Repeat the export that has this design.json."
 )
@@ -41,6 +42,7 @@ def export(
     selector: "Selector | None",
     output: Path,
     case: str | None,
+    rules: RuleSet | None,
     record: Path | None,
     whole_front: bool,
     every: int,
@@ -57,6 +59,8 @@ def export(
     so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg)
+    if rules is not None and case is None:
+        raise click.UsageError("--rules goes with --case only, studies and records name theirs; drop it")
     from pareto_monoped.cad.jobs import case_job, front_jobs, record_job, trial_job
     from pareto_monoped.pareto.pick import pick
     from pareto_monoped.study.reader import read_study
@@ -66,7 +70,8 @@ def export(
     if record is not None:
         _one(record_job(record, folder=output, formats=names, force=force, note=_note))
     elif case is not None:
-        _one(case_job(case, folder=output, formats=names, force=force, **angles))
+        chosen = rules or DEFAULT_RULES
+        _one(case_job(case, rules=chosen, folder=output, formats=names, force=force, **angles))
     elif whole_front:
         jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
         _many(jobs, workers or os.cpu_count() or 1)

@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, PAPER_MOTOR, VARIABLES, Design, columns
+from pareto_monoped.design import (
+    CONTROL,
+    DEFAULT_RULES,
+    NAMES,
+    PAPER_CASES,
+    PAPER_MOTOR,
+    RULE_SETS,
+    VARIABLES,
+    Design,
+    RuleSet,
+    columns,
+)
 from pareto_monoped.errors import DesignError, complaint
 from pareto_monoped.jump.calibration import DEFAULT
 
@@ -36,6 +47,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
     "--calibration", "calibration_name", metavar="NAME", default=DEFAULT, show_default=True, help="Name or TOML file."
 )
 @click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
+@click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
@@ -45,6 +57,7 @@ def simulate(
     changes: tuple[str, ...],
     calibration_name: str,
     motor: str,
+    rules: RuleSet | None,
     as_json: bool,
     trace: Path | None,
     model: Path | None,
@@ -52,18 +65,20 @@ def simulate(
 ) -> None:
     """Simulate one jump and print its measures."""
     from pareto_monoped.actuator.search import map_for
-    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.calibration import load_calibration, rules_for
     from pareto_monoped.jump.single import simulate as jump
 
     design = _design(case, changes)
     calibration = load_calibration(calibration_name)
-    actuator_map = map_for(motor)
+    actuator_map = map_for(motor, rules_for(calibration_name, rules))
+    for note in filter(None, map(actuator_map.stand_in, sorted({design.hip_ratio, design.knee_ratio}))):
+        click.echo(f"note: {note}", err=True)
     result = jump(design, actuator_map, calibration, trace=trace is not None)
     if result.status in ("bad_input", "no_gearbox"):
         raise DesignError(result.reason)
     if result.status == "cannot_stand" and (trace or model):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
-    report = _report(result, motor)
+    report = _report(result, motor, actuator_map)
     if audited and result.status == "ok":
         report["audit"] = _audit(design, actuator_map, calibration)
     if trace:
@@ -105,12 +120,14 @@ def _plain(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _report(result: "JumpResult", motor: str) -> dict[str, Any]:
+def _report(result: "JumpResult", motor: str, actuator_map: "ActuatorMap") -> dict[str, Any]:
+    rules = actuator_map.settings.rules
     return {
         "status": result.status,
         "reason": result.reason,
         "calibration": result.calibration,
         "motor": motor,
+        **({} if rules == "paper" else {"rules": rules}),
         **{name: _plain(value) for name, value in result.measures.items()},
         "design": result.design.as_dict(),
     }

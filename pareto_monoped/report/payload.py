@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pareto_monoped import __version__
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
@@ -13,9 +13,17 @@ from pareto_monoped.report.quantities import QUANTITIES
 from pareto_monoped.report.schema import Constants, Gearbox, MotorMap, Payload
 from pareto_monoped.report.trials import rows_per_study
 
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.ratiomap import ActuatorMap
+
 PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M = 0.235, 0.828
 """Mass of a link over its length: straight line through the masses of links that the authors published, for lengths
 from 150 to 350 mm."""
+
+
+def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
+    """What decides a map: the motor and the rules."""
+    return actuator_map.motor, actuator_map.settings.rules
 
 
 def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
@@ -25,15 +33,15 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         sources: one per database, in the order of the command line.
         literal: the paper's cases under the ``paper`` calibration, as in ``jump.table1.Spread``.
     """
-    motors: list[Any] = []
+    mapped: list[Any] = []
     first_gearboxes: list[int] = []
     gearboxes: list[Gearbox] = []
     maps: list[MotorMap] = []
     for source in sources:
         actuator_map = source.data.actuator_map
-        if actuator_map.motor not in motors:
+        if _origin(actuator_map) not in mapped:
             tables = motor_tables(actuator_map, first=len(gearboxes))
-            motors.append(actuator_map.motor)
+            mapped.append(_origin(actuator_map))
             first_gearboxes.append(len(gearboxes))
             maps.append(tables.map)
             gearboxes.extend(tables.gearboxes)
@@ -44,7 +52,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     for source, label, most_rows in zip(
         sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
     ):
-        number = motors.index(source.data.actuator_map.motor)
+        number = mapped.index(_origin(source.data.actuator_map))
         cards.append(study_card(source, label, most_rows, number, first_gearboxes[number], variables))
     return Payload(
         version=__version__,

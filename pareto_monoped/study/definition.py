@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.design import BASE_START_HEIGHT_M, DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES
+from pareto_monoped.design import BASE_START_HEIGHT_M, DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.jump.calibration import rules_for
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.study.algorithm_settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
 
@@ -100,6 +101,7 @@ class _File:
     case: Literal["A", "B", "C"] | None = None
     motor: Annotated[str, Field(min_length=1, max_length=1000)] = "VT8020"
     calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
+    rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
     variables: dict[str, Any] = field(default_factory=dict)
@@ -115,7 +117,8 @@ class _File:
 class Study:
     """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
 
-    ``audit`` says whether the front is audited when the study ends; ill-conditioned designs then leave it.
+    ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
+    the study ends; ill-conditioned designs then leave it.
     """
 
     name: str
@@ -123,6 +126,7 @@ class Study:
     case: str | None
     motor: str
     calibration: str
+    rules: RuleSet = "paper"
     evaluations: int
     seed: int
     variables: Mapping[str, Bounds | float]
@@ -154,10 +158,12 @@ class Study:
     def as_dict(self) -> dict[str, Any]:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
-        Optional variables at their defaults, and limits that are off and came later, are left out, so that studies
-        stored before there were any keep their hash.
+        Optional variables at their defaults, limits that are off and came later, and the rules ``paper`` are left out,
+        so that studies stored before there were any keep their hash.
         """
         plain = asdict(self)
+        if self.rules == "paper":
+            del plain["rules"]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
             for name, v in zip(NAMES, self._ordered(), strict=True)
@@ -189,6 +195,7 @@ def load_study(path: Path, *, evaluations: int | None = None, seed: int | None =
         values["evaluations"] = evaluations
     if seed is not None:
         values["seed"] = seed
+    values.setdefault("rules", rules_for(str(values.get("calibration"))))
     return study_from_dict(values, source=f"study file {str(path)!r}")
 
 
@@ -203,12 +210,14 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         StudyError: an unknown key, a wrong type, or impossible bounds.
     """
     file = checked(_File, values, source=source, error=StudyError)
+    rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
     return Study(
         name=file.name,
         description=file.description,
         case=file.case,
         motor=file.motor,
         calibration=file.calibration,
+        rules=rules,
         evaluations=file.evaluations,
         seed=file.seed,
         variables=_variables(file, source),

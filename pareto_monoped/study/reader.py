@@ -85,10 +85,10 @@ class StudyData:
 
     @cached_property
     def actuator_map(self) -> "ActuatorMap":
-        """The gearboxes of ``motor``."""
+        """The gearboxes of ``motor`` under the study's rules."""
         from pareto_monoped.actuator.search import map_of
 
-        return map_of(self.motor)
+        return map_of(self.motor, self.study.rules)
 
     @property
     def _source(self) -> str:

@@ -68,7 +68,7 @@ def load_simulator(study: Study, *, workers: int) -> Simulator:
     return Simulator(
         motor=motor,
         calibration=calibration,
-        evaluator=Evaluator(map_of(motor), calibration, workers=workers),
+        evaluator=Evaluator(map_of(motor, study.rules), calibration, workers=workers),
         files={"motor": _text(study.motor), "calibration": _text(study.calibration)},
     )
 

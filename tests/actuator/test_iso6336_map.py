@@ -12,9 +12,9 @@ from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.ratiomap import STAND_IN_WITHIN
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.search import build_map, map_for, map_of
-from pareto_monoped.actuator.settings import RULE_SETS, ActuatorSettings
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.cad.as_built import as_built
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import PAPER_CASES, RULE_SETS
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.robot.build import build_robot

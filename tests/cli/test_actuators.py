@@ -107,6 +107,7 @@ def test_another_motor(capsys):
         (("--motor", "missing.toml"), ("missing.toml", "no such file")),
         (("--ratio", "9.3"), ("9.3", "sun_rim", "[4.0, 8.8)")),
         (("--ratio", "2"), ("outside the map",)),
+        (("--rules", "iso6336", "--ratio", "9"), ("9.0", "no gearbox", "would help")),
         (("--without", "rim"), ("constraints_off = 'rim'",)),
         (("--csv", "/nonexistent/map.csv"), ("/nonexistent/map.csv", "cannot be written")),
         (("--figure", "map.gif"), ("figure = 'map.gif'", "svg, png, pdf")),
@@ -198,6 +199,75 @@ def test_the_map_as_a_figure(capsys, tmp_path, kind, head):
     code, _ = run(capsys, "--figure", str(path), "--json")
     assert code == 0
     assert path.read_bytes().startswith(head)
+
+
+def test_the_figure_shows_both_sets_of_rules(capsys, tmp_path, monkeypatch):
+    from pareto_monoped.report import figures
+
+    drawn = []
+    monkeypatch.setattr(figures, "write_map_figure", lambda maps, path: drawn.append(maps))
+    run(capsys, "--rules", "iso6336", "--figure", str(tmp_path / "map.svg"), "--json")
+    (maps,) = drawn
+    assert list(maps) == ["iso6336", "paper"]
+    assert {name: found.settings.rules for name, found in maps.items()} == {"iso6336": "iso6336", "paper": "paper"}
+
+
+def test_rated_map_has_safety_factors_in_json_csv_and_table(capsys, tmp_path):
+    path = tmp_path / "map.csv"
+    code, output = run(capsys, "--rules", "iso6336", "--json", "--csv", str(path))
+    rows = json.loads(output.out)
+    assert code == 0
+    assert all(list(row) == [*KEYS, "flank_safety", "root_safety"] for row in rows)
+    assert all(row["flank_safety"] >= 1.1 and row["root_safety"] >= 1.4 and row["planets"] >= 3 for row in rows)
+    with path.open(newline="") as stream:
+        written = list(csv.DictReader(stream))
+    assert [float(row["root_safety"]) for row in written] == [row["root_safety"] for row in rows]
+    printed = run(capsys, "--rules", "iso6336")[1].out
+    assert max(map(len, printed.splitlines())) <= 80
+    assert "…" not in printed
+    (line,) = [line for line in printed.splitlines() if line.split()[:1] == ["6.0"]]
+    (row,) = [row for row in rows if row["ratio_low"] == 6.0]
+    assert line.split()[-4:] == [
+        f"{row['mass_kg']:.3f}",
+        f"{100 * row['efficiency']:.1f}",
+        f"{row['flank_safety']:.2f}",
+        f"{row['root_safety']:.2f}",
+    ]
+    assert "Would help: a larger module in a thicker ring" in printed
+
+
+def test_rated_gear_set_prints_a_gear_calculation_sheet(capsys):
+    known = json.loads(run(capsys, "--rules", "iso6336", "--ratio", "6.0", "--json")[1].out)
+    printed = run(capsys, "--rules", "iso6336", "--ratio", "6.0")[1].out
+    assert max(map(len, printed.splitlines())) <= 80
+    assert "…" not in printed
+    mesh = known["rating"]["sun_mesh"]
+    ring = known["rating"]["ring_mesh"]
+
+    def cells(first):
+        (line,) = [line for line in printed.splitlines() if line.strip().startswith(first)]
+        return line.split()
+
+    gears = [mesh["pinion"], mesh["wheel"], ring["pinion"], ring["wheel"]]
+    assert [gear["gear"] for gear in gears] == ["sun", "planet", "planet", "ring"]
+    assert cells("face load, flank")[-2:] == [f"{one['face_load_factor']:.3f}" for one in (mesh, ring)]
+    assert cells("contact stress")[-4:] == [f"{gear['contact_stress_mpa']:.0f}" for gear in gears]
+    assert cells("limit sigma_FG")[-4:] == [f"{gear['bending_limit_mpa']:.0f}" for gear in gears]
+    assert cells("S_H, at least 1.1")[-4:] == [f"{gear['flank_safety']:.2f}" for gear in gears]
+    assert cells("S_F, at least 1.4")[-4:] == [f"{gear['root_safety']:.2f}" for gear in gears]
+    for words in ("1e+06 jumps", "18CrNiMo7-6, case-hardened", "31CrMoV9, gas-nitrided", "class 6"):
+        assert words in printed
+
+
+def test_a_ratio_without_a_gearbox_shows_the_nearest_and_says_so(capsys):
+    code, output = run(capsys, "--rules", "iso6336", "--ratio", "7.9", "--json")
+    known = json.loads(output.out)
+    assert code == 0
+    assert output.err.count("\n") == 1
+    assert known["stand_in"] in output.err
+    assert "flank_strength" in known["stand_in"]
+    assert known["ratio"] < 7.5
+    assert "stand_in" not in json.loads(run(capsys, "--rules", "iso6336", "--ratio", "6", "--json")[1].out)
 
 
 def test_one_ratio_as_csv_is_one_row(capsys, tmp_path):

@@ -28,6 +28,7 @@ def run(capsys, *words):
         (("export", "study.db", "--front", "--knee", "-o", "x"), "--front takes no selector"),
         (("export", "study.db", "-o", "x"), "no selector given"),
         (("export", "missing.db", "--knee", "-o", "x"), "missing.db"),
+        (("export", "study.db", "--knee", "--rules", "paper", "-o", "x"), "--rules goes with --case only"),
         (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format 'dwg'"),
     ],
 )

@@ -29,6 +29,26 @@ def test_simulate_json_has_what_others_rely_on(capsys):
         assert report[name] > 0.0
 
 
+def test_rules_choose_the_gearboxes_and_a_stand_in_is_noted(capsys):
+    code, out, err = run(capsys, "simulate", "--case", "A", "--rules", "iso6336", "--json")
+    report = json.loads(out)
+    assert (code, report["status"], report["rules"]) == (0, "ok", "iso6336")
+    assert len(err.splitlines()) == 1
+    assert "gear ratio 7.9" in err
+    assert "stands in" in err
+    plain = json.loads(run(capsys, "simulate", "--case", "A", "--json")[1])
+    assert "rules" not in plain
+    assert plain["height_m"] != report["height_m"]
+    assert json.loads(run(capsys, "simulate", "--case", "A", "--rules", "paper", "--json")[1]) == plain
+
+
+def test_the_calibration_paper_goes_with_its_own_rules(capsys):
+    code, _, err = run(capsys, "simulate", "--calibration", "paper", "--rules", "iso6336")
+    assert code == 2
+    assert err.splitlines() == [err.strip()]
+    assert "rules = 'iso6336': must be 'paper' with the calibration 'paper'" in err
+
+
 def test_set_changes_a_variable_and_notes_what_lies_outside_the_paper(capsys):
     code, out, err = run(capsys, "simulate", "--set", "thigh_length_m=0.55", "--set", "stiffness_n_per_m=30", "--json")
     assert code == 0

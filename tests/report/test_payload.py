@@ -79,6 +79,14 @@ def test_a_page_of_many_trials_keeps_the_front_and_says_what_it_leaves_out(data,
     assert card.counts["infeasible"] == int((big.trials["state"] == "infeasible").sum())
 
 
+def test_each_set_of_rules_has_a_map_of_its_own(source, data):
+    """Two studies of one motor share its map only if their gearboxes follow the same rules."""
+    rated = replace(data, study=replace(data.study, rules="iso6336"))
+    page = build([source, replace(source, data=rated), source])
+    assert len(page.maps) == 2
+    assert [card.map for card in page.studies] == [0, 1, 0]
+
+
 def test_same_names_get_labels_that_differ(source):
     other = replace(source, data=replace(source.data, db=Path("copy.db")))
     labels = [card.label for card in build([source, other, other]).studies]

@@ -6,6 +6,7 @@ import pytest
 
 from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
 from pareto_monoped.errors import StudyError
+from pareto_monoped.jump import calibration
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
 
@@ -74,6 +75,27 @@ def test_limits_that_are_off_and_came_later_are_not_stored():
     assert study_from_dict(limited.as_dict(), source="db") == limited
 
 
+def test_the_rules_paper_are_not_stored_and_others_are():
+    """A study stored before there were rules is one of the rules ``paper``, and keeps its hash."""
+    assert made().rules == "paper"
+    assert "rules" not in made().as_dict()
+    assert made(rules="paper") == made()
+    rated = made(rules="iso6336")
+    assert rated.as_dict()["rules"] == "iso6336"
+    assert study_from_dict(json.loads(json.dumps(rated.as_dict())), source="db") == rated
+
+
+def test_a_file_without_rules_takes_the_default_but_a_stored_study_does_not(tmp_path, monkeypatch):
+    """What happens when the default changes: the calibration ``paper`` keeps its rules, as stored studies do."""
+    monkeypatch.setattr(calibration, "DEFAULT_RULES", "iso6336")
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\n')
+    assert load_study(path).rules == "iso6336"
+    path.write_text('name = "s"\nevaluations = 5\ncalibration = "paper"\n')
+    assert load_study(path).rules == "paper"
+    assert made().rules == "paper"
+
+
 @pytest.mark.parametrize("name", ALGORITHMS)
 def test_plain_values_and_back(name):
     study = made(
@@ -91,6 +113,8 @@ def test_plain_values_and_back(name):
         ({"name": ""}, ["name = ''", "at least 1"]),
         ({"case": "D"}, ["case = 'D'", "'A', 'B' or 'C'"]),
         ({"seed": -1}, ["seed = -1"]),
+        ({"rules": "agma"}, ["rules = 'agma'", "'paper' or 'iso6336'"]),
+        ({"rules": "iso6336", "calibration": "paper"}, ["rules = 'iso6336'", "'paper' with the calibration"]),
         ({"variables": {"K": 5}}, ["'K'", "stiffness_n_per_m"]),
         ({"variables": {"knee_ratio": "big"}}, ["variables.knee_ratio = 'big'", "1 to 100"]),
         ({"variables": {"knee_ratio": True}}, ["variables.knee_ratio = True"]),

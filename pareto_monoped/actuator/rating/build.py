@@ -121,7 +121,7 @@ def _mesh(
     settings: ActuatorSettings,
 ) -> Mesh:
     single = single_contact_factors(*teeth, contact_ratio, internal=internal)
-    both = flank_factors(*steels, contact_ratio_factor(contact_ratio))
+    both = flank_factors(settings.materials.gear_steel, contact_ratio_factor(contact_ratio))
     diameter = module_mm * teeth[0]
     common = {
         "module_mm": module_mm,

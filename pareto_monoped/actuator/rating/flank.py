@@ -4,15 +4,15 @@ import numpy as np
 
 from pareto_monoped.actuator.rating.geometry import zone_factor
 from pareto_monoped.geometry.shapes import Numbers
-from pareto_monoped.materials import GearGrade
+from pareto_monoped.materials import ElasticMaterial, GearGrade
 
 SIZE_FACTOR = 1.0
 """Z_X: 1 for the module range used (ISO 6336-2, clause 15)."""
 
 
-def elasticity_factor(pinion: GearGrade, wheel: GearGrade) -> float:
-    """Z_E in sqrt(MPa): 189.8 for steel on steel (ISO 6336-2, clause 7)."""
-    compliance = sum((1.0 - steel.poisson_ratio**2) / steel.youngs_modulus_mpa for steel in (pinion, wheel))
+def elasticity_factor(material: ElasticMaterial) -> float:
+    """Z_E in sqrt(MPa) of two gears of one material: 189.8 for steel (ISO 6336-2, clause 7)."""
+    compliance = 2.0 * (1.0 - material.poisson_ratio**2) / material.youngs_modulus_mpa
     return float(np.sqrt(1.0 / (np.pi * compliance)))
 
 
@@ -49,9 +49,9 @@ def _curvature(ratio: Numbers, *, internal: bool) -> Numbers:
     return (ratio - 1.0) / ratio if internal else (ratio + 1.0) / ratio
 
 
-def flank_factors(pinion: GearGrade, wheel: GearGrade, contact_factor: Numbers) -> Numbers:
+def flank_factors(material: ElasticMaterial, contact_factor: Numbers) -> Numbers:
     """Z_H Z_E Z_epsilon; Z_beta is 1 for spur gears."""
-    return zone_factor() * elasticity_factor(pinion, wheel) * contact_factor
+    return zone_factor() * elasticity_factor(material) * contact_factor
 
 
 def flank_limit_mpa(steel: GearGrade, mate: GearGrade, life_factor: Numbers, finish_factor: float) -> Numbers:

@@ -12,7 +12,7 @@ from pareto_monoped.actuator.rating.geometry import (
 )
 from pareto_monoped.geometry.gears import DEDENDUM
 from pareto_monoped.geometry.shapes import Numbers
-from pareto_monoped.materials import GearGrade
+from pareto_monoped.materials import ElasticMaterial, GearGrade
 
 _K1 = {3: 2.1, 4: 3.9, 5: 7.5, 6: 14.9, 7: 26.8, 8: 39.1, 9: 52.8, 10: 76.6}
 """K_1 of method C by accuracy class, spur gears (ISO 6336-1, table 7)."""
@@ -86,7 +86,7 @@ def pitch_running_in(steel: GearGrade) -> float:
 
 
 def sun_twist_um(
-    load_n_per_mm: Numbers, width_mm: Numbers, diameter_mm: Numbers, planets: Numbers, steel: GearGrade
+    load_n_per_mm: Numbers, width_mm: Numbers, diameter_mm: Numbers, planets: Numbers, material: ElasticMaterial
 ) -> Numbers:
     """Misalignment by the twist of a sun whose torque enters at one end.
 
@@ -94,8 +94,7 @@ def sun_twist_um(
     4 n_p F_m b / (pi G d^2). With one mesh this is the torsional part, 0.0161 um, of the 0.023 um in the f_sh of
     ISO 6336-1, clause 7.5.3; the bending part vanishes, because the planets' forces balance.
     """
-    shear = steel.youngs_modulus_mpa / (2.0 * (1.0 + steel.poisson_ratio))
-    lag_mm = 4.0 * planets * load_n_per_mm / (np.pi * shear) * np.square(width_mm / diameter_mm)
+    lag_mm = 4.0 * planets * load_n_per_mm / (np.pi * material.shear_modulus_mpa) * np.square(width_mm / diameter_mm)
     return 1e3 * _TORSION_TO_MISALIGNMENT * lag_mm
 
 
@@ -105,7 +104,7 @@ def pin_tilt_um(
     gap_mm: float,
     pin_diameter_mm: float,
     face_stiffness: Numbers,
-    steel: GearGrade,
+    material: ElasticMaterial,
 ) -> Numbers:
     """Misalignment by the tilt of a planet on its pin.
 
@@ -119,10 +118,10 @@ def pin_tilt_um(
         gap_mm: between planet and carrier, on either side.
         pin_diameter_mm: of the pin.
         face_stiffness: c_gamma,beta of both meshes together.
-        steel: for the pin's modulus of elasticity.
+        material: of the pin.
     """
     length = width_mm + 2.0 * gap_mm
-    bending = steel.youngs_modulus_mpa * np.pi * pin_diameter_mm**4 / 64.0
+    bending = material.youngs_modulus_mpa * np.pi * pin_diameter_mm**4 / 64.0
     meshes = 1e3 * face_stiffness * width_mm**3 / 12.0
     return 1e3 * width_mm * 0.5 * force_n * length / (4.0 * bending / length + meshes)
 

@@ -136,7 +136,7 @@ class Stage:
 
         F_m has the load sharing, K_A and K_V in it. The planet's tilt on its pin misaligns both meshes.
         """
-        data, steels = self.settings.parts.rating, self.settings.gear_steels
+        data, materials = self.settings.parts.rating, self.settings.materials
         meshes = (self.sun_mesh, self.ring_mesh)
         nominal = [mesh.force_n / width_mm for mesh in meshes]
         applied = [data.application_factor * mesh.sharing * w for mesh, w in zip(meshes, nominal, strict=True)]
@@ -158,9 +158,11 @@ class Stage:
                 carrier.planet_clearance_mm,
                 carrier.pin_diameter_mm,
                 load.FACE_STIFFNESS_SHARE * (stiff[0] + stiff[1]),
-                steels.planet,
+                materials.steel,
             )
-        twist = load.sun_twist_um(mean[0], width_mm, self.sun_mesh.diameter_mm, self.gears.planets, steels.sun)
+        twist = load.sun_twist_um(
+            mean[0], width_mm, self.sun_mesh.diameter_mm, self.gears.planets, materials.gear_steel
+        )
         return (
             self._load(self.sun_mesh, width_mm, nominal[0], dynamic[0], mean[0], stiff[0], tilt + twist),
             self._load(self.ring_mesh, width_mm, nominal[1], dynamic[1], mean[1], stiff[1], tilt),

@@ -6,7 +6,9 @@ from dataclasses import asdict
 from typing import Any
 
 from pareto_monoped import __version__
+from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
@@ -21,6 +23,7 @@ def design_record(
     searched: Design,
     built: Design,
     robot: Robot,
+    actuator_map: ActuatorMap,
     pose: Pose,
     jumps: Mapping[str, Mapping[str, Any]],
     calibration: Calibration,
@@ -33,16 +36,20 @@ def design_record(
         searched: the design as the search found it.
         built: the design as it was built.
         robot: the robot of ``built``.
+        actuator_map: where its gearboxes come from.
         pose: joint angles of the assembly.
         jumps: by ``searched`` and ``as_built``: the results of both simulations.
         calibration: the jump model of both.
         source: where the design comes from.
         formats: what was written.
     """
+    rules = actuator_map.settings.rules
     return {
         "made_by": MADE_BY,
         "motor": robot.hip.motor.name,
         "calibration": calibration.label,
+        # Records made before there were other rules do not name them.
+        **({} if rules == "paper" else {"rules": rules}),
         "source": dict(source or {}),
         "searched": searched.as_dict(),
         "as_built": built.as_dict(),
@@ -50,24 +57,34 @@ def design_record(
         "mass_kg": robot.mass_kg,
         "pose": {"hip_rad": pose.hip_rad, "knee_rad": pose.knee_rad},
         "actuators": {
-            name: {
-                "family": actuator.family,
-                "sun_teeth": int(actuator.gears.sun_teeth),
-                "planet_teeth": int(actuator.gears.planet_teeth),
-                "ring_teeth": int(actuator.gears.ring_teeth),
-                "module_mm": float(actuator.gears.module_mm),
-                "planets": int(actuator.gears.planets),
-                "face_width_mm": actuator.face_width_mm,
-                "ratio": actuator.ratio,
-                "mass_kg": actuator.mass_kg,
-                "peak_torque_n_m": actuator.peak_torque_n_m,
-                "length_mm": actuator.length_mm,
-            }
-            for name, actuator in (("hip", robot.hip), ("knee", robot.knee))
+            name: _actuator(actuator) | ({"stand_in": note} if (note := actuator_map.stand_in(ratio)) else {})
+            for name, actuator, ratio in (
+                ("hip", robot.hip, searched.hip_ratio),
+                ("knee", robot.knee, searched.knee_ratio),
+            )
         },
         "formats": list(formats),
         "motor_data": json_values(robot.hip.motor),
         "calibration_data": json_values(calibration),
+    }
+
+
+def _actuator(actuator: Actuator) -> dict[str, Any]:
+    """Gears and figures of an actuator, with the rating where its gears are rated."""
+    rating = actuator.rating
+    return {
+        "family": actuator.family,
+        "sun_teeth": int(actuator.gears.sun_teeth),
+        "planet_teeth": int(actuator.gears.planet_teeth),
+        "ring_teeth": int(actuator.gears.ring_teeth),
+        "module_mm": float(actuator.gears.module_mm),
+        "planets": int(actuator.gears.planets),
+        "face_width_mm": actuator.face_width_mm,
+        "ratio": actuator.ratio,
+        "mass_kg": actuator.mass_kg,
+        "peak_torque_n_m": actuator.peak_torque_n_m,
+        "length_mm": actuator.length_mm,
+        **({} if rating is None else {"rating": rating.as_dict()}),
     }
 
 

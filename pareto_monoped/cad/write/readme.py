@@ -10,7 +10,7 @@ from pareto_monoped.cad.write.formats import FILES
 _HOW = {
     "laser cut": "Laser-cut from sheet by `laser/`; countersink where the parts list says so; deburr.",
     "3D printed": "Print from `print/`, solid (100 percent), 0.2 mm layers; PETG, nylon or the like.",
-    "machined": "Turn and mill from bar by `parts/step/`; gears are wire-cut or hobbed after hardening.",
+    "machined": "Turn and mill from bar by `parts/step/`; gears as their notes in the parts list say.",
     "moulded": "Cast polyurethane or rubber in a printed mould around the foot block's tongue.",
     "bought": "Buy by the note in the parts list; the files only show the space it takes.",
 }
@@ -61,6 +61,8 @@ def _actuators(record: Mapping[str, Any]) -> Iterator[str]:
             f"- {joint}: {actuator['family']}, {actuator['ratio']:.3f} to 1, teeth {teeth}, module "
             f"{actuator['module_mm']:g} mm, {actuator['planets']} planets, {actuator['peak_torque_n_m']:.1f} N m peak"
         )
+        if "stand_in" in actuator:
+            yield f"  ({actuator['stand_in']})"
     yield ""
 
 

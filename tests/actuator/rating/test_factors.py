@@ -21,7 +21,7 @@ from pareto_monoped.actuator.rating.root import roughness_factor
 from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
-from pareto_monoped.materials import GEAR_GRADES
+from pareto_monoped.materials import GEAR_GRADES, MATERIALS
 
 CASE_HARDENED = GEAR_GRADES["case_hardened_18crnimo7_6"]
 TEMPERED = GEAR_GRADES["through_hardened_42crmo4"]
@@ -30,7 +30,7 @@ TEMPERED = GEAR_GRADES["through_hardened_42crmo4"]
 def test_figures_that_every_handbook_prints():
     """Z_H of 20 degrees on standard centres, and Z_E of steel on steel: ISO 6336-2, Niemann/Winter, Shigley."""
     assert zone_factor() == pytest.approx(2.495, abs=5e-4)
-    assert elasticity_factor(CASE_HARDENED, TEMPERED) == pytest.approx(189.8, abs=0.05)
+    assert elasticity_factor(MATERIALS.gear_steel) == pytest.approx(189.8, abs=0.05)
 
 
 def test_a_rack_has_the_form_factor_of_a_straight_sided_tooth():
@@ -115,15 +115,15 @@ def test_single_contact_factors_by_hand():
 
 def test_twist_of_a_single_mesh_is_the_torsional_share_of_iso_6336_1():
     """0.0161 um per N/mm and (b/d)^2: 70 percent of the 0.023 that stand for bending and torsion together."""
-    twist = load.sun_twist_um(1.0, 20.0, 20.0, 1, CASE_HARDENED) / 1.33
+    twist = load.sun_twist_um(1.0, 20.0, 20.0, 1, MATERIALS.gear_steel) / 1.33
     assert twist == pytest.approx(0.7 * 0.023, rel=5e-3)
 
 
 def test_a_planet_on_stiff_pins_does_not_tilt_and_on_soft_ones_the_meshes_hold_it():
-    tilt = [load.pin_tilt_um(400.0, 20.0, 1.5, pin, 10.0, CASE_HARDENED) for pin in (6.0, 60.0, 600.0)]
+    tilt = [load.pin_tilt_um(400.0, 20.0, 1.5, pin, 10.0, MATERIALS.steel) for pin in (6.0, 60.0, 600.0)]
     assert tilt[0] > 100.0 * tilt[1] > 1e5 * tilt[2]
     # Without pins, both meshes carry the moment F L / 2 between them: c b^3 / 12 against it.
-    soft = load.pin_tilt_um(400.0, 20.0, 1.5, 1e-3, 10.0, CASE_HARDENED)
+    soft = load.pin_tilt_um(400.0, 20.0, 1.5, 1e-3, 10.0, MATERIALS.steel)
     assert soft == pytest.approx(1e3 * 20.0 * 400.0 * 23.0 / 2 / (1e4 * 20.0**3 / 12), rel=1e-6)
 
 

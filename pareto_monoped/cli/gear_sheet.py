@@ -1,0 +1,90 @@
+"""The rating of a gear set as a gear calculation sheet: loads and their factors by mesh, stresses by gear."""
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from pareto_monoped.actuator.rating.sheet import GearRating, MeshRating, Rating
+    from pareto_monoped.actuator.settings import ActuatorSettings
+
+_QUANTITY_WIDTH = 33
+
+
+def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSettings") -> None:
+    """Print a rating; at most 80 columns wide."""
+    data, duty = settings.parts.rating, settings.parts.duty
+    levels = ", ".join(
+        f"{100.0 * share:g} % over {angle:g} rad"
+        for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
+    )
+    console.print()
+    console.print("Rating after ISO 6336 at the motor's peak torque", markup=False)
+    for name, value in (
+        ("duty", f"{duty.jumps:g} jumps, each {levels}"),
+        ("overload", f"{data.overload_factor:g} times the peak torque, once"),
+        ("accuracy", f"ISO 1328-1 class {data.accuracy_class}"),
+        *((gear, steel) for gear, steel in {one.gear: one.steel for one in rating.gears}.items()),
+    ):
+        console.print(f"  {name:20} {value}", markup=False)
+    console.print(_loads(rating))
+    console.print(_stresses(list(rating.gears), settings))
+
+
+def _table(first: str, *others: str) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    table.add_column(first, min_width=_QUANTITY_WIDTH, no_wrap=True)
+    for heading in others:
+        table.add_column(heading, justify="right", min_width=9)
+    return table
+
+
+def _loads(rating: "Rating") -> "Table":
+    rows: Iterable[tuple[str, Callable[[MeshRating], float], str]] = (
+        ("tangential force F_t, N", lambda mesh: mesh.tangential_force_n, ".1f"),
+        ("pitch-line speed v, m/s", lambda mesh: mesh.pitch_speed_m_per_s, ".2f"),
+        ("contact ratio epsilon_alpha", lambda mesh: mesh.contact_ratio, ".3f"),
+        ("application K_A", lambda mesh: mesh.application_factor, ".3f"),
+        ("load sharing K_gamma", lambda mesh: mesh.sharing_factor, ".3f"),
+        ("dynamic K_V", lambda mesh: mesh.dynamic_factor, ".3f"),
+        ("face load, flank K_Hbeta", lambda mesh: mesh.face_load_factor, ".3f"),
+        ("face load, root K_Fbeta", lambda mesh: mesh.root_face_load_factor, ".3f"),
+        ("transverse load, flank K_Halpha", lambda mesh: mesh.transverse_load_factor, ".3f"),
+        ("transverse load, root K_Falpha", lambda mesh: mesh.root_transverse_load_factor, ".3f"),
+    )
+    table = _table("load", "sun mesh", "ring mesh")
+    for name, value, form in rows:
+        table.add_row(name, format(value(rating.sun_mesh), form), format(value(rating.ring_mesh), form))
+    return table
+
+
+def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table":
+    data = settings.parts.rating
+    rows: Iterable[tuple[str, Callable[[GearRating], float], str]] = (
+        ("single contact Z_B, Z_D", lambda gear: gear.single_contact_factor, ".3f"),
+        ("flank load cycles, equivalent", lambda gear: gear.flank_cycles, ".2g"),
+        ("life Z_NT", lambda gear: gear.flank_life_factor, ".3f"),
+        ("contact stress sigma_H, MPa", lambda gear: gear.contact_stress_mpa, ".0f"),
+        ("limit sigma_HG, MPa", lambda gear: gear.contact_limit_mpa, ".0f"),
+        (f"S_H, at least {data.flank_safety:g}", lambda gear: gear.flank_safety, ".2f"),
+        (f"S_H at overload, at least {data.overload_flank_safety:g}", lambda gear: gear.overload_flank_safety, ".2f"),
+        ("", lambda gear: 0.0, ""),
+        ("form Y_F", lambda gear: gear.form_factor, ".3f"),
+        ("stress correction Y_S", lambda gear: gear.stress_correction, ".3f"),
+        ("rim Y_B", lambda gear: gear.rim_factor, ".3f"),
+        ("root load cycles, equivalent", lambda gear: gear.root_cycles, ".2g"),
+        ("life Y_NT", lambda gear: gear.root_life_factor, ".3f"),
+        ("bending stress sigma_F, MPa", lambda gear: gear.bending_stress_mpa, ".0f"),
+        ("limit sigma_FG, MPa", lambda gear: gear.bending_limit_mpa, ".0f"),
+        (f"S_F, at least {data.root_safety:g}", lambda gear: gear.root_safety, ".2f"),
+        (f"S_F at overload, at least {data.overload_root_safety:g}", lambda gear: gear.overload_root_safety, ".2f"),
+    )
+    table = _table("stress and safety", "sun", "planet\nwith sun", "planet\nwith ring", "ring")
+    for name, value, form in rows:
+        table.add_row(name, *(format(value(gear), form) if name else "" for gear in gears))
+    return table
