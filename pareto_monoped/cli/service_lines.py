@@ -84,7 +84,7 @@ def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
 
 
 def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "ServiceData") -> list[str]:
-    """The duty that the lives belong to, and the bearings that the overload would mark."""
+    """The duty that the lives belong to, and the bearings and bushes that it asks too much of."""
     duty, overload = settings.parts.duty, settings.parts.rating.overload_factor
     levels = " and ".join(
         f"{angle:g} rad at {share:g}" for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
@@ -94,9 +94,17 @@ def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "Se
         f"Overload: {overload:g} times the peak torque, or the foot force in the push-off.",
     ]
     lines += [
+        f"Bearing {found.place}: its rings tilt by {1e3 * found.tilt_rad:.1f} mrad at the peak torque; makers allow "
+        f"{1e3 * service.bearing_tilt_limit_rad:.1f} at most."
+        for found in sheet.bearings
+        if found.tilt_rad > service.bearing_tilt_limit_rad
+    ]
+    lines += [
         f"Bearing {found.place}: s0 = {found.overload_safety:.2f} under the overload, less than 1: "
         "its balls leave marks."
         for found in sheet.bearings
         if found.overload_safety < 1.0
     ]
+    if sheet.bush.pv_mpa_m_per_s > settings.materials.bush_bronze.pv_short_limit_mpa_m_per_s:
+        lines.append("Planet bushes: continuous torque at no-load speed exceeds even the limit for short periods.")
     return lines

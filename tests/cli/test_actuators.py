@@ -193,6 +193,17 @@ def test_a_bearing_that_the_overload_marks_is_named(capsys):
     assert "Bearing main, knee: s0" not in run(capsys, "--ratio", "6.0")[1].out
 
 
+def test_a_bearing_that_tilts_too_far_is_named(capsys):
+    assert "Bearing main, knee: its rings tilt by 3.6 mrad" in run(capsys, "--ratio", "6.0")[1].out
+    assert "its rings tilt" not in run(capsys, "--ratio", "7.9")[1].out
+
+
+def test_bushes_beyond_their_pv_limit_are_named(capsys):
+    words = "exceeds even the limit for short periods"
+    assert words in run(capsys, "--ratio", "4.0")[1].out
+    assert words not in run(capsys, "--ratio", "6.0")[1].out
+
+
 @pytest.mark.parametrize(("kind", "head"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_the_map_as_a_figure(capsys, tmp_path, kind, head):
     path = tmp_path / f"map.{kind}"

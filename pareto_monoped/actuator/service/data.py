@@ -27,6 +27,7 @@ class ServiceData:
         foot_force_n: largest in the push-off.
         leg_weight_n: of what hangs on the hip.
         bearing_clearance_mm: radial clearance of a fitted bearing.
+        bearing_tilt_limit_rad: by which the rings may turn against each other.
         bearing_friction_coefficient: of ball bearings, at the radius of the bore.
         lubricant_viscosity_mm2_per_s: of the oil that the bearings churn; 0 if they churn none.
     """
@@ -42,6 +43,7 @@ class ServiceData:
     foot_force_n: NotNegative
     leg_weight_n: NotNegative
     bearing_clearance_mm: NotNegative
+    bearing_tilt_limit_rad: Positive
     bearing_friction_coefficient: Positive
     lubricant_viscosity_mm2_per_s: NotNegative
 
