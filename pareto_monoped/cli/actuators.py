@@ -39,7 +39,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
     "figure_file",
     metavar="FILE",
     type=_OUTPUT,
-    help="Also draw the mass over the ratio, both families: .svg, .png or .pdf.",
+    help="Also draw the mass over the ratio, both families and sets of rules: .svg, .png or .pdf.",
 )
 def actuators(
     motor: str,
@@ -202,6 +202,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
     bearings = _table(*BEARING_COLUMNS, no_wrap="bearing")
     for row in bearing_rows(sheet):
         bearings.add_row(*row)
+    console.print("\nBearings after ISO 281 and ISO 76; forces at the peak torque")
     console.print(bearings)
     for line in duty_lines(sheet, actuator_map.settings, default_service()):
         console.print(line, markup=False)
