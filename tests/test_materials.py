@@ -29,7 +29,7 @@ def test_values_are_the_published_ones():
 def test_densities_of_our_own_choice_are_those_that_their_sources_give():
     assert MATERIALS.bearing_steel.density_kg_per_m3 == 7800.0  # 100Cr6
     assert MATERIALS.bush_bronze.density_kg_per_m3 == 7600.0  # steel back, bronze and PTFE
-    # Laminations fill 60 percent of the stator; a rotor of iron and magnets is as dense as its magnets.
+    # Those of version 0.1.0, which drop out: laminations fill 60 percent of the stator, a rotor is as dense as magnet.
     assert MATERIALS.motor_stator.density_kg_per_m3 == pytest.approx(0.6 * 7800.0)
     assert MATERIALS.motor_rotor.density_kg_per_m3 == 7500.0
     assert MATERIALS.gear_steel.density_kg_per_m3 == MATERIALS.steel.density_kg_per_m3

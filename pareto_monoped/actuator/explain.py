@@ -7,6 +7,7 @@ from typing import Any
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.layout import Family
+from pareto_monoped.actuator.motor_facts import motor_values_shown
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
@@ -91,6 +92,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
             for family, found in entry.families.items()
         },
         **({} if actuator.rating is None else {"rating": actuator.rating.as_dict()}),
+        "motor": motor_values_shown(actuator.motor),
         "parts": [_part(part) for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg()))],
     }
 

@@ -159,7 +159,7 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
 def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Envelopes of stator and rotor, with their shares of the motor's mass."""
     clearance = settings.parts.casing.rotor_clearance_mm
-    frame, rotor_share, base = motor.framed, motor.rotor_share(), shell.base_mm
+    frame, rotor_share, base = motor.framed, motor.rotor_mass_share, shell.base_mm
     assert frame is not None
     z_motor, z_plate = shell.z_motor, shell.z_plate
     return (

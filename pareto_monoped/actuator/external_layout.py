@@ -7,6 +7,7 @@ import numpy as np
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.screws import LENGTHS_MM
 from pareto_monoped.geometry.shapes import Numbers
 
 _BORE_RING_MM = 1.5
@@ -18,6 +19,8 @@ _FLANGE_WIDTH_MM = 6.0
 _FLANGE_BOLTS_MM = 3.2
 """From the tube to that flange's bolt circle. A hexagon head of M3, 6.01 mm over its corners, turns beside the tube; a
 spanner reaches it from the side, where the front plate bars a key."""
+_THREAD_SHARE = 0.6
+"""Least depth of thread over the screw's diameter, as the export's check of held parts asks for."""
 _RING_STEP_MM = 1.0
 """How far the ring stands out of its housing into the casing, which it centres; our own choice."""
 
@@ -74,10 +77,17 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
         r_flange=r_flange,
         r_web=np.maximum(r_flange, at.r_casing + casing.wall_mm),
         r_bolts=r_tube + _FLANGE_BOLTS_MM,
-        base_mm=_frame_base_mm(motor.framed.length_mm),
+        base_mm=_frame_base_mm(motor, coupling.thickness_mm),
     )
 
 
-def _frame_base_mm(length_mm: float) -> float:
-    """Thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones."""
-    return min(3.0, 0.1 * length_mm)
+def _frame_base_mm(motor: Motor, coupling_mm: float) -> float:
+    """Thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones.
+
+    It is more where the face would not hold the coupling's screws by ``_THREAD_SHARE`` of their diameter.
+    """
+    assert motor.framed is not None
+    assert motor.output_holes is not None
+    least = coupling_mm + _THREAD_SHARE * motor.output_holes.diameter_mm
+    length = LENGTHS_MM[np.searchsorted(LENGTHS_MM, least - 1e-9)]
+    return max(min(3.0, 0.1 * motor.framed.length_mm), float(length) - coupling_mm)

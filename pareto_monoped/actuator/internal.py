@@ -250,7 +250,7 @@ def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorS
 
 def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Envelopes of stator and rotor, with their shares of the motor's mass."""
-    kit, rotor_share = frameless(motor), motor.rotor_share()
+    kit, rotor_share = frameless(motor), motor.rotor_mass_share
     height = kit.stator_height_mm
     assert height is not None
     bell_bore = settings.parts.coupling.shaft_radius_mm + _BELL_PLAY_MM

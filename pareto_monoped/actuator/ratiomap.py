@@ -13,7 +13,7 @@ from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating.width import STRENGTH_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
-from pareto_monoped.errors import DesignError
+from pareto_monoped.errors import DesignError, MotorError
 
 RATIO_LOW = 4
 RATIO_HIGH = 15
@@ -29,6 +29,10 @@ Our own choice: it covers the paper's 7.9:1. Farther away, a robot has little to
 
 _EDGE_DECIMALS = 8
 """To which decimal ten times a ratio is rounded, so that 0.1 x 87, a hair below 8.7, is 8.7."""
+
+
+_FAR = 1000.0
+"""A ratio beyond any map."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +114,30 @@ class ActuatorMap:
     motor: Motor
     settings: ActuatorSettings
     entries: tuple[MapEntry, ...]
+
+    def require_gearbox(self, source: str) -> None:
+        """Refuse a motor that has no gearbox at any ratio: nothing can be built or simulated with it.
+
+        Args:
+            source: what the motor is called, the first words of the message.
+
+        Raises:
+            MotorError: there is none; the message names the rules in the way and the motor's size.
+        """
+        if any(entry.actuator is not None for entry in self.entries):
+            return
+        motor, reasons = self.motor, []
+        bodies: tuple[tuple[Family, str], ...] = (("ISSPG", "frameless"), ("ESSPG", "framed"))
+        for family, body in bodies:
+            names = sorted({name for entry in self.entries for name in entry.forbidden_by.get(family, ())})
+            if names:
+                reasons.append(
+                    f"{body}.outer_diameter_mm = {getattr(motor, body).outer_diameter_mm:g} ({', '.join(names)})"
+                )
+        raise MotorError(
+            f"{source}: no gearbox fits at any ratio from {RATIO_LOW} to {RATIO_HIGH}, in the way is "
+            f"{' and '.join(reasons) or 'the torque'}; choose a larger motor or correct the file"
+        )
 
     def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
         """Index into ``entries`` of the gearbox for each ratio, shape (n,) -> (n,); -1 where there is none."""
@@ -224,6 +252,8 @@ def _index(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
 def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
     """Lower end of each ratio's interval, in tenths.
 
-    A ratio within 5e-10 below an interval's end counts to the next interval.
+    A ratio within 5e-10 below an interval's end counts to the next interval. Ratios far outside the map become
+    ``_FAR``, because a whole number cannot hold any ratio.
     """
-    return np.floor(np.round(10.0 * ratios, _EDGE_DECIMALS)).astype(np.intp)
+    near = np.clip(ratios, -_FAR, _FAR)
+    return np.floor(np.round(10.0 * near, _EDGE_DECIMALS)).astype(np.intp)

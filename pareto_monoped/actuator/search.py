@@ -11,7 +11,7 @@ from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
 from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
-from pareto_monoped.actuator.motors import Motor, load_motor
+from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
 from pareto_monoped.actuator.rating.width import STRENGTH_RULES
 from pareto_monoped.actuator.ratiomap import (
     RATIO_HIGH,
@@ -174,9 +174,20 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
     return ActuatorMap(motor=motor, settings=settings, entries=tuple(entries))
 
 
-def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:
-    """The map of a motor under a set of rules, with default settings otherwise; kept for the next call."""
-    return _kept_map(motor, rules)
+def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None = None) -> ActuatorMap:
+    """The map of a motor under a set of rules, with default settings otherwise; kept for the next call.
+
+    Args:
+        motor: the motor.
+        rules: the set of rules.
+        source: where the motor comes from, for the message; default its name.
+
+    Raises:
+        MotorError: the motor has no gearbox at any ratio.
+    """
+    found = _kept_map(motor, rules)
+    found.require_gearbox(source or f"motor {motor.name}")
+    return found
 
 
 # Without defaults, so that one map is kept however its rules were named.
@@ -189,6 +200,6 @@ def map_for(motor_name_or_path: str, rules: RuleSet = DEFAULT_RULES) -> Actuator
     """The map of a shipped motor or of one in a TOML file under a set of rules; cached.
 
     Raises:
-        MotorError: see ``load_motor``.
+        MotorError: see ``load_motor`` and ``map_of``.
     """
-    return map_of(load_motor(motor_name_or_path), rules)
+    return map_of(load_motor(motor_name_or_path), rules, source=motor_source(motor_name_or_path))

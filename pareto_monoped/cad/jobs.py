@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.actuator.motors import Motor, load_motor
+from pareto_monoped.actuator.motors import Motor, load_motor, stored_motor
 from pareto_monoped.cad.write.design_record import MADE_BY
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
-from pareto_monoped.config import checked
 from pareto_monoped.design import DEFAULT_RULES, DEFAULTS, NAMES, PAPER_CASES, RULE_SETS, Design, RuleSet
-from pareto_monoped.errors import InputError, MotorError
+from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, load_calibration
 
 if TYPE_CHECKING:
@@ -188,7 +187,7 @@ def record_job(
         note(f"{source} was made by {maker!r}, this is {MADE_BY}: files may differ")
     return Job(
         design=design,
-        motor=checked(Motor, motor, source=source, error=MotorError),
+        motor=stored_motor(motor, source=source),
         calibration=calibration_of(calibration, source=source),
         rules=rules,
         folder=folder,

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.service.sheet import ServiceSheet
 
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
+_STANDARD_OUTPUT = Path("-")
 
 
 @click.command()
@@ -33,7 +34,13 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
     help="Mass of the main bearing: as listed, or by the paper's regression over the bore.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--csv", "csv_file", metavar="FILE", type=_OUTPUT, help="Also write the table to a CSV file.")
+@click.option(
+    "--csv",
+    "csv_file",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+    help="Also write the table to a CSV file; `-` prints it as CSV instead.",
+)
 @click.option(
     "--figure",
     "figure_file",
@@ -56,16 +63,20 @@ def actuators(
     Each row covers an interval of 0.1, without its upper end; its gearbox has the real ratio in the second column.
     """
     from pareto_monoped.actuator.explain import details, summary
-    from pareto_monoped.actuator.motors import load_motor
+    from pareto_monoped.actuator.motors import load_motor, motor_source
     from pareto_monoped.actuator.search import build_map
     from pareto_monoped.actuator.service.sheet import service_sheet
     from pareto_monoped.actuator.settings import ActuatorSettings
 
+    if as_json and csv_file == _STANDARD_OUTPUT:
+        raise click.UsageError("--json and --csv - both print to standard output; drop one of them")
     settings = ActuatorSettings(rules=rules, constraints_off=frozenset(without), bearings=bearings)
     actuator_map = build_map(load_motor(motor), settings)
-    if ratio is None:
-        entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
-    else:
+    entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
+    if csv_file and not entries:
+        _write_csv(csv_file, [], rules)
+    actuator_map.require_gearbox(motor_source(motor))
+    if ratio is not None:
         entries = [actuator_map.entry(ratio)]
     if figure_file:
         from pareto_monoped.report.figures import write_map_figure
@@ -82,7 +93,9 @@ def actuators(
     if stand_in:
         click.echo(f"note: {stand_in}", err=True)
     if csv_file:
-        _write_csv(csv_file, rows)
+        _write_csv(csv_file, rows, rules)
+    if csv_file == _STANDARD_OUTPUT:
+        return
     if as_json:
         label = {"stand_in": stand_in} if stand_in else {}
         click.echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]) | label, indent=2))
@@ -92,14 +105,29 @@ def actuators(
         _print_details(actuator_map, entries[0], sheets[0])
 
 
-def _write_csv(path: Path, rows: list[dict[str, Any]]) -> None:
+def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet) -> None:
     from pareto_monoped.files import write_text
 
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    writer = csv.DictWriter(text, list(rows[0]) if rows else _columns(rules), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    write_text(path, text.getvalue())
+    if path == _STANDARD_OUTPUT:
+        click.echo(text.getvalue(), nl=False)
+    else:
+        write_text(path, text.getvalue())
+
+
+def _columns(rules: RuleSet) -> list[str]:
+    """Keys of a row, of which a motor without any gearbox has none: those of the default motor's map."""
+    from pareto_monoped.actuator.explain import summary
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.actuator.service.sheet import service_sheet
+
+    found = map_for(PAPER_MOTOR, rules)
+    entry = next(entry for entry in found.entries if entry.actuator is not None)
+    assert entry.actuator is not None
+    return list(summary(entry, service_sheet(entry.actuator, found.settings)))
 
 
 def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Table":
@@ -117,6 +145,7 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
     from rich.console import Console
 
     from pareto_monoped.actuator.explain import gaps
+    from pareto_monoped.actuator.motor_facts import motor_facts
     from pareto_monoped.actuator.ratiomap import either
 
     rated = actuator_map.settings.rules != "paper"
@@ -150,6 +179,8 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
         )
     console = Console(width=80, highlight=False)
     console.print(table)
+    for name, value in motor_facts(actuator_map.motor):
+        console.print(f"{name:20} {value}", markup=False)
     for gap in gaps(actuator_map):
         reasons = "; ".join(
             f"{family}: {', '.join(names) or 'no tooth set'}" for family, names in gap.in_the_way.items()

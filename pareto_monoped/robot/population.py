@@ -68,7 +68,8 @@ class RobotArrays:
         peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2).
         no_load_speed_rad_per_s: at the joint, shape (n, 2).
         efficiency: of the gear mesh, shape (n, 2).
-        torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, shape (n, 2).
+        torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
+            resistance is line to line; shape (n, 2).
         reason: why the robot cannot be built, empty if it can, n strings.
     """
 
@@ -140,7 +141,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
         efficiency=table.efficiency[rows],
         torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
-        winding_resistance_ohm=np.full(rows.shape, motor.winding_resistance_ohm),
+        winding_resistance_ohm=np.full(rows.shape, motor.terminal_resistance_ohm),
         reason=reason,
     )
 

@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.config import checked
 from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
@@ -68,9 +67,9 @@ class StudyData:
         Raises:
             DatabaseError: the stored values are damaged.
         """
-        from pareto_monoped.actuator.motors import Motor
+        from pareto_monoped.actuator.motors import stored_motor
 
-        return checked(Motor, self.meta.contents.get("motor", {}), source=self._source, error=DatabaseError)
+        return stored_motor(self.meta.contents.get("motor", {}), source=self._source, error=DatabaseError)
 
     @cached_property
     def calibration(self) -> "Calibration":

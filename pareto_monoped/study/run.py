@@ -18,7 +18,7 @@ from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.session import Progress, Session
-from pareto_monoped.study.simulator import Simulator, load_simulator, stored_simulator
+from pareto_monoped.study.simulator import Simulator, continued_simulator, load_simulator, stored_simulator
 from pareto_monoped.study.store import Store, create_database
 
 
@@ -84,12 +84,14 @@ def run(
     if seed is not None:
         study = replace(study, seed=seed)
     with locked(db):
-        simulator = load_simulator(study, workers=workers or default_workers())
+        threads = workers or default_workers()
         if not db.exists():
+            simulator = load_simulator(study, workers=threads)
             create_database(db, study, _meta(study, simulator), make_algorithm(study).state())
             data = read_study(db)
         else:
             data = read_study(db)
+            simulator = continued_simulator(data, study, workers=threads)
             _refuse_changes(data, study, simulator, db)
         return _go_on(
             db, data, study, simulator, evaluations or study.evaluations, progress or _silent, notify or _silent

@@ -1,15 +1,14 @@
 """What a study simulates with, from the names in its study file or from what its database holds."""
 
-import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.motors import Motor, load_motor
+from pareto_monoped.actuator.motors import Motor, load_motor, motor_source, motor_values
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
@@ -39,8 +38,7 @@ class Simulator:
     @property
     def contents(self) -> dict[str, dict[str, Any]]:
         """Every value of ``motor`` and ``calibration``, as JSON values."""
-        motor: dict[str, Any] = json.loads(json.dumps(asdict(self.motor)))
-        return {"motor": motor, "calibration": calibration_values(self.calibration)}
+        return {"motor": motor_values(self.motor), "calibration": calibration_values(self.calibration)}
 
     def probe(self) -> list[list[float | None]]:
         """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.
@@ -62,13 +60,44 @@ def load_simulator(study: Study, *, workers: int) -> Simulator:
         workers: threads that simulate.
 
     Raises:
-        MotorError, CalibrationError: an unknown name or an unusable file.
+        MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
     """
-    motor, calibration = load_motor(study.motor), load_calibration(study.calibration)
+    return _simulator(study, load_motor(study.motor), load_calibration(study.calibration), workers)
+
+
+def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simulator:
+    """The simulator of a study file that continues a stored study.
+
+    A motor or calibration that the user has not changed is as stored: the same file, or the same shipped name. A later
+    version may estimate more from the same file, or know better of the same shipped motor.
+
+    Args:
+        data: the stored study.
+        study: names the motor and the calibration, or files of them.
+        workers: threads that simulate.
+
+    Raises:
+        MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
+        DatabaseError: the stored motor or calibration is damaged.
+    """
+
+    def unchanged(key: str) -> bool:
+        named, text = getattr(study, key), _text(getattr(study, key))
+        same_name = text is not None or named.lower() == getattr(data.study, key).lower()
+        return same_name and text == data.meta.files.get(key)
+
+    motor = data.motor if unchanged("motor") else load_motor(study.motor)
+    calibration = data.calibration if unchanged("calibration") else load_calibration(study.calibration)
+    return _simulator(study, motor, calibration, workers)
+
+
+def _simulator(study: Study, motor: Motor, calibration: Calibration, workers: int) -> Simulator:
     return Simulator(
         motor=motor,
         calibration=calibration,
-        evaluator=Evaluator(map_of(motor, study.rules), calibration, workers=workers),
+        evaluator=Evaluator(
+            map_of(motor, study.rules, source=motor_source(study.motor)), calibration, workers=workers
+        ),
         files={"motor": _text(study.motor), "calibration": _text(study.calibration)},
     )
 

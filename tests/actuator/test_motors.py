@@ -1,12 +1,13 @@
 """Motors: derived values against their definitions, and a clear line for every bad file."""
 
+import json
 import math
 from pathlib import Path
 
 import pytest
 
-from pareto_monoped.actuator.motors import PEAK_TO_CONTINUOUS, load_motor, motor_names
-from pareto_monoped.errors import MotorError
+from pareto_monoped.actuator.motors import PEAK_TO_CONTINUOUS, load_motor, motor_names, motor_values, stored_motor
+from pareto_monoped.errors import DatabaseError, MotorError
 
 GOOD = """
 description = "a motor of my own"
@@ -48,13 +49,23 @@ def test_derived_values(name):
         motor.torque_constant_n_m_per_a * motor.max_continuous_current_a
     )
     assert motor.peak_torque_n_m == pytest.approx(PEAK_TO_CONTINUOUS * motor.continuous_torque_n_m, rel=1e-3)
-    assert 0.2 < motor.rotor_share() < 0.7
+    assert motor.rotor_mass_share == motor.estimated_rotor_mass_share()
+    assert 0.2 < motor.rotor_mass_share < 0.5
 
 
-def test_rotor_inertias_are_of_the_size_of_published_ones():
-    # About 1.2e-4 kg m2 is published for outrunners of the U8's size and mass; no figure is published for the VT8020,
-    # which is three times as heavy at the same diameter.
-    assert load_motor("U8").rotor_inertia_kg_m2 == pytest.approx(1.2e-4, rel=0.35)
+def test_the_estimated_rotor_inertia_of_the_u8_lies_between_the_published_ones():
+    motor = load_motor("U8")
+    assert 6.07e-5 <= motor.estimated_rotor_inertia_kg_m2() <= 6.3e-5
+    assert motor.rotor_inertia_kg_m2 == 6.07e-5
+
+
+def test_rotor_inertias_that_are_not_published_are_estimated():
+    for name in motor_names():
+        motor = load_motor(name)
+        if name != "U8":
+            assert motor.rotor_inertia_kg_m2 == motor.estimated_rotor_inertia_kg_m2()
+    # Below that of the whole active mass at the outer radius.
+    assert load_motor("VT8020").rotor_inertia_kg_m2 == pytest.approx(4.03e-4, rel=1e-3)
     assert load_motor("VT8020").rotor_inertia_kg_m2 < 0.560 * 0.0445**2
 
 
@@ -63,13 +74,16 @@ def test_a_framed_motor_s_rotor_is_a_ring_with_its_share_of_79_percent_of_the_ma
     motor = load_motor("MN8014")
     outer = motor.framed.outer_diameter_mm
     stator_out, stator_in = 0.90 * outer, 0.67 * outer
-    # Cross-sections times 7.5 g/cm3 for the rotor, 60 percent of 7.8 g/cm3 for the stator.
-    rotor = 7.5 * (outer**2 - (stator_out + 1.0) ** 2)
-    share = rotor / (rotor + 4.68 * (stator_out**2 - stator_in**2))
-    assert motor.rotor_share() == pytest.approx(share)
+    # Cross-sections times the mean densities: iron and 80 percent of magnets; laminations, and copper with end turns.
+    rotor = (0.5 * 7.85 + 0.5 * 0.8 * 7.5) * (outer**2 - (stator_out + 1.0) ** 2)
+    stator = (0.6 * 7.8 + 1.5 * 0.4 * 0.45 * 8.96) * (stator_out**2 - stator_in**2)
+    share = rotor / (rotor + stator)
+    assert motor.rotor_mass_share == pytest.approx(share, rel=1e-3)
     mass = share * 0.79 * motor.framed.mass_kg
     radii = 0.5e-3 * (stator_out + 1.0), 0.5e-3 * outer
-    assert motor.estimated_rotor_inertia_kg_m2() == pytest.approx(0.5 * mass * (radii[0] ** 2 + radii[1] ** 2))
+    assert motor.estimated_rotor_inertia_kg_m2() == pytest.approx(
+        0.5 * mass * (radii[0] ** 2 + radii[1] ** 2), rel=1e-3
+    )
 
 
 def test_a_motor_of_my_own(tmp_path):
@@ -88,6 +102,58 @@ def test_bolt_circles_that_are_not_given_are_the_vt8020s_scaled_to_the_diameter(
     assert motor.output_holes.pitch_circle_mm == pytest.approx(71.5 * 90.0 / 89.0)
     assert (motor.mount_holes.count, motor.mount_holes.diameter_mm) == (4, 4.0)
     assert (motor.output_holes.count, motor.output_holes.diameter_mm) == (6, 3.0)
+
+
+def test_circles_that_are_not_given_leave_room_for_what_lies_within(tmp_path):
+    motor = load_motor(written(tmp_path, GOOD.replace("90.0, length", "40.0, length").partition("[frameless]")[0]))
+    assert motor.mount_holes.pitch_circle_mm == 29.0  # rather than 22.9
+    assert motor.output_holes.pitch_circle_mm == pytest.approx(71.5 * 40.0 / 89.0)
+
+
+def published_holes():
+    """``reference/motor_mounts.csv``: circle, hole and number, in the base and in the turning face."""
+    return {
+        "VT8020": ((51.0, 5.0, 4), (71.5, 3.0, 6)),
+        "U8": ((32.0, 4.0, 4), (23.0, 4.0, 4)),
+        "U10": ((32.0, 4.0, 4), (23.0, 4.0, 4)),
+        "U12": ((40.0, 5.0, 4), (23.0, 4.0, 4)),
+        "MN8014": ((36.0, 4.0, 4), (23.0, 4.0, 4)),
+        "MAD_M6C12": ((32.0, 4.0, 4), (22.0, 3.0, 4)),
+    }
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_bolt_circles_are_the_published_ones(name):
+    motor = load_motor(name)
+    found = [(h.pitch_circle_mm, h.diameter_mm, h.count) for h in (motor.mount_holes, motor.output_holes)]
+    assert tuple(found) == published_holes()[name]
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_stored_motors_read_back_equal(name):
+    motor = load_motor(name)
+    values = json.loads(json.dumps(motor_values(motor)))
+    assert stored_motor(values, source="x") == motor
+    assert ("thermal" in values, "winding_resistance_kind" in values) == (name == "U8", name == "MAD_M6C12")
+
+
+def test_a_motor_stored_by_0_1_0_is_what_it_was():
+    """No copper in the stator, hence a heavier rotor; nothing but what was stored is stored again."""
+    values = motor_values(load_motor("VT8020"))
+    del values["rotor_mass_share"]
+    values["rotor_inertia_kg_m2"] = 5.24e-4
+    motor = stored_motor(values, source="x")
+    rotor, stator = 7.5 * (89.0**2 - 78.0**2), 4.68 * (77.0**2 - 58.0**2)
+    assert motor.rotor_mass_share == pytest.approx(rotor / (rotor + stator), rel=1e-12)
+    assert (motor.rotor_inertia_kg_m2, motor.thermal, motor.winding_resistance_kind) == (5.24e-4, None, "line_to_line")
+    assert motor_values(motor) == values
+
+
+def test_a_stored_motor_may_contradict_itself_but_not_be_impossible():
+    values = motor_values(load_motor("VT8020")) | {"torque_constant_n_m_per_a": 0.5}
+    assert stored_motor(values, source="x").torque_constant_n_m_per_a == 0.5
+    with pytest.raises(DatabaseError, match=r"^my study: kv_rpm_per_v = -1.0: .*greater than 0"):
+        stored_motor(values | {"kv_rpm_per_v": -1.0}, source="my study", error=DatabaseError)
 
 
 def test_a_file_in_the_shipped_form(tmp_path):

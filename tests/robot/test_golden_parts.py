@@ -80,10 +80,10 @@ def test_units_of_another_motor_are_what_they_were(design):
     assert masses == pytest.approx(
         {
             "base_frame": 0.536252,
-            "hip_actuator": 1.331122,
+            "hip_actuator": 1.321625,
             "thigh": 0.896562,
-            "knee_actuator": 1.920888,
-            "journal": 0.057753,
+            "knee_actuator": 1.879030,
+            "journal": 0.042092,
             "shank": 0.514549,
             "foot": 0.152349,
         },

@@ -31,7 +31,7 @@ def assert_same_robot(arrays, i, robot):
         assert arrays.ratio[i, j] == actuator.ratio
         assert arrays.armature_kg_m2[i, j] == actuator.reflected_inertia_kg_m2
         assert arrays.torque_constant_n_m_per_a[i, j] == actuator.motor.torque_constant_n_m_per_a
-        assert arrays.winding_resistance_ohm[i, j] == actuator.motor.winding_resistance_ohm
+        assert arrays.winding_resistance_ohm[i, j] == actuator.motor.terminal_resistance_ohm
         for name in ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_per_s", "efficiency"):
             assert getattr(arrays, name)[i, j] == getattr(actuator, name), name
     assert robot.mass_kg == pytest.approx(arrays.body_mass_kg[i].sum(), rel=1e-12)

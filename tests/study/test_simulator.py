@@ -8,7 +8,7 @@ from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.errors import CalibrationError, DatabaseError, MotorError
 from pareto_monoped.jump.calibration import calibration_names
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.simulator import load_simulator, stored_simulator
+from pareto_monoped.study.simulator import continued_simulator, load_simulator, stored_simulator
 from tests.study.support import made_database, made_study
 
 
@@ -63,6 +63,53 @@ def test_a_users_files_are_not_needed_again(data, tmp_path):
     again = stored_simulator(stored(data, first), workers=1)
     design = np.array([[0.4, 0.4, 6.0, 6.0, 50.0, 2.5, 10.0]])
     assert again.evaluator(design).height_m == first.evaluator(design).height_m
+
+
+OWN = """
+kv_rpm_per_v = 100.0
+max_continuous_current_a = 40.0
+rated_voltage_v = 48.0
+winding_resistance_ohm = 0.06
+framed = { mass_kg = 0.71, outer_diameter_mm = 89.0, length_mm = 50.0 }
+"""
+
+
+def with_stored_inertia(data, simulator):
+    """The study as a version with another estimate of the rotor would have stored it, and its names and files."""
+    bent = stored(data, simulator)
+    contents = bent.meta.contents | {"motor": bent.meta.contents["motor"] | {"rotor_inertia_kg_m2": 1e-3}}
+    return replace(bent, meta=replace(bent.meta, contents=contents, files=dict(simulator.files)))
+
+
+@pytest.mark.parametrize("shipped", [True, False])
+def test_what_the_user_has_not_changed_is_as_stored(data, tmp_path, shipped):
+    (tmp_path / "own.toml").write_text(OWN)
+    study = made_study() if shipped else made_study(motor=str(tmp_path / "own.toml"))
+    before = with_stored_inertia(replace(data, study=study), load_simulator(study, workers=1))
+    again = continued_simulator(before, study, workers=1)
+    assert again.contents == before.meta.contents
+    assert again.motor.rotor_inertia_kg_m2 == 1e-3
+
+
+@pytest.mark.parametrize("change", ["another shipped motor", "another file", "the file's text", "from name to file"])
+def test_what_the_user_has_changed_is_read_again(data, tmp_path, change):
+    own = tmp_path / "own.toml"
+    own.write_text(OWN)
+    named = change in ("another shipped motor", "from name to file")
+    study = made_study() if named else made_study(motor=str(own))
+    before = with_stored_inertia(replace(data, study=study), load_simulator(study, workers=1))
+    if change == "another shipped motor":
+        study = made_study(motor="U8")
+    elif change == "another file":
+        (tmp_path / "other.toml").write_text(OWN.replace("0.06", "0.07"))
+        study = made_study(motor=str(tmp_path / "other.toml"))
+    elif change == "the file's text":
+        own.write_text(OWN.replace("0.06", "0.07"))
+    else:
+        study = made_study(motor=str(own))
+    again = continued_simulator(before, study, workers=1)
+    assert again.motor == load_simulator(study, workers=1).motor
+    assert again.contents != before.meta.contents
 
 
 @pytest.mark.parametrize("name", ["../../../etc/passwd.toml", "/etc/cron.d/x.toml", "..", ".toml"])

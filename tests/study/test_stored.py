@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from pareto_monoped.study.columns import LATER
 from pareto_monoped.study.definition import load_study
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
-from pareto_monoped.study.simulator import load_simulator, stored_simulator
+from pareto_monoped.study.simulator import continued_simulator, stored_simulator
 from pareto_monoped.study.status import status
 
 DATA = Path(__file__).parent / "data"
@@ -44,6 +45,18 @@ def stored(name, tmp_path, monkeypatch):
     # MuJoCo writes its log into the current folder.
     monkeypatch.chdir(tmp_path)
     return path
+
+
+def motor_file(path, motor):
+    """Write every value of a motor as a user's file."""
+
+    def toml(value):
+        if isinstance(value, dict):
+            return "{ " + ", ".join(f"{key} = {toml(one)}" for key, one in value.items() if one is not None) + " }"
+        return json.dumps(value)
+
+    path.write_text("".join(f"{key} = {toml(one)}\n" for key, one in asdict(motor).items() if one is not None))
+    return str(path)
 
 
 @named
@@ -80,10 +93,10 @@ def test_picks_are_the_same(name):
 
 @named
 def test_the_hash_is_what_this_code_computes(name):
-    """From the study file and the user's files, and again from what the database holds."""
+    """From the study file with the unchanged user's files, and again from what the database holds."""
     data = read_study(DATA / f"{name}.db")
     study = load_study(DATA / f"{name}.toml")
-    for simulator in (load_simulator(study, workers=1), stored_simulator(data, workers=1)):
+    for simulator in (continued_simulator(data, study, workers=1), stored_simulator(data, workers=1)):
         decisive = provenance.decisive(study, simulator.contents, data.meta.versions)
         assert provenance.digest(decisive) == data.meta.hash
 
@@ -92,7 +105,9 @@ def test_the_hash_is_what_this_code_computes(name):
 def test_resumed_it_ends_like_an_uninterrupted_run(name, stored, tmp_path):
     budget = {"plain": 110, "own_files": 50}[name]
     before = read_study(stored)
-    run(load_study(DATA / f"{name}.toml"), tmp_path / "whole.db", evaluations=budget)
+    # Of the motor's file or name, this version would estimate another rotor.
+    motor = motor_file(tmp_path / "motor.toml", before.motor)
+    run(replace(load_study(DATA / f"{name}.toml"), motor=motor), tmp_path / "whole.db", evaluations=budget)
     whole = read_study(tmp_path / "whole.db")
     assert resume(stored, evaluations=budget).new_evaluations == budget - len(before.trials)
     resumed = read_study(stored)

@@ -1,13 +1,11 @@
 """``design.json``: the design, what it was made with, and what came out; an export can be made again from it."""
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 from pareto_monoped import __version__
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motors import motor_values
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
@@ -64,8 +62,8 @@ def design_record(
             )
         },
         "formats": list(formats),
-        "motor_data": json_values(robot.hip.motor),
-        "calibration_data": json_values(calibration),
+        "motor_data": motor_values(robot.hip.motor),
+        "calibration_data": calibration_values(calibration),
     }
 
 
@@ -87,10 +85,3 @@ def _actuator(actuator: Actuator) -> dict[str, Any]:
         **({} if rating is None else {"rating": rating.as_dict()}),
     }
 
-
-def json_values(record: Motor | Calibration) -> dict[str, Any]:
-    """Every value of a record as JSON has it, so that it compares equal to what is read back."""
-    if isinstance(record, Calibration):
-        return calibration_values(record)
-    values: dict[str, Any] = json.loads(json.dumps(asdict(record)))
-    return values

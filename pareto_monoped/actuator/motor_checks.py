@@ -1,0 +1,180 @@
+"""Whether the values of a motor agree with each other and with what can be built: one line for the first that does not.
+
+A motor that is read from a file is checked; one that a study stores is not, because it was accepted once.
+"""
+
+import math
+from collections.abc import Callable
+
+from pareto_monoped.actuator.motor import MOUNT_BORE_MM, OUTPUT_BORE_MM, HolePattern, Motor
+from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE, PER_PHASE_RMS, torque_constant_n_m_per_a
+
+KV_TOLERANCE = 0.10
+"""Greatest difference between k_t and 60 / (2 pi Kv), as a share. Makers' k_t are up to 5 percent low, that of
+a sinusoidal motor under block commutation; k_t per ampere of a phase current differs by 13 or 22 percent."""
+_LOOKS_LIKE = 0.03
+"""How close k_t must be to that of another convention to be taken for it; our own choice."""
+
+VOLTAGE_MOST_V = 1500.0
+"""Where low voltage ends for direct current (directive 2014/35/EU)."""
+
+RIM_SPEED_MOST_M_PER_S = 150.0
+"""Of a rotor with glued magnets, at no-load speed: 50 to 100 m/s are usual, about 150 m/s need a sleeve (Hendershot and
+Miller, Design of Brushless Permanent-Magnet Machines). The motors here run at 16 to 33 m/s."""
+
+SHEAR_MOST_KPA = 100.0
+"""Of the air gap at peak torque: torque over gap radius and gap surface. Large liquid-cooled machines reach 70 to 100
+kPa (Hendershot and Miller, as above); the motors here 16 to 25."""
+
+LENGTH_LEAST_MM = 12.0
+"""Of a framed motor: face and base with the threads of their screws, up to 5 mm each, and magnets between them."""
+
+HOLE_MOST_MM = 8.0
+"""Largest hole: no motor of up to 400 mm here has larger screws, and M10 needs a thicker face."""
+HOLE_WALL_MM = 1.0
+"""Least metal around a motor's holes; our own choice."""
+DIAMETER_LEAST_MM = MOUNT_BORE_MM + 2.0 * (4.0 + HOLE_WALL_MM)
+"""Of a motor: the base's bore, an M4 hole on either side, and metal outside them."""
+
+
+def contradiction(motor: Motor) -> str | None:
+    """What is wrong with a motor: key, value, what is allowed, cure; None if nothing is."""
+    return next((found for check in _CHECKS if (found := check(motor)) is not None), None)
+
+
+def _voltage(motor: Motor) -> str | None:
+    if motor.rated_voltage_v > VOLTAGE_MOST_V:
+        return (
+            f"rated_voltage_v = {motor.rated_voltage_v:g}: must be at most {VOLTAGE_MOST_V:g} V, the end of low "
+            "voltage; correct it"
+        )
+    return None
+
+
+def _speed(motor: Motor) -> str | None:
+    rim = 0.5e-3 * motor.outer_diameter_mm * motor.no_load_speed_rad_per_s
+    if rim > RIM_SPEED_MOST_M_PER_S:
+        return (
+            f"kv_rpm_per_v = {motor.kv_rpm_per_v:g}: the rotor's rim would run at {rim:.4g} m/s with rated_voltage_v = "
+            f"{motor.rated_voltage_v:g}, must be at most {RIM_SPEED_MOST_M_PER_S:g} m/s; correct one of them"
+        )
+    return None
+
+
+def _torque_constant(motor: Motor) -> str | None:
+    given, wanted = motor.torque_constant_n_m_per_a, torque_constant_n_m_per_a(motor.kv_rpm_per_v)
+    if abs(given / wanted - 1.0) <= KV_TOLERANCE:
+        return None
+    cure = "correct one of them or leave out torque_constant_n_m_per_a"
+    for words, factor in (("amplitude", PER_PHASE_AMPLITUDE), ("RMS value", PER_PHASE_RMS)):
+        if abs(given / (factor * wanted) - 1.0) <= _LOOKS_LIKE:
+            cure = f"it looks like that per ampere of the phase current's {words}, divide it by {factor:.4f}"
+    return (
+        f"torque_constant_n_m_per_a = {given:g}: must be within {KV_TOLERANCE:.0%} of {wanted:.4g} N m/A, "
+        f"60 / (2 pi kv_rpm_per_v) with kv_rpm_per_v = {motor.kv_rpm_per_v:g}; {cure}"
+    )
+
+
+def _peak_current(motor: Motor) -> str | None:
+    current = motor.current_a(motor.peak_torque_n_m)
+    needed = motor.terminal_resistance_ohm * current
+    if needed <= motor.rated_voltage_v:
+        return None
+    return (
+        f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: its current of {current:.4g} A needs {needed:.4g} V in "
+        f"{motor.terminal_resistance_ohm:g} ohm (winding_resistance_ohm), must be at most rated_voltage_v = "
+        f"{motor.rated_voltage_v:g}; correct one of them"
+    )
+
+
+def _shear(motor: Motor) -> str | None:
+    _, outer = motor.stator_diameters_mm
+    body = motor.framed or motor.frameless
+    assert body is not None
+    length = body.length_mm if motor.frameless is None else motor.frameless.length_mm
+    shear_kpa = 1e-3 * motor.peak_torque_n_m / (0.5e-9 * math.pi * outer**2 * length)
+    if shear_kpa <= SHEAR_MOST_KPA:
+        return None
+    return (
+        f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: would shear an air gap of {outer:.4g} mm by {length:g} mm "
+        f"with {shear_kpa:.4g} kPa, must be at most {SHEAR_MOST_KPA:g} kPa; correct it, kv_rpm_per_v, "
+        "max_continuous_current_a or the motor's size"
+    )
+
+
+def _length(motor: Motor) -> str | None:
+    if motor.framed is not None and motor.framed.length_mm < LENGTH_LEAST_MM:
+        return (
+            f"framed.length_mm = {motor.framed.length_mm:g}: must be at least {LENGTH_LEAST_MM:g} mm for face, base "
+            "and magnets; correct it or leave out framed"
+        )
+    return None
+
+
+def _diameter(motor: Motor) -> str | None:
+    if motor.outer_diameter_mm >= DIAMETER_LEAST_MM:
+        return None
+    body = "framed" if motor.frameless is None else "frameless"
+    return (
+        f"{body}.outer_diameter_mm = {motor.outer_diameter_mm:g}: must be at least {DIAMETER_LEAST_MM:g} mm to hold "
+        "the bolts of its base; choose a larger motor"
+    )
+
+
+def _mount_holes(motor: Motor) -> str | None:
+    assert motor.mount_holes is not None
+    return _circle("mount_holes", motor.mount_holes, motor, MOUNT_BORE_MM, "the rear bearing's seat")
+
+
+def _output_holes(motor: Motor) -> str | None:
+    assert motor.output_holes is not None
+    if motor.framed is None:
+        return None  # only the framed motor's turning face has them
+    return _circle("output_holes", motor.output_holes, motor, OUTPUT_BORE_MM, "the coupling's hub")
+
+
+def _circle(key: str, holes: HolePattern, motor: Motor, bore_mm: float, what: str) -> str | None:
+    circle, hole = holes.pitch_circle_mm, holes.diameter_mm
+    most = motor.outer_diameter_mm - hole - 2.0 * HOLE_WALL_MM
+    least = bore_mm + hole
+    apart = circle * math.sin(math.pi / holes.count)
+    if hole > HOLE_MOST_MM:
+        return f"{key}.diameter_mm = {hole:g}: must be at most {HOLE_MOST_MM:g} mm; give smaller holes"
+    if circle > most:
+        return (
+            f"{key}.pitch_circle_mm = {circle:.4g}: must be at most {most:.4g} mm, so that holes of {hole:g} mm lie "
+            f"within outer_diameter_mm = {motor.outer_diameter_mm:g}; correct one of them"
+        )
+    if circle < least:
+        return (
+            f"{key}.pitch_circle_mm = {circle:.4g}: must be at least {least:.4g} mm, with holes of {hole:g} mm around "
+            f"{what}, {bore_mm:g} mm across; give a larger circle or smaller holes"
+        )
+    if apart < hole + HOLE_WALL_MM:
+        return (
+            f"{key}.count = {holes.count}: the holes of {hole:g} mm stand {apart:.3g} mm apart on a circle of "
+            f"{circle:.4g} mm, must be {hole + HOLE_WALL_MM:g} mm or more; give fewer or smaller holes"
+        )
+    return None
+
+
+def _thermal(motor: Motor) -> str | None:
+    try:
+        _ = motor.peak_torque_time_s
+    except ValueError as problem:
+        return f"thermal.{problem}"
+    return None
+
+
+_CHECKS: tuple[Callable[[Motor], str | None], ...] = (
+    _voltage,
+    _speed,
+    _torque_constant,
+    _diameter,
+    _length,
+    _mount_holes,
+    _output_holes,
+    _peak_current,
+    _shear,
+    _thermal,
+)

@@ -1,0 +1,57 @@
+"""What is screwed to a motor's own circles has room there and thread enough."""
+
+from dataclasses import replace
+
+import pytest
+
+from pareto_monoped.actuator.motors import FramedMotor, HolePattern, load_motor, motor_names
+from pareto_monoped.actuator.search import map_for, map_of
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.leg.bearing import SHOULDER_RADIUS
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.journal import journal_parts
+
+
+def esspg(found):
+    return next(e.actuator for e in found.entries if e.actuator is not None and e.actuator.family == "ESSPG")
+
+
+def thread_mm(actuator):
+    """Depth to which the coupling's screws reach into the motor's turning face, and the face's thickness."""
+    coupling = next(part for part in actuator.parts if part.role is Role.COUPLING)
+    screw = next(part for part in actuator.parts if part.name == "coupling_screw")
+    rotor = next(part for part in actuator.parts if part.role is Role.MOTOR_ROTOR)
+    face = rotor.prisms[0]
+    bottom = min(float(prism.z0_mm) for prism in coupling.prisms)
+    end = min(float(prism.z0_mm) for prism in screw.prisms)
+    assert float(face.z1_mm) == bottom
+    return bottom - end, float(face.z1_mm) - float(face.z0_mm)
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_the_coupling_s_screws_hold_in_the_motor_s_face(name):
+    motor = load_motor(name)
+    depth, face = thread_mm(esspg(map_for(name)))
+    assert 0.6 * motor.output_holes.diameter_mm <= depth <= face
+
+
+@pytest.mark.parametrize("hole_mm", [2.5, 3.0, 4.0, 5.0, 6.0, 8.0])
+@pytest.mark.parametrize("length_mm", [12.0, 20.0, 40.0])
+def test_they_hold_in_short_motors_and_with_thick_screws(hole_mm, length_mm):
+    motor = replace(
+        load_motor("MN8014"),
+        framed=FramedMotor(mass_kg=0.392, outer_diameter_mm=87.8, length_mm=length_mm),
+        output_holes=HolePattern(pitch_circle_mm=30.0, diameter_mm=hole_mm, count=4),
+    )
+    depth, face = thread_mm(esspg(map_of(motor)))
+    assert 0.6 * hole_mm <= depth <= face
+    assert face < 0.5 * length_mm
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_the_journal_s_screw_heads_clear_its_shoulder(name):
+    leg = leg_dimensions(map_for(name))
+    journal, screw = journal_parts(0.06, leg)
+    head = max(float(prism.outline.radius_mm) for prism in screw.prisms)
+    assert leg.back_pitch_radius_mm - head > SHOULDER_RADIUS
+    assert leg.back_pitch_radius_mm + head <= float(journal.prisms[0].outline.radius_mm) + 0.1
