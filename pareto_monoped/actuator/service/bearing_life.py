@@ -87,7 +87,7 @@ def bearing_services(
     ]
     if actuator.family == "ISSPG":
         assert actuator.motor.frameless is not None
-        rotor = 0.5 * actuator.motor.rotor_share() * actuator.motor.frameless.mass_kg * GRAVITY_M_PER_S2
+        rotor = 0.5 * actuator.motor.rotor_mass_share * actuator.motor.frameless.mass_kg * GRAVITY_M_PER_S2
         bearing = rated_bearing(float(at.rear_bearing.inner_diameter_mm))
         found.append(_service("rear", bearing, levels * sun + rotor, 0.0 * levels, actuator.ratio, duty, service))
     return tuple(found)
