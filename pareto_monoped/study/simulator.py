@@ -95,9 +95,7 @@ def _simulator(study: Study, motor: Motor, calibration: Calibration, workers: in
     return Simulator(
         motor=motor,
         calibration=calibration,
-        evaluator=Evaluator(
-            map_of(motor, study.rules, source=motor_source(study.motor)), calibration, workers=workers
-        ),
+        evaluator=Evaluator(map_of(motor, study.rules, source=motor_source(study.motor)), calibration, workers=workers),
         files={"motor": _text(study.motor), "calibration": _text(study.calibration)},
     )
 

@@ -84,4 +84,3 @@ def _actuator(actuator: Actuator) -> dict[str, Any]:
         "length_mm": actuator.length_mm,
         **({} if rating is None else {"rating": rating.as_dict()}),
     }
-
