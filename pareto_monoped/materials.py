@@ -109,6 +109,21 @@ class GearGrade:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Elastomer(Material):
+    """A rubber that absorbs impacts.
+
+    Attributes:
+        hardness_shore_a: of the grade.
+        youngs_modulus_mpa: at small strain.
+        rebound_resilience: share of the energy of an impact that comes back (ISO 4662, 23 degrees Celsius).
+    """
+
+    hardness_shore_a: Annotated[float, Field(ge=30.0, le=95.0)]
+    youngs_modulus_mpa: Positive
+    rebound_resilience: Annotated[float, Field(gt=0.0, lt=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Materials:
     """All materials: one table of ``data/materials.toml`` each."""
 
@@ -123,6 +138,7 @@ class Materials:
     motor_rotor: Material
     printed_plastic: Material
     rubber: Material
+    fluoroelastomer: Elastomer
 
 
 _GRADES = "gear_grades"

@@ -1,0 +1,80 @@
+"""The end stops of hip and knee: at which angles they meet, and how hard they push back.
+
+A stop is a bumper on one link and a flat striker on the other. The bumper is a round bar of elastomer that lies on a
+flat seat, parallel to the joint's axis, and is squeezed sideways. Everything that needs a stop reads it here: the parts
+of the links, the sweep of every export, the joint limits of both robot models, and the simulation.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.materials import MATERIALS, Elastomer
+
+MOST_COMPRESSION = 0.5
+"""Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bumper:
+    """A solid round bar of elastomer between two flat faces.
+
+    Attributes:
+        diameter_mm, length_mm: of the bar.
+        elastomer: its material.
+    """
+
+    diameter_mm: float
+    length_mm: float
+    elastomer: Elastomer
+
+    def force_n(self, compression_mm: Numbers) -> Numbers:
+        """Force of a slow compression.
+
+        With c the compression over the diameter d, a bar of length l takes E d l (1.25 c^1.5 + 50 c^6): P. B. Lindley,
+        "Compression characteristics of laterally-unrestrained rubber O-rings", J. Inst. Rubber Ind. 1 (1967), for a
+        straight bar.
+        """
+        share = np.maximum(compression_mm, 0.0) / self.diameter_mm
+        area = self.diameter_mm * self.length_mm
+        return self.elastomer.youngs_modulus_mpa * area * (1.25 * share**1.5 + 50.0 * share**6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointStop:
+    """The end stops of one joint, equal at both ends of its range.
+
+    Attributes:
+        lower_rad, upper_rad: angles at which a striker meets a bumper: the joint's range.
+        lever_mm: distance from the joint's axis to the line on which bumper and striker meet.
+        bumper: of either end.
+    """
+
+    lower_rad: float
+    upper_rad: float
+    lever_mm: float
+    bumper: Bumper
+
+    @property
+    def travel_rad(self) -> float:
+        """Angle beyond either end of the range at which a bumper is fully compressed."""
+        return MOST_COMPRESSION * self.bumper.diameter_mm / self.lever_mm
+
+    def torque_n_m(self, beyond_rad: Numbers) -> Numbers:
+        """Torque with which a stop pushes back slowly at an angle beyond its end of the range."""
+        return 1e-3 * self.lever_mm * self.bumper.force_n(self.lever_mm * beyond_rad)
+
+
+_BUMPER = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
+
+
+def hip_stop(d: LegDimensions) -> JointStop:
+    """The stops of the hip: 100 degrees to both sides of hanging straight down."""
+    return JointStop(lower_rad=-np.radians(100.0), upper_rad=np.radians(100.0), lever_mm=60.0, bumper=_BUMPER)
+
+
+def knee_stop(d: LegDimensions) -> JointStop:
+    """The stops of the knee: 15 degrees before the straight leg, and at 140 degrees of flexion."""
+    return JointStop(lower_rad=np.radians(15.0), upper_rad=np.radians(140.0), lever_mm=60.0, bumper=_BUMPER)
