@@ -28,6 +28,8 @@ class Role(StrEnum):
     BOLT = "bolt"  # a screw together with its nut
     ROD = "rod"
     FOOT = "foot"
+    BUMPER = "bumper"  # of an end stop, soft
+    STRIKER = "striker"  # what meets a bumper
     MOTOR_STATOR = "motor stator"
     MOTOR_ROTOR = "motor rotor"
 

@@ -13,11 +13,14 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
     """A copy of a frozen dataclass whose fields are arrays or tuples with one row per item, with only some rows.
 
     Args:
-        record: the dataclass; every field has n rows.
+        record: the dataclass; every array and tuple has n rows, anything else is the same for all items.
         rows: indices of the rows to keep, in this order.
     """
     kept: dict[str, Any] = {}
     for field in fields(record):  # type: ignore[arg-type]
         values = getattr(record, field.name)
-        kept[field.name] = tuple(values[i] for i in rows) if isinstance(values, tuple) else values[rows]
+        if isinstance(values, tuple):
+            kept[field.name] = tuple(values[i] for i in rows)
+        elif isinstance(values, np.ndarray):
+            kept[field.name] = values[rows]
     return replace(record, **kept)  # type: ignore[type-var]

@@ -10,13 +10,10 @@ from pareto_monoped.leg.bearing import LIP, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.journal import far_cheek_z_mm
 from pareto_monoped.leg.sandwich import Place, holes_at
+from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
 from pareto_monoped.materials import MATERIALS
 
-# Our own layout of the rods, mm. They stand above the hip, outside the reach of the thigh's round hip end and, up to
-# the ends of the hip's range, of its bar.
-_LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
-_UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0  # from the middle, and above the lower rods
-_ROD_RADIUS = 5.0  # a common tube, with 3.35 mm of wall around its M4 thread
+# Our own layout of the rods, mm. They stand above the hip, see ``LegDimensions.lower_rod_mm``.
 _ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
 # Our own layout of the cheeks, mm.
 _TOP_RADIUS, _TOP_RISE = 40.0, 6.0  # round upper end, its centre above the lower rods: 5 mm outside the upper ones
@@ -38,19 +35,17 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Part,
         d: dimensions.
     """
     far_mm = far_cheek_z_mm(knee_actuator_length_m, d)
-    return (*_near_cheek(d), *_far_cheek(far_mm, d), *_rods(far_mm, d))
+    return (*_near_cheek(d), *_far_cheek(far_mm, d), *_rods(far_mm, d), *base_stop_parts(d))
 
 
 def _rod_places(d: LegDimensions) -> tuple[Place, ...]:
     """Where the rods stand: two as close to the hip axis as the thigh lets them, two above."""
-    x, y = (d.rod_circle_mm * share for share in _LOWER_ROD)
-    up = y + _UPPER_ROD_RISE
-    return ((-x, y, 0.0), (x, y, 0.0), (-_UPPER_ROD_X, up, 0.0), (_UPPER_ROD_X, up, 0.0))
+    return tuple((side * x, y, 0.0) for x, y in (d.lower_rod_mm, d.upper_rod_mm) for side in (-1.0, 1.0))
 
 
 def _cheek_outline(bottom_radius_mm: float, d: LegDimensions) -> Path:
     """From a disc around the hip axis up to the round end around the rods."""
-    top_mm = _lower_rod_y_mm(d) + _TOP_RISE
+    top_mm = d.lower_rod_mm[1] + _TOP_RISE
     return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=top_mm, y_mm=top_mm)
 
 
@@ -60,14 +55,9 @@ def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
         top_radius_mm=_SLOT_RADIUS,
         bottom_radius_mm=_SLOT_RADIUS,
         length_mm=_SLOT_LENGTH,
-        y_mm=_lower_rod_y_mm(d) + _SLOT_RISE,
+        y_mm=d.lower_rod_mm[1] + _SLOT_RISE,
     )
     return (slot, *holes_at(_rod_places(d), M4.hole))
-
-
-def _lower_rod_y_mm(d: LegDimensions) -> float:
-    """Height of the lower rods above the hip axis."""
-    return d.rod_circle_mm * _LOWER_ROD[1]
 
 
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
@@ -95,10 +85,12 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                             phase_rad=np.pi / 6,
                         ),
                         *_common_holes(d),
+                        *holes_at(hip_seat_screws(d), M4.hole),
                     ),
                 ),
             ),
-            note=f"{d.cheek_mm:g} mm sheet EN AW-6082 T6; countersink the screw holes on the thigh's side",
+            note=f"{d.cheek_mm:g} mm sheet EN AW-6082 T6; countersink the screw holes: the actuator's on the "
+            "thigh's side, those of the hip's seats on the actuator's",
         ),
         screw_part(
             "hip_mount_screw",
@@ -150,9 +142,10 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             role=Role.ROD,
             material=MATERIALS.aluminium,
             process="machined",
-            prisms=(Prism(outline=Circle(radius_mm=_ROD_RADIUS), z0_mm=near_mm, z1_mm=far_mm, holes=(thread,)),),
+            prisms=(Prism(outline=Circle(radius_mm=d.rod_radius_mm), z0_mm=near_mm, z1_mm=far_mm, holes=(thread,)),),
             places_mm=places,
-            note=f"{2.0 * _ROD_RADIUS:g} mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
+            note=f"{2.0 * d.rod_radius_mm:g} mm tube, tapped M4 at both ends; "
+            "the test stand's carriage clamps to the rods",
         ),
         *(
             screw_part(

@@ -10,8 +10,8 @@ from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Sha
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.materials import MATERIALS
 
-# Our own layout, mm along the strand. From one end of the knee's range to its middle each strand moves by 68 mm: 0.2 m
-# between the axes is the least at which no turnbuckle reaches a sprocket.
+# Our own layout, mm along the strand. From the straight leg to the end of the knee's stop each strand moves by 68 mm:
+# 0.2 m between the axes is the least at which no turnbuckle reaches a sprocket.
 TURNBUCKLE = 48.0  # between its pins, in the middle of its travel: room for studs and forks at either end
 _BARREL, _BARREL_WIDTH = 28.0, 7.0  # a square bar with 1.5 mm of wall around its M4 threads
 _STUD = 3.2  # side of a square of the area of an M4 thread (ISO 724: 9.8 mm2 at the pitch diameter)

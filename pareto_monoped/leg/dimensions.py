@@ -20,6 +20,9 @@ from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
 
 _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into the axle, cables through the journal
+_LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
+_LEAST_ROD_CIRCLE_MM = 66.5  # 1.7 mm from a rod to an ear
+_UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0  # from the middle, and above the lower rods
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,8 +53,10 @@ class LegDimensions:
         knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 30.1 mm.
         shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates.
         shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core.
-        fork_mm: free depth of the shank's fork below the knee axis, enough for ``joint_ranges.KNEE_RANGE_RAD``.
+        fork_mm: free depth of the shank's fork below the knee axis, enough for the thigh at the end of
+            ``stops.knee_stop``.
         foot_radius_mm: of the rubber ball.
+        rod_radius_mm: of the base's rods: a common tube, with 3.35 mm of wall around its M4 thread.
         cheek_mm: thickness of the base's near cheek.
         far_cheek_mm: thickness of the base's far cheek: the bearing's seat and a lip of 1 mm.
     """
@@ -89,6 +94,7 @@ class LegDimensions:
     shank_core_window_half_width_mm: float = 12.5
     fork_mm: float = 100.0
     foot_radius_mm: float = 33.0
+    rod_radius_mm: float = 5.0
     cheek_mm: float = 6.0
     far_cheek_mm: float = 8.0
 
@@ -109,8 +115,21 @@ class LegDimensions:
 
     @property
     def rod_circle_mm(self) -> float:
-        """Distance of the base's lower rods from the hip axis: 8 mm from the rods to the thigh's round hip end."""
-        return self.rim_radius_mm + 13.0
+        """Distance of the base's lower rods from the hip axis.
+
+        8 mm from the rods to the thigh's round hip end, and enough for its ears at the end of the stops' travel.
+        """
+        return max(self.rim_radius_mm + 13.0, _LEAST_ROD_CIRCLE_MM)
+
+    @property
+    def lower_rod_mm(self) -> tuple[float, float]:
+        """Place x, y of the base's lower rod on the +x side; the other one is its mirror image."""
+        return self.rod_circle_mm * _LOWER_ROD[0], self.rod_circle_mm * _LOWER_ROD[1]
+
+    @property
+    def upper_rod_mm(self) -> tuple[float, float]:
+        """Place x, y of the base's upper rod on the +x side."""
+        return _UPPER_ROD_X, self.lower_rod_mm[1] + _UPPER_ROD_RISE
 
     @property
     def sprocket_recess_mm(self) -> float:

@@ -40,7 +40,7 @@ def _cup_pitch_radius_mm(d: LegDimensions) -> float:
     return d.bearing_outer_radius_mm + 0.5 * _CUP_WALL
 
 
-def knee_seats(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
+def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """The bearings of the knee and their cups, which are screwed to the insides of the thigh's plates."""
     half_gap = 0.5 * d.gap_mm
     y_mm = -thigh_length_mm

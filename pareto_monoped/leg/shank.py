@@ -17,6 +17,7 @@ from pareto_monoped.leg.sandwich import (
     sleeve_hole,
     windows_between,
 )
+from pareto_monoped.leg.stop_parts import shank_stop_bolts, shank_stop_parts
 from pareto_monoped.materials import MATERIALS
 
 # Our own layout of the fork, mm below the knee axis.
@@ -49,6 +50,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         *axle_parts(d),
         _foot_block(flat, foot_bolts, d),
         sleeve_bolt("foot_bolt", M4, face, foot_bolts),
+        *shank_stop_parts(d),
     )
 
 
@@ -80,7 +82,7 @@ def _plate(flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Pla
                     fork_window,
                     *windows_between(bridges, d.shank_window_half_width_mm),
                     *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-                    *holes_at(foot_bolts, sleeve_hole(M4)),
+                    *holes_at((*foot_bolts, *shank_stop_bolts(d)), sleeve_hole(M4)),
                 ),
             ),
         ),

@@ -13,6 +13,10 @@ from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.materials import MATERIALS, Elastomer
 
+# Our own layout of the hip's stops.
+_HIP_END = np.radians(100.0)  # to both sides of hanging straight down
+_HIP_LEVER_TO_ROD = 25.0  # mm: the thigh's striker passes 2 mm from the seat's boss around the rod
+
 MOST_COMPRESSION = 0.5
 """Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here."""
 
@@ -48,7 +52,7 @@ class JointStop:
 
     Attributes:
         lower_rad, upper_rad: angles at which a striker meets a bumper: the joint's range.
-        lever_mm: distance from the joint's axis to the line on which bumper and striker meet.
+        lever_mm: distance of the joint's axis from the line along which a striker squeezes a bumper.
         bumper: of either end.
     """
 
@@ -71,8 +75,15 @@ _BUMPER = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroela
 
 
 def hip_stop(d: LegDimensions) -> JointStop:
-    """The stops of the hip: 100 degrees to both sides of hanging straight down."""
-    return JointStop(lower_rad=-np.radians(100.0), upper_rad=np.radians(100.0), lever_mm=60.0, bumper=_BUMPER)
+    """The stops of the hip: 100 degrees to both sides of hanging straight down.
+
+    The bumpers hang on the base's rods, so that the lever grows with the motor.
+    """
+    x, y = d.lower_rod_mm
+    rod_along_thigh_mm = float(x * np.sin(_HIP_END) - y * np.cos(_HIP_END))  # with the thigh at the end of its range
+    return JointStop(
+        lower_rad=-_HIP_END, upper_rad=_HIP_END, lever_mm=rod_along_thigh_mm + _HIP_LEVER_TO_ROD, bumper=_BUMPER
+    )
 
 
 def knee_stop(d: LegDimensions) -> JointStop:

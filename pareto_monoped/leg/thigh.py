@@ -10,9 +10,10 @@ from pareto_monoped.leg.bearing import LIP
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.hip import hip_joints
-from pareto_monoped.leg.knee import cup_holes, knee_seats
-from pareto_monoped.leg.outlines import waisted
+from pareto_monoped.leg.knee import cup_holes, knee_bearings
 from pareto_monoped.leg.sandwich import BRIDGE, Place, bolts_at, holes_at, sleeve_bolt, sleeve_hole, windows_between
+from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
+from pareto_monoped.leg.thigh_outline import thigh_outline
 from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm.
@@ -51,37 +52,30 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
         for angle in _STANDOFF_ANGLES
     )
+    bolts = (*bolts_at(bridges), *standoffs, *thigh_stop_bolts(length, d))
     return (
-        *_plates(length, bridges, standoffs, d),
+        *_plates(length, bridges, bolts, d),
         _core(length, bridges, d),
         _standoff(standoffs, d),
-        sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, (*bolts_at(bridges), *standoffs)),
+        sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts),
         *hip_joints(d),
         *chain_parts(length, d),
-        *knee_seats(length, d),
+        *knee_bearings(length, d),
+        *thigh_stop_parts(length, d),
     )
 
 
 def _plates(
-    length: Numbers, bridges: tuple[Numbers, ...], standoffs: tuple[Place, ...], d: LegDimensions
+    length: Numbers, bridges: tuple[Numbers, ...], bolts: tuple[Place, ...], d: LegDimensions
 ) -> tuple[Part, ...]:
     """The inner plate, which the hip's output turns, and the outer one, which carries the knee actuator."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     common = (
         *windows_between(bridges, d.thigh_window_half_width_mm),
-        *holes_at(bolts_at(bridges), sleeve_hole(M3)),
+        *holes_at(bolts, sleeve_hole(M3)),
         Circle(radius_mm=d.bearing_outer_radius_mm - LIP, y_mm=-length),
         cup_holes(-length, M25.hole, d),
-        *holes_at(standoffs, sleeve_hole(M3)),
     )
-
-    def outline(top_radius_mm: float) -> Shape:
-        return waisted(
-            top_radius_mm=top_radius_mm,
-            bottom_radius_mm=d.knee_radius_mm,
-            half_width_mm=d.thigh_half_width_mm,
-            length_mm=length,
-        )
 
     note = f"{d.plate_mm:g} mm sheet EN AW-6082 T6; countersink the bolt holes outside"
     return (
@@ -92,7 +86,7 @@ def _plates(
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM),
+                    outline=thigh_outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM, length, d),
                     z0_mm=-face,
                     z1_mm=-half_gap,
                     holes=(*common, *_inner_hip_holes(d)),
@@ -107,7 +101,7 @@ def _plates(
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=outline(d.rim_radius_mm),
+                    outline=thigh_outline(d.rim_radius_mm, length, d),
                     z0_mm=half_gap,
                     z1_mm=face,
                     holes=(*common, *_outer_hip_holes(d)),

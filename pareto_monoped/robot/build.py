@@ -47,12 +47,14 @@ class Robot:
     Attributes:
         design: what was asked for; the gearboxes' real ratios are ``hip.ratio`` and ``knee.ratio``.
         hip, knee: the actuators.
+        leg: dimensions of links and base.
         units: from the base down to the foot.
     """
 
     design: Design
     hip: Actuator
     knee: Actuator
+    leg: LegDimensions
     units: tuple[Unit, ...]
 
     def body_mass_properties(self) -> Mapping[str, MassProperties]:
@@ -87,7 +89,7 @@ def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
         )
         for kind in UNITS
     )
-    return Robot(design=design, hip=hip, knee=knee, units=units)
+    return Robot(design=design, hip=hip, knee=knee, leg=leg, units=units)
 
 
 def _parts(

@@ -14,6 +14,7 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
 from pareto_monoped.robot.rotation import drive_turning
 from pareto_monoped.robot.tables import ActuatorTable, actuator_table, weighed
@@ -45,6 +46,14 @@ PARTS_ONLY = MassOptions()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class JointStops:
+    """The end stops of both joints."""
+
+    hip: JointStop
+    knee: JointStop
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RobotArrays:
     """What the simulation needs to know about n robots; axis 1 has the order of ``BODIES`` or of ``JOINTS``.
 
@@ -71,6 +80,7 @@ class RobotArrays:
         torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
             resistance is line to line; shape (n, 2).
         reason: why the robot cannot be built, empty if it can, n strings.
+        stops: the end stops, which all robots of one actuator map share.
     """
 
     thigh_length_m: NDArray[np.float64]
@@ -94,6 +104,7 @@ class RobotArrays:
     torque_constant_n_m_per_a: NDArray[np.float64]
     winding_resistance_ohm: NDArray[np.float64]
     reason: tuple[str, ...]
+    stops: JointStops
 
     def __len__(self) -> int:
         return len(self.thigh_length_m)
@@ -143,6 +154,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
         winding_resistance_ohm=np.full(rows.shape, motor.terminal_resistance_ohm),
         reason=reason,
+        stops=JointStops(hip=hip_stop(leg), knee=knee_stop(leg)),
     )
 
 

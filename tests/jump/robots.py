@@ -3,7 +3,15 @@
 import numpy as np
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, LOWER, UPPER
-from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.leg.stops import Bumper, JointStop
+from pareto_monoped.materials import MATERIALS
+from pareto_monoped.robot.population import JointStops, RobotArrays
+
+_BUMPER = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
+_STOPS = JointStops(
+    hip=JointStop(lower_rad=-np.radians(100.0), upper_rad=np.radians(100.0), lever_mm=67.0, bumper=_BUMPER),
+    knee=JointStop(lower_rad=np.radians(15.0), upper_rad=np.radians(140.0), lever_mm=60.0, bumper=_BUMPER),
+)
 
 
 def random_designs(n, seed=0):
@@ -47,4 +55,5 @@ def plausible_robots(designs):
         torque_constant_n_m_per_a=0.0955 * both,
         winding_resistance_ohm=0.06 * both,
         reason=("",) * n,
+        stops=_STOPS,
     )

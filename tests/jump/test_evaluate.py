@@ -54,10 +54,13 @@ def test_every_failure_has_a_name_and_a_reason(evaluator, name):
 
 
 def test_a_hop_without_work_is_no_jump():
-    """With an absurd damper the foot of the literal model chatters off the floor although no motor works."""
+    """With an absurd damper the foot of the literal model chatters off the floor although no motor works.
+
+    Rounding decides whether one works a little: of 13 dampers from 1e40 to 1e300, eight make it hop without work.
+    """
     calibration = load_calibration("paper")
     robots = robot_arrays(GOOD, map_for("VT8020"), calibration.mass)
-    result = evaluate_robots(robots, np.array([[GOOD[4], 1e160, GOOD[6]]]), calibration)
+    result = evaluate_robots(robots, np.array([[GOOD[4], 1e200, GOOD[6]]]), calibration)
     assert result.status[0] == "no_lift_off"
     assert "without work" in result.reason[0]
     assert np.isnan(result.energy_j[0])

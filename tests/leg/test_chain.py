@@ -7,7 +7,7 @@ import pytest
 
 from pareto_monoped.leg.chain import TURNBUCKLE, chain_parts, links_of
 from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.joint_ranges import KNEE_RANGE_RAD
+from pareto_monoped.leg.stops import knee_stop
 
 LENGTHS = np.arange(3000, 5001) / 10.0  # mm, all that are made between 0.3 and 0.5 m
 
@@ -41,7 +41,8 @@ def test_travel_and_thread_of_the_turnbuckles(leg):
 def test_no_turnbuckle_reaches_a_sprocket(leg_of_each_chain):
     d = leg_of_each_chain
     radius = 0.5 * d.chain.pitch_mm / np.sin(np.pi / d.chain.teeth)
-    moved = KNEE_RANGE_RAD[1] * radius
+    stop = knee_stop(d)
+    moved = (stop.upper_rad + stop.travel_rad) * radius
     # Half a turnbuckle with its fork, and the 6 mm that it may stand beside the strand's middle.
     free = 0.5 * LENGTHS[0] - 0.5 * TURNBUCKLE - 0.5 * d.chain.plate_mm - 6.0 - moved
     assert free > 2.0 * d.chain.pitch_mm

@@ -4,15 +4,27 @@ import numpy as np
 import pytest
 import shapely
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.shapes import Arc
+from pareto_monoped.leg.belt import Pulley, belt, mirrored
 from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.outlines import rounded, waisted
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.outlines import rounded
 from pareto_monoped.leg.sprocket import sprocket_outline
+from pareto_monoped.leg.thigh_outline import thigh_outline
 from tests.leg.polygons import polygon
 
+PULLEYS = (
+    Pulley(x_mm=0.0, y_mm=0.0, radius_mm=12.0),
+    Pulley(x_mm=40.0, y_mm=-3.0, radius_mm=2.0),
+    Pulley(x_mm=14.0, y_mm=18.0, radius_mm=3.0, inside=False),
+    Pulley(x_mm=5.0, y_mm=50.0, radius_mm=6.0),
+)
 OUTLINES = {
-    "waisted": waisted(top_radius_mm=52.0, bottom_radius_mm=31.0, half_width_mm=24.0, length_mm=300.0),
-    "waisted the other way": waisted(top_radius_mm=31.0, bottom_radius_mm=40.0, half_width_mm=20.0, length_mm=200.0),
+    "around three pulleys and a fillet": belt(PULLEYS),
+    "its mirror image": belt(mirrored(PULLEYS)),
+    "short thigh": thigh_outline(55.0, 250.0, leg_dimensions(map_for("VT8020"))),
+    "long thigh of a wide motor": thigh_outline(63.9, 550.0, leg_dimensions(map_for("U12"))),
     "rounded": rounded(half_width_mm=16.0, high_mm=-60.0, low_mm=-150.0, corner_mm=6.0),
     "sprocket": sprocket_outline(CHAIN_DRIVES[0]),
 }
@@ -43,3 +55,33 @@ def test_each_piece_begins_where_the_last_one_ended(name):
     pieces = OUTLINES[name].pieces
     for one, following in zip(pieces, (*pieces[1:], pieces[0]), strict=False):
         assert ends(one)[1] == pytest.approx(ends(following)[0], abs=1e-9)
+
+
+def test_a_belt_around_discs_is_their_convex_hull():
+    discs = [shapely.Point(0.0, 0.0).buffer(12.0, 400), shapely.Point(40.0, -3.0).buffer(2.0, 400)]
+    discs.append(shapely.Point(5.0, 50.0).buffer(6.0, 400))
+    hull = shapely.union_all(discs).convex_hull
+    path = belt([pulley for pulley in PULLEYS if pulley.inside])
+    assert polygon(path).symmetric_difference(hull).area < 1e-3 * hull.area
+    assert path.moments().area == pytest.approx(hull.area, rel=1e-4)
+
+
+def test_a_fillet_lies_outside_the_belt_and_touches_it():
+    drawn = polygon(belt(PULLEYS))
+    fillet = shapely.Point(14.0, 18.0).buffer(3.0, 400)
+    assert drawn.intersection(fillet).area < 1e-2
+    assert drawn.distance(fillet) < 1e-3
+
+
+def test_the_mirror_image_is_the_outline_reflected():
+    reflected = shapely.transform(polygon(belt(PULLEYS)), lambda points: points * [-1.0, 1.0])
+    assert polygon(belt(mirrored(PULLEYS))).symmetric_difference(reflected).area < 1e-2
+
+
+@pytest.mark.parametrize("rounding", [-1e-13, 0.0, 1e-13])
+def test_a_pulley_that_lies_in_line_adds_no_turn(rounding):
+    pulleys = [
+        Pulley(x_mm=x, y_mm=y, radius_mm=2.0) for x, y in ((0.0, 0.0), (10.0, rounding), (20.0, 0.0), (10.0, 9.0))
+    ]
+    arcs = [piece for piece in belt(pulleys).pieces if isinstance(piece, Arc)]
+    assert sum(abs(arc.end_rad - arc.start_rad) for arc in arcs) == pytest.approx(2.0 * np.pi)

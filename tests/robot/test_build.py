@@ -16,9 +16,9 @@ def test_the_papers_robots_are_plausible(actuator_map):
         assert -0.5 * case.design.thigh_length_m < thigh.com_m[2] < 0.0
         shank = robot.body_mass_properties()["shank"]
         assert -case.design.shank_length_m < shank.com_m[2] < 0.0
-        # Everything is symmetric about the plane through the joint axes and the links.
+        # All but the knee's end stops is symmetric about the plane through the joint axes and the links.
         for mass in (thigh, shank):
-            assert abs(mass.com_m[0]) < 1e-3
+            assert abs(mass.com_m[0]) < 2e-3
 
 
 def test_each_joint_has_the_gearbox_of_its_own_ratio(actuator_map):

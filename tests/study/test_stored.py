@@ -1,22 +1,25 @@
-"""Studies that version 0.1.0 stored open, read the same and go on as they would have; see data/README.md."""
+"""Studies that version 0.1.0 stored open and read the same; they go on only with that version. See data/README.md."""
 
 import json
+import re
 import shutil
-from dataclasses import asdict, replace
-from importlib.metadata import version
+import sqlite3
 from pathlib import Path
 
 import pytest
 
+from pareto_monoped import __version__
 from pareto_monoped.design import DEFAULTS
+from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, pick
 from pareto_monoped.study import provenance
 from pareto_monoped.study.columns import LATER
 from pareto_monoped.study.definition import load_study
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.run import resume
 from pareto_monoped.study.simulator import continued_simulator, stored_simulator
 from pareto_monoped.study.status import status
+from pareto_monoped.study.store import Store
 
 DATA = Path(__file__).parent / "data"
 NAMES = ("plain", "own_files")
@@ -26,37 +29,6 @@ named = pytest.mark.parametrize("name", NAMES)
 
 def expected(name):
     return json.loads((DATA / f"{name}.json").read_text())
-
-
-@pytest.fixture
-def stored(name, tmp_path, monkeypatch):
-    """A copy of a stored study, to be gone on with as if this were the version that began it."""
-    path = tmp_path / f"{name}.db"
-    shutil.copy(DATA / path.name, path)
-    data = read_study(path)
-    versions = dict(data.meta.versions)
-    monkeypatch.setattr(provenance, "__version__", versions.pop("pareto-monoped"))
-    if other := {package: version(package) for package, v in versions.items() if version(package) != v}:
-        pytest.skip(f"a study goes on only with the libraries that began it: here are {other}")
-    probe = stored_simulator(data, workers=1).probe()
-    if probe != data.meta.probe:
-        assert probe == [pytest.approx(pair, rel=1e-6) for pair in data.meta.probe]
-        pytest.skip("a study goes on only where it began: this machine computes other last digits")
-    # MuJoCo writes its log into the current folder.
-    monkeypatch.chdir(tmp_path)
-    return path
-
-
-def motor_file(path, motor):
-    """Write every value of a motor as a user's file."""
-
-    def toml(value):
-        if isinstance(value, dict):
-            return "{ " + ", ".join(f"{key} = {toml(one)}" for key, one in value.items() if one is not None) + " }"
-        return json.dumps(value)
-
-    path.write_text("".join(f"{key} = {toml(one)}\n" for key, one in asdict(motor).items() if one is not None))
-    return str(path)
 
 
 @named
@@ -102,29 +74,25 @@ def test_the_hash_is_what_this_code_computes(name):
 
 
 @named
-def test_resumed_it_ends_like_an_uninterrupted_run(name, stored, tmp_path):
-    budget = {"plain": 110, "own_files": 50}[name]
-    before = read_study(stored)
-    # Of the motor's file or name, this version would estimate another rotor.
-    motor = motor_file(tmp_path / "motor.toml", before.motor)
-    run(replace(load_study(DATA / f"{name}.toml"), motor=motor), tmp_path / "whole.db", evaluations=budget)
-    whole = read_study(tmp_path / "whole.db")
-    assert resume(stored, evaluations=budget).new_evaluations == budget - len(before.trials)
-    resumed = read_study(stored)
-    # Trials of version 0.1.0 lack the measures that came later; those made now have all.
-    old = expected(name)["front"]["columns"]
-    assert resumed.trials[old].equals(whole.trials[old])
-    assert resumed.trials[len(before.trials) :].equals(whole.trials[len(before.trials) :])
-    assert resumed.trials[: len(before.trials)].equals(before.trials)
-    assert resumed.checkpoint == whole.checkpoint
-    assert resumed.meta.hash == whole.meta.hash == before.meta.hash
-    assert resumed.front()[old].equals(whole.front()[old])
-    # The audits of the earlier end stay as they were.
-    audits = resumed.audits.set_index("trial")
-    assert audits.loc[before.audits["trial"]].equals(before.audits.set_index("trial"))
+def test_it_goes_on_only_with_the_version_that_began_it(name, tmp_path):
+    """The machine has changed since: trials of two machines in one front would be wrong."""
+    path = tmp_path / f"{name}.db"
+    shutil.copy(DATA / path.name, path)
+    stored = path.read_bytes()
+    line = rf'began with other settings \(versions.pareto-monoped: "0.1.0" -> "{re.escape(__version__)}"\);.*start anew'
+    with pytest.raises(StudyError, match=line):
+        resume(path, evaluations=200)
+    assert path.read_bytes() == stored
 
 
 @named
-def test_run_with_its_study_file_goes_on_too(name, stored):
-    done = len(read_study(stored).trials)
-    assert run(load_study(DATA / f"{name}.toml"), stored, evaluations=done + 4).new_evaluations == 4
+def test_it_gets_the_columns_that_came_later_when_it_is_opened_for_writing(name, tmp_path):
+    path = tmp_path / f"{name}.db"
+    shutil.copy(DATA / path.name, path)
+    before = read_study(path)
+    with Store(path, before.study):
+        pass
+    with sqlite3.connect(path) as database:
+        columns = {row[1] for row in database.execute("PRAGMA table_info(monoped_trials)")}
+    assert {column.name for column in LATER} <= columns
+    assert read_study(path).trials.equals(before.trials)

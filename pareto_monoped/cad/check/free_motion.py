@@ -1,10 +1,14 @@
-"""The leg moves freely through the working ranges of hip and knee.
+"""The leg moves freely through the working ranges of hip and knee, and meets its end stops at their ends.
+
+Beyond either end of its range a joint turns on by the travel of its stop, where only a bumper may be met: it is soft,
+and drawn as it was before.
 
 Joints turn about parallel axes. Two parts can therefore only meet if their extents along the axis overlap and so do
 their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import manifold3d as m3
 import numpy as np
@@ -12,36 +16,100 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Matrix, Pose, body_frames, instances, turn_y
 from pareto_monoped.cad.check.contact import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, overlap_of
-from pareto_monoped.cad.check.limits import DEPTH_MM, FREE_MOTION, SHANK_CLEARANCE
+from pareto_monoped.cad.check.limits import DEPTH_MM, END_STOP, FREE_MOTION, SHANK_CLEARANCE
 from pareto_monoped.cad.check.result import Check, Finding, worst_of
 from pareto_monoped.cad.product import Product
-from pareto_monoped.geometry.roles import Group
-from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
+from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 
 _TURNING = (Group.OUTPUT, Group.ROTOR, Group.PLANET, Group.KNEE_DRIVE)
 _STEP_RAD = np.radians(15.0)
+_SEARCH_RAD = np.radians(2.0)  # a bumper that is met at all stays met for longer
+_EXACT_RAD = np.radians(0.01)
+_NEVER_DEG = 180.0
 _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
 Bodies = dict[str, list[tuple[Instance, m3.Manifold]]]
 
 
-def check(product: Product) -> tuple[Check, Check]:
-    """Look for parts that meet, and at the clearance between shank and base."""
+def check(product: Product) -> tuple[Check, Check, Check]:
+    """Look for parts that meet, at the angles where stops meet, and at the clearance between shank and base."""
     found, clearance_mm = in_working_range(product)
     text = f"shank and base come {-clearance_mm:.1f} mm into each other's reach"
     return (
         deepest(FREE_MOTION, "hip and knee through their working ranges", found),
+        worst_of(END_STOP, "bumpers and strikers at both ends of hip and knee", list(_stop_errors(product))),
         worst_of(SHANK_CLEARANCE, "any hip angle, the knee's working range", [Finding(value=clearance_mm, text=text)]),
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Turn:
+    """A joint as it is looked at: the parts on both sides of it, in a frame with its origin on the axis, which is y.
+
+    Attributes:
+        name: of the joint.
+        stop: its end stops.
+        fixed, moving: the parts of the body that stands still and of the one that turns, at angle zero.
+        soft: names of the bumpers.
+        strikers: names of the strikers.
+    """
+
+    name: str
+    stop: JointStop
+    fixed: tuple[PlacedMesh, ...]
+    moving: tuple[PlacedMesh, ...]
+    soft: frozenset[str]
+    strikers: frozenset[str]
+
+    def pairs(self) -> Iterator[tuple[PlacedMesh, PlacedMesh]]:
+        """Parts of both sides that turning can bring together."""
+        reach = {mesh.name: radii_mm(mesh) for mesh in (*self.fixed, *self.moving)}
+        return ((a, b) for a in self.fixed for b in self.moving if _may_meet(a, b, reach))
+
+    def meet_in_stop(self, one: PlacedMesh, other: PlacedMesh) -> bool:
+        """Whether one part is a bumper and the other a striker."""
+        names = {one.name, other.name}
+        return bool(names & self.soft) and bool(names & self.strikers)
 
 
 def in_working_range(product: Product) -> tuple[list[Overlap], float]:
     """Overlaps while hip and knee move through their working ranges, and the shank's distance from the base in mm."""
     by_body = _by_body(product)
+    overlaps = [overlap for turn in _turns(product, by_body) for overlap in _while_turning(turn)]
+    return overlaps, _shank_clearance_mm(product, by_body)
+
+
+def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
+    """Both joints."""
+    leg = product.robot.leg
     to_knee = np.linalg.inv(body_frames(product.robot, _ZERO)["shank"]).astype(np.float64)
-    hip = _while_turning(by_body["base"], by_body["thigh"], HIP_RANGE_RAD, np.eye(4), "hip")
-    knee = _while_turning(by_body["thigh"], by_body["shank"], KNEE_RANGE_RAD, to_knee, "knee")
-    return hip + knee, _shank_clearance_mm(product, by_body)
+    return (
+        _turn("hip", hip_stop(leg), by_body["base"], by_body["thigh"], np.eye(4)),
+        _turn("knee", knee_stop(leg), by_body["thigh"], by_body["shank"], to_knee),
+    )
+
+
+def _turn(
+    name: str,
+    stop: JointStop,
+    fixed: list[tuple[Instance, m3.Manifold]],
+    moving: list[tuple[Instance, m3.Manifold]],
+    frame: Matrix,
+) -> _Turn:
+    """A joint between two bodies; ``frame`` leads from the assembly's frame to one with its origin on the axis."""
+
+    def named(role: Role) -> frozenset[str]:
+        return frozenset(instance.name for instance, _ in (*fixed, *moving) if instance.part.role is role)
+
+    return _Turn(
+        name=name,
+        stop=stop,
+        fixed=tuple(PlacedMesh.of(i.name, body, frame @ i.world) for i, body in fixed),
+        moving=tuple(PlacedMesh.of(i.name, body, frame @ i.world) for i, body in moving),
+        soft=named(Role.BUMPER),
+        strikers=named(Role.STRIKER),
+    )
 
 
 def _by_body(product: Product) -> Bodies:
@@ -54,40 +122,69 @@ def _by_body(product: Product) -> Bodies:
     return found
 
 
-def _while_turning(
-    fixed: list[tuple[Instance, m3.Manifold]],
-    moving: list[tuple[Instance, m3.Manifold]],
-    limits_rad: tuple[float, float],
-    frame: Matrix,
-    joint: str,
-) -> list[Overlap]:
-    """Overlaps of the parts of two bodies while one turns about the joint between them.
-
-    Args:
-        fixed: parts with their meshes of the body that stands still.
-        moving: the same of the body that turns.
-        limits_rad: the joint's range.
-        frame: 4 x 4 matrix from the assembly's frame to one with its origin on the joint's axis, which is y.
-        joint: its name.
-    """
-    here = [PlacedMesh.of(i.name, body, frame @ i.world) for i, body in fixed]
-    there = [PlacedMesh.of(i.name, body, frame @ i.world) for i, body in moving]
-    reach = {mesh.name: radii_mm(mesh) for mesh in (*here, *there)}
-    pairs = [(a, b) for a in here for b in there if _may_meet(a, b, reach)]
-    found: list[Overlap] = []
-    for angle in _through(limits_rad):
+def _while_turning(turn: _Turn) -> Iterator[Overlap]:
+    """Overlaps of the parts of two bodies while one turns about the joint between them."""
+    pairs = list(turn.pairs())
+    stop = turn.stop
+    for angle in _angles(stop):
+        squeezed = not stop.lower_rad <= angle <= stop.upper_rad
         turned: dict[str, PlacedMesh] = {}
         for one, other in pairs:
+            if squeezed and {one.name, other.name} & turn.soft:
+                continue
             if other.name not in turned:
                 turned[other.name] = PlacedMesh.of(other.name, other.body, turn_y(float(angle)))
             if boxes_meet(one, turned[other.name]):
-                found += overlap_of(one, turned[other.name], f"with the {joint} at {np.degrees(angle):.0f} deg")
-    return found
+                where = f"with the {turn.name} at {np.degrees(angle):.0f} deg"
+                yield from overlap_of(one, turned[other.name], where)
 
 
-def _through(limits_rad: tuple[float, float]) -> NDArray[np.float64]:
-    """Angles from one limit to the other, both included."""
-    return np.linspace(*limits_rad, int(np.ceil((limits_rad[1] - limits_rad[0]) / _STEP_RAD)) + 1)
+def _angles(stop: JointStop) -> NDArray[np.float64]:
+    """Angles from one end of a joint's range to the other, both included, and the ends of its stops' travel."""
+    count = int(np.ceil((stop.upper_rad - stop.lower_rad) / _STEP_RAD)) + 1
+    inside = np.linspace(stop.lower_rad, stop.upper_rad, count)
+    return np.array([stop.lower_rad - stop.travel_rad, *inside, stop.upper_rad + stop.travel_rad])
+
+
+def _stop_errors(product: Product) -> Iterator[Finding]:
+    """By how much each end stop meets at another angle than the joint's range ends at, in degrees."""
+    for turn in _turns(product, _by_body(product)):
+        pairs = [pair for pair in turn.pairs() if turn.meet_in_stop(*pair)]
+        stop = turn.stop
+        for end_rad, sign in ((stop.lower_rad, -1.0), (stop.upper_rad, 1.0)):
+            middle_rad = 0.5 * (stop.lower_rad + stop.upper_rad)
+            met_rad = _first_contact_rad(pairs, middle_rad, end_rad + sign * stop.travel_rad)
+            end = f"{turn.name} at {np.degrees(end_rad):.1f} deg"
+            if met_rad is None:
+                yield Finding(value=_NEVER_DEG, text=f"{end}: no bumper meets a striker")
+                continue
+            error_deg = abs(float(np.degrees(met_rad - end_rad)))
+            text = f"{end}: bumper and striker meet at {np.degrees(met_rad):.2f} deg"
+            yield Finding(value=error_deg, text=text)
+
+
+def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: float, to_rad: float) -> float | None:
+    """The first angle on the way at which one of the pairs overlaps, None if none does."""
+
+    def meets(angle_rad: float) -> bool:
+        for one, other in pairs:
+            turned = PlacedMesh.of(other.name, other.body, turn_y(angle_rad))
+            if boxes_meet(one, turned) and any(overlap_of(one, turned, "")):
+                return True
+        return False
+
+    count = int(np.ceil(abs(to_rad - from_rad) / _SEARCH_RAD)) + 1
+    way = np.linspace(from_rad, to_rad, count)
+    first = next((k for k, angle in enumerate(way) if meets(float(angle))), None)
+    if first is None:
+        return None
+    if first == 0:
+        return from_rad
+    apart, met = float(way[first - 1]), float(way[first])
+    while abs(met - apart) > _EXACT_RAD:
+        half = 0.5 * (apart + met)
+        apart, met = (apart, half) if meets(half) else (half, met)
+    return met
 
 
 def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
@@ -99,7 +196,7 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
     base = [PlacedMesh.of(i.name, body, i.world) for i, body in by_body["base"]]
     reach = max(radii_mm(mesh)[1] for mesh in base)
     distance = np.inf
-    for angle in _through(KNEE_RANGE_RAD):
+    for angle in _angles(knee_stop(product.robot.leg)):
         frame = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=float(angle)))["shank"]
         for instance, body in by_body["shank"]:
             distance = min(distance, radii_mm(PlacedMesh.of(instance.name, body, frame @ instance.in_body))[0])

@@ -52,6 +52,8 @@ DEPTH_MM = 0.02
 OVERLAP = Limit(name="no two parts overlap", value=DEPTH_MM, unit="mm deep")
 GEAR_MESH = Limit(name="gears mesh", value=DEPTH_MM, unit="mm deep")
 FREE_MOTION = Limit(name="the leg moves freely", value=DEPTH_MM, unit="mm deep")
+END_STOP = Limit(name="end stops meet at the ends of the ranges", value=0.5, unit="deg")
+"""Half a degree of the simulated knee is 0.5 mm of a bumper's 20 mm. A stop that never meets counts as 180 degrees."""
 SHANK_CLEARANCE = Limit(name="the shank passes the base", value=0.0, unit="mm", at_least=True)
 """Between all that the base reaches and all that the shank reaches, whatever the hip's angle."""
 

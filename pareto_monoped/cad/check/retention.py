@@ -32,7 +32,9 @@ PLAY_MM = 0.8
 THREAD_SHARE = 0.6
 """Least depth of thread over the screw's diameter."""
 _GROUND = Role.ROD  # the test stand's carriage clamps to the rods
-_AXES = ("x", "y", "z")  # of the assembly with both joints at zero; y is the joints' axis
+# Within the knee's range, where no end stop is met, and with the shank's own axes along those of the assembly.
+_POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
+_AXES = ("x", "y", "z")  # of the assembly in this pose; y is the joints' axis
 _CONTACT_MM2 = 0.25  # a square of 0.5 mm: less is no stop but the facets of a round fit
 _TOLERANCE_MM = 0.02
 _TOUCH_MM = 1e-6
@@ -46,7 +48,7 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loose:
-    """An instance that can move: its name, and in which directions of the assembly with both joints at zero."""
+    """An instance that can move: its name, and in which directions of the assembly, its knee at a right angle."""
 
     name: str
     directions: tuple[str, ...]
@@ -73,7 +75,7 @@ def check(robot: Robot) -> Check:
 
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     """Every instance that can move, and how many were looked at."""
-    placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    placed = instances(robot, _POSE)
     slabs = _slabs(placed)
     runs_into = _contacts(placed, slabs)
     tied = _threads(placed, slabs) | _joints(placed, runs_into)

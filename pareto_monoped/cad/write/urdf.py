@@ -6,12 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pareto_monoped.cad.write.visuals import Collider, Visual, numbers
-from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
 from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.population import RobotArrays
 
-_RANGES_RAD = {"hip": HIP_RANGE_RAD, "knee": KNEE_RANGE_RAD}
-"""Working range of each joint."""
 _NO_TURN = "0 0 0"
 
 
@@ -92,7 +89,8 @@ def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
 
 def _add_joint(root: ET.Element, arrays: RobotArrays, joint: int, *, z_m: float) -> None:
     """The joint between a body and the next one, with its axis along +y of the body frame."""
-    name, lower_rad, upper_rad = JOINTS[joint], *_RANGES_RAD[JOINTS[joint]]
+    name = JOINTS[joint]
+    stop = (arrays.stops.hip, arrays.stops.knee)[joint]
     inertia_kg_m2 = float(arrays.armature_kg_m2[0, joint])
     root.append(ET.Comment(f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "))
     element = ET.SubElement(root, "joint", name=name, type="revolute")
@@ -103,8 +101,8 @@ def _add_joint(root: ET.Element, arrays: RobotArrays, joint: int, *, z_m: float)
     ET.SubElement(
         element,
         "limit",
-        lower=numbers(lower_rad),
-        upper=numbers(upper_rad),
+        lower=numbers(stop.lower_rad),
+        upper=numbers(stop.upper_rad),
         effort=numbers(arrays.peak_torque_n_m[0, joint]),
         velocity=numbers(arrays.no_load_speed_rad_per_s[0, joint]),
     )

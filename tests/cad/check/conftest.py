@@ -42,8 +42,7 @@ def examine(product, arrays, part_files, other_files):
 
         def check(*arguments):
             reads = [item for argument in arguments for item in _reads(argument)]
-            ranges = (free_motion.HIP_RANGE_RAD, free_motion.KNEE_RANGE_RAD)
-            key = (module.__name__, *map(id, reads), ranges)
+            key = (module.__name__, *map(id, reads), free_motion.hip_stop, free_motion.knee_stop)
             if key not in known:
                 known[key] = (look(*arguments), reads)  # an id is unique only while its object is kept
             return known[key][0]

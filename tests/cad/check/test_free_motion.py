@@ -11,30 +11,37 @@ from pareto_monoped.cad.check import free_motion
 from pareto_monoped.cad.check.contact import PlacedMesh
 from pareto_monoped.cad.check.limits import FREE_MOTION
 from pareto_monoped.cad.product import build_product
+from pareto_monoped.leg.stops import hip_stop, knee_stop
 from pareto_monoped.robot.build import build_robot
 from tests.cad.check.faults import bare, shifted, with_unit
 
 ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
 
+def with_range(monkeypatch, joint, **angles):
+    """Let a joint be looked at through another range."""
+    true = getattr(free_motion, f"{joint}_stop")
+    monkeypatch.setattr(free_motion, f"{joint}_stop", lambda d: dataclasses.replace(true(d), **angles))
+
+
 def test_a_range_that_leads_the_thigh_into_the_frame_is_found(examine, failing, monkeypatch):
-    monkeypatch.setattr(free_motion, "HIP_RANGE_RAD", (-1.92, 3.14))
-    assert failing() == ["the leg moves freely"]
+    with_range(monkeypatch, "hip", upper_rad=3.14)
+    assert failing() == ["the leg moves freely", "end stops meet at the ends of the ranges"]
     check = examine()["the leg moves freely"]
     assert check.measured > FREE_MOTION.value
     assert all(" with the hip at 1" in text and "base_frame/" in text and "thigh/" in text for text in check.failures)
 
 
 def test_a_range_that_leads_the_shank_into_the_thigh_is_found(examine, monkeypatch):
-    monkeypatch.setattr(free_motion, "KNEE_RANGE_RAD", (-3.14, 2.62))
+    with_range(monkeypatch, "knee", lower_rad=-3.14)
     check = examine()["the leg moves freely"]
     assert not check.passed
-    assert all(" with the knee at -1" in text for text in check.failures)
+    assert all(" with the knee at -" in text for text in check.failures)
 
 
 def test_a_shank_that_reaches_the_base_is_found(failing, examine, monkeypatch):
     monkeypatch.setattr(free_motion, "_shank_clearance_mm", lambda *_: -3.21)
-    monkeypatch.setattr(free_motion, "HIP_RANGE_RAD", (-1.9, 1.9))  # looked at anew
+    with_range(monkeypatch, "hip")  # looked at anew
     assert failing() == ["the shank passes the base"]
     check = examine()["the shank passes the base"]
     assert check.failures == ("shank and base come 3.2 mm into each other's reach",)
@@ -53,7 +60,8 @@ def test_the_shank_s_clearance_is_the_least_distance_of_its_points_from_the_reac
             bodies[instance.body].append(points @ instance.in_body[:3, :3].T + instance.in_body[:3, 3])
     reach = np.hypot(*np.concatenate(bodies["base"])[:, [0, 2]].T).max()
     points, nearest = np.concatenate(bodies["shank"]), np.inf
-    for knee in np.linspace(*free_motion.KNEE_RANGE_RAD, 22):
+    stop = knee_stop(robot.leg)
+    for knee in np.linspace(stop.lower_rad - stop.travel_rad, stop.upper_rad + stop.travel_rad, 22):
         frame = body_frames(robot, Pose(hip_rad=0.0, knee_rad=float(knee)))["shank"]
         nearest = min(nearest, np.hypot(*(points @ frame[:3, :3].T + frame[:3, 3])[:, [0, 2]].T).min())
     assert clearance == pytest.approx(nearest - reach, abs=1.5)
@@ -82,7 +90,7 @@ def test_short_and_long_links_fold_freely(product, actuator_map, lengths):
     design = product.robot.design.replace({"thigh_length_m": lengths[0], "shank_length_m": lengths[1]})
     checks = free_motion.check(build_product(bare(build_robot(design, actuator_map)), product.pose))
     assert all(check.passed for check in checks)
-    assert checks[1].measured > 5.0
+    assert checks[-1].measured > 5.0
 
 
 @pytest.mark.parametrize(
@@ -98,9 +106,11 @@ def test_the_reach_of_a_block_is_from_its_nearest_to_its_farthest_point(low, siz
     assert free_motion.radii_mm(block) == (pytest.approx(least), pytest.approx(greatest))
 
 
-@pytest.mark.parametrize("limits", [free_motion.HIP_RANGE_RAD, free_motion.KNEE_RANGE_RAD])
-def test_a_joint_is_looked_at_from_limit_to_limit_in_steps_of_15_degrees(limits):
-    angles = free_motion._through(limits)
-    assert (angles[0], angles[-1]) == limits
+@pytest.mark.parametrize("stop_of", [hip_stop, knee_stop])
+def test_a_joint_is_looked_at_through_its_range_and_its_stops_in_steps_of_15_degrees(product, stop_of):
+    stop = stop_of(product.robot.leg)
+    angles = free_motion._angles(stop)
+    assert (angles[0], angles[-1]) == (stop.lower_rad - stop.travel_rad, stop.upper_rad + stop.travel_rad)
+    assert (angles[1], angles[-2]) == (stop.lower_rad, stop.upper_rad)
     assert np.all(np.diff(angles) > 0.0)
     assert np.diff(angles).max() <= np.radians(15.0) + 1e-12

@@ -37,7 +37,7 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
             families.setdefault(entry.actuator.family, entry.actuator.ratio)
     ratios = list(families.values())
     design = PAPER_CASES["A"].design.replace({"knee_ratio": ratios[-1], "hip_ratio": ratios[0]})
-    assert loose_parts(build_robot(design, found)) == ([], pytest.approx(200, abs=30))
+    assert loose_parts(build_robot(design, found)) == ([], pytest.approx(219, abs=30))
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_words_alone_hold_nothing(robot):
     ("ways", "tied"), [(("y+",), False), (("x+", "y-"), False), (("y+", "y-"), True), (("x+", "x-"), True)]
 )
 def test_a_joint_is_believed_if_its_partner_is_in_the_way_on_two_opposite_sides(robot, ways, tied):
-    placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    placed = instances(robot, Pose(hip_rad=0.0, knee_rad=0.5 * np.pi))
     pair = [next(i for i in placed if i.name == f"hip_actuator/{name}") for name in ("ring", "ring_housing")]
     assert pair[0].part.joint.partner == pair[1].part.name
     runs_into = {(axis, sign): np.zeros((2, 2), dtype=bool) for axis in "xyz" for sign in "+-"}

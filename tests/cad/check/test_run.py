@@ -20,6 +20,7 @@ NAMES = [
     "no two parts overlap",
     "gears mesh",
     "the leg moves freely",
+    "end stops meet at the ends of the ranges",
     "the shank passes the base",
     "bolt patterns coincide",
     "bolts join parts",

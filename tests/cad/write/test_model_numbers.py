@@ -8,7 +8,6 @@ import pytest
 import trimesh
 
 from pareto_monoped.design import Design
-from pareto_monoped.leg.joint_ranges import HIP_RANGE_RAD, KNEE_RANGE_RAD
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 
@@ -45,15 +44,15 @@ def test_inertials_stand_at_the_centre_of_mass_along_the_body_s_axes(urdf, robot
 
 
 @pytest.mark.parametrize(
-    ("joint", "name", "parent", "child", "limits"),
-    [(0, "hip", "base", "thigh", HIP_RANGE_RAD), (1, "knee", "thigh", "shank", KNEE_RANGE_RAD)],
+    ("joint", "name", "parent", "child"), [(0, "hip", "base", "thigh"), (1, "knee", "thigh", "shank")]
 )
-def test_joints_have_their_own_actuator_s_limits(urdf, robots, joint, name, parent, child, limits):
+def test_joints_have_their_own_actuator_s_limits(urdf, robots, joint, name, parent, child):
     element = urdf.find(f"joint[@name='{name}']")
     assert (element.find("parent").get("link"), element.find("child").get("link")) == (parent, child)
     assert element.find("axis").get("xyz") == "0 1 0"
     limit = element.find("limit")
-    assert (float(limit.get("lower")), float(limit.get("upper"))) == limits
+    stop = getattr(robots.stops, name)
+    assert (float(limit.get("lower")), float(limit.get("upper"))) == (stop.lower_rad, stop.upper_rad)
     assert float(limit.get("effort")) == robots.peak_torque_n_m[0, joint]
     assert float(limit.get("velocity")) == robots.no_load_speed_rad_per_s[0, joint]
     (comment,) = [e.text for e in urdf if e.tag is ET.Comment and e.text.startswith(f" {name}:")]
@@ -63,7 +62,7 @@ def test_joints_have_their_own_actuator_s_limits(urdf, robots, joint, name, pare
 def test_hip_and_knee_differ_so_that_a_swap_would_show(robots):
     for pair in (robots.peak_torque_n_m[0], robots.no_load_speed_rad_per_s[0], robots.armature_kg_m2[0]):
         assert pair[0] != pair[1]
-    assert HIP_RANGE_RAD != KNEE_RANGE_RAD
+    assert robots.stops.hip.upper_rad != robots.stops.knee.upper_rad
 
 
 def test_the_foot_s_sphere_is_the_simulation_s(urdf, robots, built):

@@ -1,0 +1,275 @@
+"""The parts of the end stops: bumpers, their seats, and strikers.
+
+A bumper lies between the end lips of its seat and is bonded to its floor. Seats and strikers of the thigh straddle its
+plates: their wings stand on the plates' edges, which carry the force, and their feet reach in between, where a bolt
+holds them.
+
+Forces, for the strength of what follows: a knee that arrives with 15 J squeezes the bumper with about 5 kN at a lever
+of 60 mm. Wings: 5 kN on 2 x 2.5 mm x 18 mm of edge are 56 MPa. A foot bends over 24 mm between the plates by
+5 kN x 24 mm / 8 = 15 N m, on a section of 13 mm x 10 mm: 70 MPa. EN AW-6082 T6 yields at 250 MPa.
+"""
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Joint, JointKind, Role
+from pareto_monoped.geometry.screws import M3, M4, screw_part
+from pareto_monoped.geometry.shapes import Circle, Line, Numbers, Path
+from pareto_monoped.leg.belt import Pulley, belt
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.faces import (
+    Face,
+    bumper_place,
+    hip_seats,
+    hip_strikers,
+    knee_seats,
+    knee_strikers,
+)
+from pareto_monoped.leg.sandwich import Place, sleeve_bolt, sleeve_hole
+from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
+from pareto_monoped.materials import MATERIALS
+
+# Our own layout of all faces, mm: along the face, behind it, or along the joint's axis.
+HALF_FACE = 9.0  # half length of a face: a bumper of 20 mm squeezed to 15 mm touches 12 mm
+LIP, LIP_THICKNESS = 3.0, 1.5  # of a seat at either end of its bumper, above its floor
+# Our own layout of seats and strikers on the thigh, mm.
+WING = 2.5  # from the face to the edges of the plates
+BOLT_DEPTH = 6.5  # of the bolt's axis: 1.9 mm of plate around its hole, which carries nothing
+_FOOT_DEPTH, _HALF_FOOT = 10.0, 4.5
+# Our own layout of the shank's striker, mm.
+_SPINE = 9.0  # behind the face for extension
+_TOE, _BASE = 7.0, 11.0  # behind the face for flexion: at its end, and in its middle
+_SPINE_BOLT, _BASE_BOLT = (0.0, 4.5), (1.0, 6.0)  # along and behind the faces for extension and flexion
+# Our own layout of the base's seats, mm.
+_FLOOR = 6.0  # thickness of a seat under the bumper: beside the web 11 N m on 18 mm x 6 mm are 100 MPa
+_HALF_WEB = 3.0  # 5 kN at 25 mm from the rods are 125 N m on 6 mm x 45 mm: 60 MPa
+_WEB_CORNER, _WEB_FILLET = 1.0, 2.0  # radii at the floor's outer end, and from the floor to the lower rod
+_BOSS_WALL = 3.5  # around a rod and around the screw's thread
+_ROD_PLAY = 0.1
+_SCREW_THREAD = 10.0  # usable depth of the screw from the near cheek, 2.5 diameters
+
+
+def _half_length_mm(stop: JointStop) -> float:
+    return 0.5 * stop.bumper.length_mm
+
+
+def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
+    """The bumper on a seat."""
+    half, bumper = _half_length_mm(stop), stop.bumper
+    return Part(
+        name=name,
+        role=Role.BUMPER,
+        material=bumper.elastomer,
+        process="bought",
+        prisms=(Prism(outline=Circle(radius_mm=0.5 * bumper.diameter_mm), z0_mm=-half, z1_mm=half),),
+        places_mm=(bumper_place(seat, stop),),
+        note=f"FKM {bumper.elastomer.hardness_shore_a:g} Shore A, round bar {bumper.diameter_mm:g} mm, "
+        f"cut to {bumper.length_mm:g} mm",
+        joint=Joint(kind=JointKind.BONDED, how="bonded to the floor of", partner=partner),
+    )
+
+
+def _both_sides(outline: Path, one_mm: float, other_mm: float) -> tuple[Prism, Prism]:
+    """A layer of a part and its image below the middle plane."""
+    return (
+        Prism(outline=outline, z0_mm=-other_mm, z1_mm=-one_mm),
+        Prism(outline=outline, z0_mm=one_mm, z1_mm=other_mm),
+    )
+
+
+def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: JointStop) -> Part:
+    """A seat or striker on the edges of the thigh's plates; a seat has lips."""
+    face, half_gap, half = placed.centred, 0.5 * d.gap_mm, _half_length_mm(stop)
+    foot = face.polygon(
+        (-HALF_FACE, 0.0),
+        (HALF_FACE, 0.0),
+        (HALF_FACE, WING),
+        (_HALF_FOOT, _FOOT_DEPTH),
+        (-_HALF_FOOT, _FOOT_DEPTH),
+        (-HALF_FACE, WING),
+    )
+    x, y = face.point(0.0, BOLT_DEPTH)
+    hole = Circle(radius_mm=sleeve_hole(M3), x_mm=x, y_mm=y)
+    wings = _both_sides(_strip(face, 0.0, WING), half_gap, half)
+    ends = _both_sides(_strip(face, -LIP, WING), half, half + LIP_THICKNESS) if role is not Role.STRIKER else ()
+    return Part(
+        name=name,
+        role=role,
+        material=MATERIALS.aluminium,
+        process="machined",
+        prisms=(Prism(outline=foot, z0_mm=-half_gap, z1_mm=half_gap, holes=(hole,)), *wings, *ends),
+        places_mm=((placed.x_mm, placed.y_mm, 0.0),),
+        note="EN AW-6082 T6; stands on the edges of the thigh's plates",
+    )
+
+
+def _strip(face: Face, front_mm: float, back_mm: float) -> Path:
+    return face.polygon((-HALF_FACE, front_mm), (HALF_FACE, front_mm), (HALF_FACE, back_mm), (-HALF_FACE, back_mm))
+
+
+def thigh_stop_faces(length_mm: Numbers, d: LegDimensions) -> tuple[Face, ...]:
+    """All faces of stops on the thigh's edges: hip in front, hip behind, knee's extension, knee's flexion."""
+    return (*hip_strikers(d), *(seat.at(-length_mm) for seat in knee_seats(d)))
+
+
+def thigh_stop_bolts(length_mm: Numbers, d: LegDimensions) -> tuple[Place, ...]:
+    """Where bolts hold the seats and strikers of the thigh."""
+    return tuple((*face.point(0.0, BOLT_DEPTH), 0.0) for face in thigh_stop_faces(length_mm, d))
+
+
+def thigh_stop_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
+    """The hip's strikers and the knee's bumpers with their seats; their bolts are the thigh's."""
+    front, rear, extension, flexion = thigh_stop_faces(length_mm, d)
+    hip, knee = hip_stop(d), knee_stop(d)
+    return (
+        _straddling("hip_striker_front", Role.STRIKER, front, d, hip),
+        _straddling("hip_striker_rear", Role.STRIKER, rear, d, hip),
+        *(
+            part
+            for end, seat in (("extension", extension), ("flexion", flexion))
+            for part in (
+                _straddling(f"knee_seat_{end}", Role.BRACKET, seat, d, knee),
+                _bumper(f"knee_bumper_{end}", knee, seat, f"knee_seat_{end}"),
+            )
+        ),
+    )
+
+
+def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
+    """The knee's striker between the plates of the shank's fork, with its bolts.
+
+    It has a face for either end of the range. Its bolts carry 5 kN on two plates of 3 mm: 175 MPa of bearing stress on
+    an M4's sleeve nut if one bolt carries all.
+    """
+    half_gap = 0.5 * d.shank_gap_mm
+    hole = sleeve_hole(M4)
+    return (
+        Part(
+            name="knee_striker",
+            role=Role.STRIKER,
+            material=MATERIALS.aluminium,
+            process="machined",
+            prisms=(
+                Prism(
+                    outline=_striker_outline(d),
+                    z0_mm=-half_gap,
+                    z1_mm=half_gap,
+                    holes=tuple(Circle(radius_mm=hole, x_mm=x, y_mm=y) for x, y, _ in shank_stop_bolts(d)),
+                ),
+            ),
+            note="EN AW-6082 T6; meets the bumpers of extension and flexion",
+        ),
+        sleeve_bolt("knee_striker_bolt", M4, half_gap + d.shank_plate_mm, shank_stop_bolts(d)),
+    )
+
+
+def shank_stop_bolts(d: LegDimensions) -> tuple[Place, ...]:
+    """Where bolts hold the shank's striker."""
+    extension, flexion = knee_strikers(d)
+    return (*extension.point(*_SPINE_BOLT), 0.0), (*flexion.point(*_BASE_BOLT), 0.0)
+
+
+def _striker_outline(d: LegDimensions) -> Path:
+    """A spine behind the face for extension, which runs down to a base behind the face for flexion."""
+    extension, flexion = knee_strikers(d)
+    points = (
+        extension.point(-HALF_FACE, 0.0),
+        extension.point(HALF_FACE, 0.0),
+        extension.point(HALF_FACE, _SPINE),
+        flexion.point(-HALF_FACE, 0.0),
+        flexion.point(HALF_FACE, 0.0),
+        flexion.point(HALF_FACE, _TOE),
+        flexion.point(0.0, _BASE),
+    )
+    return _closed(points)
+
+
+def _closed(points: tuple[tuple[Numbers, Numbers], ...]) -> Path:
+    return Path(tuple(Line(*one, *other) for one, other in zip(points, (*points[1:], points[0]), strict=True)))
+
+
+def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
+    """The hip's bumpers with their seats, which hang on the rods, and the screws that hold these on the near cheek."""
+    stop = hip_stop(d)
+    front, rear = hip_seats(d)
+    screw = screw_part(
+        "hip_seat_screw",
+        M4,
+        head="countersunk",
+        seat_mm=d.hip_mount_mm,
+        grip_mm=d.cheek_mm,
+        room_mm=_SCREW_THREAD,
+        direction=1.0,
+        material=MATERIALS.steel,
+        places_mm=hip_seat_screws(d),
+        note="flush, from the hip actuator's side",
+    )
+    return (
+        *(
+            part
+            for end, seat, mirror in (("front", front, False), ("rear", rear, True))
+            for part in (
+                _base_seat(f"hip_seat_{end}", seat, mirror, d, stop),
+                _bumper(f"hip_bumper_{end}", stop, seat, f"hip_seat_{end}"),
+            )
+        ),
+        screw,
+    )
+
+
+def hip_seat_screws(d: LegDimensions) -> tuple[Place, ...]:
+    """Where screws hold the hip's seats on the near cheek: between each lower rod and the upper one."""
+    (x0, y0), (x1, y1) = d.lower_rod_mm, d.upper_rod_mm
+    x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    return ((x, y, 0.0), (-x, y, 0.0))
+
+
+def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: JointStop) -> Part:
+    """A floor under the bumper, a web from there to the rods, and bosses from the web to the near cheek."""
+    half = _half_length_mm(stop)
+    side = -1.0 if mirror else 1.0
+    rods = tuple((side * x, y) for x, y in (d.lower_rod_mm, d.upper_rod_mm))
+    screw_x, screw_y, _ = hip_seat_screws(d)[int(mirror)]
+    bores = tuple(Circle(radius_mm=d.rod_radius_mm + _ROD_PLAY, x_mm=x, y_mm=y) for x, y in rods)
+    thread = Circle(radius_mm=M4.core, x_mm=screw_x, y_mm=screw_y)
+    boss = d.rod_radius_mm + _BOSS_WALL
+    cheek = d.hip_mount_mm + d.cheek_mm
+    return Part(
+        name=name,
+        role=Role.BRACKET,
+        material=MATERIALS.aluminium,
+        process="machined",
+        prisms=(
+            Prism(outline=_web(seat, mirror, rods, boss), z0_mm=-_HALF_WEB, z1_mm=_HALF_WEB, holes=(*bores, thread)),
+            *_both_sides(_strip(seat, 0.0, _FLOOR), _HALF_WEB, half),
+            *_both_sides(_strip(seat, -LIP, _FLOOR), half, half + LIP_THICKNESS),
+            *(
+                Prism(
+                    outline=Circle(radius_mm=hole.radius_mm + _BOSS_WALL, x_mm=hole.x_mm, y_mm=hole.y_mm),
+                    z0_mm=cheek,
+                    z1_mm=-_HALF_WEB,
+                    holes=(hole,),
+                )
+                for hole in (bores[1], thread)  # beside the lower rod the thigh passes
+            ),
+        ),
+        note="EN AW-6082 T6; slides onto two rods and stands on the near cheek",
+    )
+
+
+def _web(seat: Face, mirror: bool, rods: tuple[tuple[float, float], ...], boss_mm: float) -> Path:
+    """Around the seat's floor and both rods; of the seat in front, or of the one behind, which is its mirror image."""
+    inner = 1.0 if mirror else -1.0  # along the face towards the rods
+
+    def corner(along_mm: float, deep_mm: float, radius_mm: float, *, inside: bool = True) -> Pulley:
+        x, y = seat.point(along_mm, deep_mm)
+        return Pulley(x_mm=x, y_mm=y, radius_mm=radius_mm, inside=inside)
+
+    lower, upper = (Pulley(x_mm=x, y_mm=y, radius_mm=boss_mm) for x, y in rods)
+    edge = -inner * (HALF_FACE - _WEB_CORNER)
+    pulleys = (
+        lower,
+        upper,
+        corner(edge, _FLOOR - _WEB_CORNER, _WEB_CORNER),
+        corner(edge, _WEB_CORNER, _WEB_CORNER),
+        corner(inner * (HALF_FACE + _WEB_FILLET), -_WEB_FILLET, _WEB_FILLET, inside=False),
+    )
+    return belt(pulleys if mirror else tuple(reversed(pulleys)))
