@@ -1,4 +1,6 @@
-"""Time of stage 1: the whole map of every motor, and one interval against a plain loop.
+"""Time of stage 1: the whole map of every motor under both sets of rules, and one interval against a plain loop.
+
+The two sets of rules take turns, so that the ratio of their times is that of the same moment.
 
 Run: python benchmarks/actuator_map.py
 """
@@ -15,32 +17,36 @@ import numpy as np
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, candidates
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import RULE_SETS
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
-REPEATS = 5
+REPEATS = 7
 
 
-def seconds(action: Callable[[], object], repeats: int = REPEATS) -> tuple[float, float]:
-    taken = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        action()
-        taken.append(time.perf_counter() - started)
-    return float(np.median(taken)), max(taken)
+def seconds(action: Callable[[], object]) -> float:
+    started = time.perf_counter()
+    action()
+    return time.perf_counter() - started
 
 
 def main() -> None:
     best_in = import_module("tests.actuator.loop").best_in
     settings = ActuatorSettings()
-    print(f"{'motor':12} {'gearboxes':>9} {'median s':>9} {'worst s':>9}")
-    total = 0.0
+    chosen = {rules: ActuatorSettings(rules=rules) for rules in RULE_SETS}
+    print(f"{'':12} {'gearboxes':^17} {'median s':^17} {'worst s':^17} {'ratio':>7}")
+    print(f"{'motor':12}" + 3 * "".join(f" {rules:>8}" for rules in RULE_SETS) + f" {'median':>7}")
+    totals = np.zeros(len(RULE_SETS))
     for name in motor_names():
         motor = load_motor(name)
-        found = build_map(motor, settings)
-        middle, worst = seconds(partial(build_map, motor, settings))
-        total += middle
-        print(f"{name:12} {np.isfinite(found.masses_kg()).sum():9d} {middle:9.3f} {worst:9.3f}")
-    print(f"{'all':12} {'':9} {total:9.3f}")
+        counts = [np.isfinite(build_map(motor, chosen[rules]).masses_kg()).sum() for rules in RULE_SETS]
+        taken = np.array(
+            [[seconds(partial(build_map, motor, chosen[rules])) for rules in RULE_SETS] for _ in range(REPEATS)]
+        )
+        middle, worst = np.median(taken, axis=0), taken.max(axis=0)
+        totals += middle
+        cells = [f"{count:8d}" for count in counts] + [f"{value:8.3f}" for value in (*middle, *worst)]
+        print(f"{name:12} {' '.join(cells)} {np.median(taken[:, 1] / taken[:, 0]):7.2f}")
+    print(f"{'all':12} {'':17} {totals[0]:8.3f} {totals[1]:8.3f}")
 
     motor = load_motor("VT8020")
     started = time.perf_counter()

@@ -119,9 +119,19 @@ def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: Actuato
     return mass
 
 
-def build_actuator(motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings) -> Actuator:
-    """The actuator around one gear set. No constraint is checked."""
-    width = float(face_width_mm(gears, motor, family, settings))
+def build_actuator(
+    motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings, width_mm: float | None = None
+) -> Actuator:
+    """The actuator around one gear set. No constraint is checked.
+
+    Args:
+        motor: what drives it.
+        family: where the gears are.
+        gears: the gear set.
+        settings: of stage 1.
+        width_mm: face width, if it is known already; default the least that carries the torque.
+    """
+    width = float(face_width_mm(gears, motor, family, settings)) if width_mm is None else width_mm
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
     rating = None

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
+from pareto_monoped.actuator.actuator import Actuator, actuator_mass_kg, build_actuator
 from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
@@ -166,12 +166,18 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
         entries.append(
             MapEntry(
                 ratio_low=low / 10.0,
-                actuator=build_actuator(motor, pool[0].family, pool[0].gears, settings) if pool else None,
+                actuator=_built(motor, pool[0], settings) if pool else None,
                 runner_up=pool[1] if len(pool) > 1 else None,
                 families=families,
             )
         )
     return ActuatorMap(motor=motor, settings=settings, entries=tuple(entries))
+
+
+def _built(motor: Motor, found: Candidate, settings: ActuatorSettings) -> Actuator:
+    """The actuator of a candidate. A width after Lewis may differ in its last bit between one gear set and many."""
+    width = None if settings.rules == "paper" else found.face_width_mm
+    return build_actuator(motor, found.family, found.gears, settings, width)
 
 
 def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None = None) -> ActuatorMap:

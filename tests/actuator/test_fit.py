@@ -8,25 +8,27 @@ from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import FramedMotor, FramelessMotor, Motor, load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.design import RULE_SETS
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.roles import SCREWS
 from pareto_monoped.geometry.shapes import Pattern
 from tests.actuator.fit import clashes, overlaps_within, pieces, rings
 
 
-def bests(name):
+def bests(name, rules="paper"):
     """The best actuator of each family in every interval of one motor."""
-    found = map_for(name)
+    found = map_for(name, rules)
     for entry in found.entries:
         for family, result in entry.families.items():
             if result.best is not None:
                 yield build_actuator(found.motor, family, result.best.gears, found.settings)
 
 
+@pytest.mark.parametrize("rules", RULE_SETS)
 @pytest.mark.parametrize("name", motor_names())
-def test_no_parts_clash_and_every_hole_has_metal_around_it(name):
+def test_no_parts_clash_and_every_hole_has_metal_around_it(name, rules):
     count = 0
-    for actuator in bests(name):
+    for actuator in bests(name, rules):
         found = clashes(actuator) + [line for part in actuator.parts for line in overlaps_within(part)]
         found += [f"{part.name} falls apart" for part in actuator.parts if pieces(part) != 1]
         assert not found, f"{actuator.family} {actuator.gears}: {found}"

@@ -266,7 +266,7 @@ def test_rated_gear_set_prints_a_gear_calculation_sheet(capsys):
     assert cells("limit sigma_FG")[-4:] == [f"{gear['bending_limit_mpa']:.0f}" for gear in gears]
     assert cells("S_H, at least 1.1")[-4:] == [f"{gear['flank_safety']:.2f}" for gear in gears]
     assert cells("S_F, at least 1.4")[-4:] == [f"{gear['root_safety']:.2f}" for gear in gears]
-    for words in ("1e+06 jumps", "18CrNiMo7-6, case-hardened", "31CrMoV9, gas-nitrided", "class 6"):
+    for words in ("100000 jumps", "18CrNiMo7-6, case-hardened", "31CrMoV9, gas-nitrided", "class 6"):
         assert words in printed
 
 

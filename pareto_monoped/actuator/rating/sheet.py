@@ -8,7 +8,7 @@ import numpy as np
 
 from pareto_monoped.actuator.rating.flank import contact_stress_mpa
 from pareto_monoped.actuator.rating.root import bending_stress_mpa
-from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, safeties_of
+from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, acting, safeties_of
 from pareto_monoped.geometry.shapes import Numbers
 
 
@@ -112,12 +112,12 @@ class Rating:
 
 def rate(stage: Stage, width_mm: float) -> Rating:
     """The rating of a stage of plain numbers at a face width."""
-    sun, ring = stage.loads(width_mm)
-    return Rating(sun_mesh=_mesh(stage, stage.sun_mesh, sun), ring_mesh=_mesh(stage, stage.ring_mesh, ring))
+    sun, ring = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
+    return Rating(sun_mesh=_mesh(stage, stage.sun_mesh, *sun), ring_mesh=_mesh(stage, stage.ring_mesh, *ring))
 
 
-def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad) -> MeshRating:
-    acting = stage.acting(mesh, at)
+def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad) -> MeshRating:
+    loads = acting(at, over)
     return MeshRating(
         tangential_force_n=float(mesh.force_n),
         pitch_speed_m_per_s=float(mesh.speed_m_per_s),
@@ -129,17 +129,17 @@ def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad) -> MeshRating:
         root_face_load_factor=float(at.face_root),
         transverse_load_factor=float(at.transverse_flank),
         root_transverse_load_factor=float(at.transverse_root),
-        pinion=_gear(stage, mesh, mesh.pinion, acting),
-        wheel=_gear(stage, mesh, mesh.wheel, acting),
+        pinion=_gear(stage, mesh, mesh.pinion, loads),
+        wheel=_gear(stage, mesh, mesh.wheel, loads),
     )
 
 
-def _gear(stage: Stage, mesh: Mesh, member: Member, acting: Safeties) -> GearRating:
-    safeties = safeties_of(member.carries, acting)
+def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties) -> GearRating:
+    safeties = safeties_of(member.carries, loads)
     contact = contact_stress_mpa(
-        acting.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
+        loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
     )
-    bending = bending_stress_mpa(acting.root, stage.gears.module_mm, member.form, member.rim_factor)
+    bending = bending_stress_mpa(loads.root, stage.gears.module_mm, member.form, member.rim_factor)
     return GearRating(
         gear=member.gear,
         steel=member.steel.name,

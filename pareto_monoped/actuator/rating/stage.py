@@ -62,14 +62,24 @@ class Member:
 
 
 class MeshLoad(NamedTuple):
-    """What a mesh carries at a face width: the nominal load per face width in N/mm, and its factors."""
+    """What a mesh carries at a face width: F_m / b, with load sharing, K_A and K_V in it, and the load factors."""
 
-    nominal_n_per_mm: Numbers
+    mean_n_per_mm: Numbers
     dynamic: Numbers
     face_flank: Numbers
     face_root: Numbers
     transverse_flank: Numbers
     transverse_root: Numbers
+
+    @property
+    def flank_n_per_mm(self) -> Numbers:
+        """With all factors, for the flanks."""
+        return self.mean_n_per_mm * self.face_flank * self.transverse_flank
+
+    @property
+    def root_n_per_mm(self) -> Numbers:
+        """With all factors, for the roots."""
+        return self.mean_n_per_mm * self.face_root * self.transverse_root
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,19 +142,25 @@ class Stage:
     carried: tuple[Safeties, Safeties]
 
     def loads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
-        """Load factors of sun mesh and ring mesh at a face width.
+        """Loads of sun mesh and ring mesh under the duty, at the peak torque and a face width."""
+        return self._loads(width_mm, self.settings.parts.rating.application_factor, moving=True)
 
-        F_m has the load sharing, K_A and K_V in it. The planet's tilt on its pin misaligns both meshes.
-        """
+    def overloads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
+        """Loads of both meshes under the overload: a single event, so that K_A and K_V do not apply."""
+        return self._loads(width_mm, self.settings.parts.rating.overload_factor, moving=False)
+
+    def _loads(self, width_mm: Numbers, factor: float, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
+        """Loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
         data, materials = self.settings.parts.rating, self.settings.materials
         meshes = (self.sun_mesh, self.ring_mesh)
-        nominal = [mesh.force_n / width_mm for mesh in meshes]
-        applied = [data.application_factor * mesh.sharing * w for mesh, w in zip(meshes, nominal, strict=True)]
-        dynamic = [
-            load.dynamic_factor(w, mesh.speed_m_per_s, mesh.pinion_teeth, mesh.ratio, data.accuracy_class)
-            for mesh, w in zip(meshes, applied, strict=True)
-        ]
-        mean = [w * factor for w, factor in zip(applied, dynamic, strict=True)]
+        applied = [factor * mesh.sharing * mesh.force_n / width_mm for mesh in meshes]
+        dynamic: list[Numbers] = [1.0, 1.0]
+        if moving:
+            dynamic = [
+                load.dynamic_factor(w, mesh.speed_m_per_s, mesh.pinion_teeth, mesh.ratio, data.accuracy_class)
+                for mesh, w in zip(meshes, applied, strict=True)
+            ]
+        mean = [w * k for w, k in zip(applied, dynamic, strict=True)]
         stiff = [
             load.mesh_stiffness(mesh.pair_stiffness, mesh.contact_ratio, w)
             for mesh, w in zip(meshes, applied, strict=True)
@@ -164,15 +180,14 @@ class Stage:
             mean[0], width_mm, self.sun_mesh.diameter_mm, self.gears.planets, materials.gear_steel
         )
         return (
-            self._load(self.sun_mesh, width_mm, nominal[0], dynamic[0], mean[0], stiff[0], tilt + twist),
-            self._load(self.ring_mesh, width_mm, nominal[1], dynamic[1], mean[1], stiff[1], tilt),
+            self._load(self.sun_mesh, width_mm, dynamic[0], mean[0], stiff[0], tilt + twist),
+            self._load(self.ring_mesh, width_mm, dynamic[1], mean[1], stiff[1], tilt),
         )
 
     def _load(
         self,
         mesh: Mesh,
         width_mm: Numbers,
-        nominal: Numbers,
         dynamic: Numbers,
         mean: Numbers,
         stiffness: Numbers,
@@ -187,29 +202,20 @@ class Stage:
         worn = 0.5 * (load.face_running_in(mesh.pinion.steel) + load.face_running_in(mesh.wheel.steel))
         face = load.face_load_factor((1.0 - worn) * (elastic_um + made), load.FACE_STIFFNESS_SHARE * stiffness, mean)
         flank, root = load.transverse_load_factors(mean * face, stiffness, mesh.pitch_deviation_um, mesh.contact_ratio)
-        return MeshLoad(nominal, dynamic, face, load.root_face_load_factor(face, width_mm, module), flank, root)
-
-    def acting(self, mesh: Mesh, at: MeshLoad) -> Safeties:
-        """Load per face width with all its factors, for flank and root, under the duty and under the overload.
-
-        An overload is a single event: K_A and K_V do not apply. The load distribution is that of the duty, which errs
-        to the safe side, because a higher load evens it out.
-        """
-        data = self.settings.parts.rating
-        shared = at.nominal_n_per_mm * mesh.sharing
-        flank, root = at.face_flank * at.transverse_flank, at.face_root * at.transverse_root
-        duty, over = data.application_factor * at.dynamic * shared, data.overload_factor * shared
-        return Safeties(duty * flank, duty * root, over * flank, over * root)
+        return MeshLoad(mean, dynamic, face, load.root_face_load_factor(face, width_mm, module), flank, root)
 
     def safeties(self, width_mm: Numbers) -> Safeties:
         """The least safety factors of all flanks and roots at a face width."""
         both = [
-            safeties_of(carried, self.acting(mesh, at))
-            for mesh, carried, at in zip(
-                (self.sun_mesh, self.ring_mesh), self.carried, self.loads(width_mm), strict=True
-            )
+            safeties_of(carried, acting(duty, over))
+            for carried, duty, over in zip(self.carried, self.loads(width_mm), self.overloads(width_mm), strict=True)
         ]
         return Safeties(*map(np.minimum, *both))
+
+
+def acting(duty: MeshLoad, over: MeshLoad) -> Safeties:
+    """The loads that safety factors are against, in their order."""
+    return Safeties(duty.flank_n_per_mm, duty.root_n_per_mm, over.flank_n_per_mm, over.root_n_per_mm)
 
 
 def safeties_of(carries: Safeties, acting: Safeties) -> Safeties:

@@ -217,15 +217,19 @@ def sun_lag(load, width, diameter, planets, slices=20000):
     return float(np.sum(torque / (shear * polar)) * width / slices * diameter / 2.0)
 
 
-def mesh_loads(sets, data, width, meshes):
-    """K factors of both meshes; ``sets`` holds what the gear set and motor give, ``data`` the settings."""
+def mesh_loads(sets, data, width, meshes, over=False):
+    """K factors of both meshes; ``sets`` holds what the gear set and motor give, ``data`` the settings.
+
+    ``over`` is the overload: a larger torque without K_A and K_V, whose distribution it also decides.
+    """
     found = []
     for mesh in meshes:
         epsilon = contact_ratio(mesh["z1"], mesh["z2"], mesh["internal"])
-        load = data.application_factor * sets["sharing"] * sets["force"] / width
+        load = (data.overload_factor if over else data.application_factor) * sets["sharing"] * sets["force"] / width
         pace = sets["speed"] * mesh["z1"] / 100.0 * sqrt(mesh["u"] ** 2 / (1.0 + mesh["u"] ** 2))
         slope = 2.0 if pace <= 0.2 else max(2.071 - 0.357 * pace, 2.071 - 0.357 * 2.9)
         dynamic = 1.0 + (K1[data.accuracy_class] / max(load, 100.0) + 0.0193) * pace * slope
+        dynamic = 1.0 if over else dynamic
         q = 0.04723 + 0.15551 / mesh["z1"] + (0.0 if mesh["internal"] else 0.25791 / mesh["z2"])
         single = 0.8 / q * (1.0 + 0.5 * (1.2 - 1.25)) * min(load / 100.0, 1.0) ** 0.25
         found.append(
@@ -288,12 +292,12 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
         {"z1": zs, "z2": zp, "u": zp / zs, "internal": False, "steels": (steels.sun, steels.planet)},
         {"z1": zp, "z2": zr, "u": zr / zp, "internal": True, "steels": (steels.planet, steels.ring)},
     ]
-    loads = mesh_loads(sets, data, width, meshes)
+    loads, overloads = (mesh_loads(sets, data, width, meshes, over) for over in (False, True))
     turns = (ratio - 1.0) / (2.0 * pi)
     passes = {"sun": planets * turns, "planet": turns * zs / zp, "ring": planets * turns * zs / zr}
     bores = {"sun": sun_bore, "planet": settings.parts.gears.planet_bore_mm}
     safety = {}
-    for name, mesh, load in zip(("sun mesh", "ring mesh"), meshes, loads, strict=True):
+    for name, mesh, load, over in zip(("sun mesh", "ring mesh"), meshes, loads, overloads, strict=True):
         members = ("sun", "planet") if name == "sun mesh" else ("planet", "ring")
         nominal = sets["sharing"] * sets["force"] / width
         for which, gear in enumerate(members):
@@ -309,17 +313,17 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
                 rim = (module * (teeth / 2.0 - 1.25) - bores[gear] / 2.0) / (2.25 * module)
                 y_b = 1.0 if rim >= 1.2 else 1.6 * log(2.242 / rim)
             limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty)
-            acting_h, acting_f = load["K_Hb"] * load["K_Ha"] * nominal, load["K_Fb"] * load["K_Fa"] * nominal
-            duty_factor = data.application_factor * load["K_V"]
+            duty_factor = data.application_factor * load["K_V"] * nominal
+            over_factor = data.overload_factor * nominal
             hertz = [
                 hertz_load(limit, mesh["z1"], mesh["z2"], module, mesh["internal"], which == 1) for limit in limits[::2]
             ]
             bend = [limit * module / (form * notch_stress * y_b) for limit in limits[1::2]]
             safety[gear, name] = (
-                sqrt(hertz[0] / (acting_h * duty_factor)),
-                bend[0] / (acting_f * duty_factor),
-                sqrt(hertz[1] / (acting_h * data.overload_factor)),
-                bend[1] / (acting_f * data.overload_factor),
+                sqrt(hertz[0] / (load["K_Hb"] * load["K_Ha"] * duty_factor)),
+                bend[0] / (load["K_Fb"] * load["K_Fa"] * duty_factor),
+                sqrt(hertz[1] / (over["K_Hb"] * over["K_Ha"] * over_factor)),
+                bend[1] / (over["K_Fb"] * over["K_Fa"] * over_factor),
             )
     return safety, loads
 
