@@ -23,17 +23,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
+from pareto_monoped.pareto.indicators import epsilon, hypervolume, igd_plus, reference_point
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.protocol import Algorithm, Scores
+from pareto_monoped.study.protocol import Algorithm
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Evaluate, load_simulator
 
 HERE = Path(__file__).parent
 MARKS = (1_000, 2_000, 5_000, 10_000)
-REFERENCE_POINT = ReferencePoint(height_m=0.55, energy_j=100.0)
+REFERENCE_POINT = reference_point(HEIGHT_AND_ENERGY)
 # Ten weights of the paper's cost, chosen so that the runs end at points along the whole front.
 WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
@@ -84,7 +85,7 @@ class Archive:
 
     def _joined(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         every = np.vstack((self.front, points))
-        return every[front_mask(every[:, 0], every[:, 1], np.ones(len(every), dtype=bool))]
+        return every[front_mask(every, HEIGHT_AND_ENERGY)]
 
 
 def search(
@@ -111,13 +112,7 @@ def search(
             rows = slice(first, first + len(proposal.values))
             first = rows.stop
             began = time.perf_counter()
-            algorithm.tell(
-                Scores(
-                    height_m=all_scores.height_m[rows],
-                    energy_j=all_scores.energy_j[rows],
-                    violation=all_scores.violation[rows],
-                )
-            )
+            algorithm.tell(all_scores.of(rows))
             thinking += time.perf_counter() - began
             archive.add(points[rows], judgement.state[rows] == "feasible")
         running = [run for run, _ in alive]
@@ -135,7 +130,7 @@ def reference(evaluate: Evaluate, evaluations: int) -> dict[str, Any]:
         fronts += [archive.front for archive in archives]
         print(f"reference: {settings['name']} done", file=sys.stderr, flush=True)
     points = np.vstack(fronts)
-    front = points[front_mask(points[:, 0], points[:, 1], np.ones(len(points), dtype=bool))]
+    front = points[front_mask(points, HEIGHT_AND_ENERGY)]
     return {"evaluations": evaluations, "front": front.tolist(), "hypervolume": hypervolume(front, REFERENCE_POINT)}
 
 

@@ -78,7 +78,7 @@ def export(
     else:
         study, wanted = _given(db), required(selector)
         data = read_study(study)
-        picked = pick(data.front(), wanted)
+        picked = pick(data.front(), wanted, data.study.objectives)
         _note(picked.why)
         _one(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles))
 

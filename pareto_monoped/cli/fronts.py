@@ -14,12 +14,15 @@ from pareto_monoped.design import VARIABLES, in_use
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from pareto_monoped.measures import Measure
+    from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.study.reader import StudyData
 
 
-def shown_columns(trials: "DataFrame") -> list[str]:
-    """The columns of each design in the output of ``front`` and ``pick``."""
-    return ["trial", "height_m", "energy_j", *(variable.name for variable in in_use(trials))]
+def shown_columns(trials: "DataFrame", objectives: "Objectives") -> list[str]:
+    """The columns of each design in the output of ``front`` and ``pick``: objectives and variables in use."""
+    return ["trial", *objectives.names, *(variable.name for variable in in_use(trials))]
 
 
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -30,45 +33,54 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
     @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
+    @click.option("--limit", metavar="MEASURE=X", help="Best design with a measure at X, in SI units, or better.")
     @click.option("--knee", is_flag=True, help="The design where the front bends most.")
-    @click.option("--weights", metavar="WH,WE", help="Best weighted sum of scaled height and energy.")
+    @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
     @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
     @functools.wraps(command)
     def wrapper(
         *arguments: Any,
         min_height: float | None,
         max_energy: float | None,
+        limit: str | None,
         knee: bool,
         weights: str | None,
         trial: int | None,
         **others: Any,
     ) -> Any:
-        return command(*arguments, selector=_selector(min_height, max_energy, knee, weights, trial), **others)
+        return command(*arguments, selector=_selector(min_height, max_energy, limit, knee, weights, trial), **others)
 
     return wrapper
 
 
 def _selector(
-    min_height: float | None, max_energy: float | None, knee: bool, weights: str | None, trial: int | None
+    min_height: float | None,
+    max_energy: float | None,
+    limit: str | None,
+    knee: bool,
+    weights: str | None,
+    trial: int | None,
 ) -> "Selector | None":
-    from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, Trial, Weights
+    from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, Trial, Weights, Within
 
     chosen: list[Selector] = []
     if min_height is not None:
         chosen.append(MinHeight(height_m=_finite("--min-height", min_height)))
     if max_energy is not None:
         chosen.append(MaxEnergy(energy_j=_finite("--max-energy", max_energy)))
+    if limit is not None:
+        name, value = _limit(limit)
+        chosen.append(Within(measure=name, value=value))
     if knee:
         chosen.append(Knee())
     if weights is not None:
-        height, energy = _pair(weights)
-        chosen.append(Weights(height=height, energy=energy))
+        chosen.append(Weights(values=_weights(weights)))
     if trial is not None:
         chosen.append(Trial(number=trial))
     if len(chosen) > 1:
         raise click.UsageError(
-            f"{len(chosen)} selectors given: must be one of --min-height, --max-energy, --knee, --weights, --trial; "
-            "drop the others"
+            f"{len(chosen)} selectors given: must be one of --min-height, --max-energy, --limit, --knee, --weights, "
+            "--trial; drop the others"
         )
     return chosen[0] if chosen else None
 
@@ -77,8 +89,8 @@ def required(selector: "Selector | None") -> "Selector":
     """The selector; without one, a usage error that names the options."""
     if selector is None:
         raise click.UsageError(
-            "no selector given: must be one of --min-height M, --max-energy J, --knee, --weights WH,WE, --trial N; "
-            "add one"
+            "no selector given: must be one of --min-height M, --max-energy J, --limit MEASURE=X, --knee, --weights "
+            "WH,WE, --trial N; add one"
         )
     return selector
 
@@ -89,12 +101,29 @@ def _finite(option: str, value: float) -> float:
     return value
 
 
-def _pair(text: str) -> tuple[float, float]:
+def _weights(text: str) -> tuple[float, ...]:
     try:
-        height, energy = (float(part) for part in text.split(","))
+        values = tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise click.UsageError(f"--weights = {text!r}: must be two numbers WH,WE; give for example 1,1") from None
-    return height, energy
+        values = ()
+    if len(values) not in (2, 3):
+        raise click.UsageError(
+            f"--weights = {text!r}: must be two numbers WH,WE, or three for three objectives; give for example 1,1"
+        )
+    return values
+
+
+def _limit(text: str) -> tuple[str, float]:
+    from pareto_monoped.measures import MEASURES
+
+    known = [entry.name for entry in MEASURES if entry.direction is not None]
+    name, _, value = text.partition("=")
+    if name not in known:
+        raise click.UsageError(f"--limit = {text!r}: must begin with a measure and =, one of {', '.join(known)}")
+    try:
+        return name, _finite("--limit", float(value))
+    except ValueError:
+        raise click.UsageError(f"--limit = {text!r}: must end with a number; give for example {name}=1.0") from None
 
 
 @click.command()
@@ -104,12 +133,22 @@ def _pair(text: str) -> tuple[float, float]:
     "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write the designs to a CSV file."
 )
 @click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
-def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> None:
-    """List the non-dominated designs, from the lowest jump to the highest."""
+@click.option("--objectives", metavar="A,B", help="Two or three measures to judge by, instead of the study's.")
+def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, objectives: str | None) -> None:
+    """List the non-dominated designs, from the lowest jump to the highest.
+
+    Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
+    and the audit has not seen all of them.
+    """
     from pareto_monoped.study.reader import read_study
 
     data = read_study(db)
-    rows = data.front(include_ill_conditioned=include_all)[shown_columns(data.trials)]
+    chosen = _objectives(objectives, data)
+    rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
+    if chosen != data.study.objectives:
+        unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
+        click.echo(f"note: {unaudited} of these {len(rows)} designs are not audited", err=True)
+    rows = rows[shown_columns(data.trials, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -118,16 +157,48 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool) -> 
     if as_json:
         click.echo(json.dumps(rows.to_dict(orient="records"), indent=2))
     elif csv_file is None:
-        _print_table(rows)
+        _print_table(rows, chosen)
 
 
-def _print_table(rows: "DataFrame") -> None:
+def _objectives(given: str | None, data: "StudyData") -> "Objectives":
+    """The objectives that an option names, or the study's own."""
+    from pareto_monoped.errors import SelectionError
+    from pareto_monoped.study.goals import objectives_of
+
+    if given is None:
+        return data.study.objectives
+    chosen = objectives_of(given.split(","), source="--objectives")
+    for name in chosen.names:
+        if len(data.trials) and data.trials[name].isna().all():
+            raise SelectionError(f"--objectives: no trial of {str(data.db)!r} has a value of {name}; choose another")
+    return chosen
+
+
+_TABLE_WIDTH = 80
+
+
+def _decimals(entry: "Measure") -> int:
+    """Decimals in the stored unit: one more than reports show."""
+    return entry.decimals + 1 + round(math.log10(entry.scale))
+
+
+def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     shown = [variable for variable in VARIABLES if variable.name in rows.columns]
-    symbols = " ".join(f"{variable.symbol:>7}" for variable in shown)
-    click.echo(f"{'trial':>6} {'height m':>8} {'energy J':>8} {symbols}")
+    heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
+    widths = [max(len(head), 8) for head in heads]
+    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) <= _TABLE_WIDTH
+    # With a third objective the usual columns do not fit; four digits of each variable then must do.
+    number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{value:6.4g}")
+    symbols = " ".join(f"{variable.symbol:>{7 if wide else 6}}" for variable in shown)
+    words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
+    click.echo(f"{'trial':>6} {words} {symbols}")
     for _, row in rows.iterrows():
-        values = " ".join(f"{row[name]:7.3f}" for name in (variable.name for variable in shown))
-        click.echo(f"{int(row['trial']):6d} {row['height_m']:8.4f} {row['energy_j']:8.3f} {values}")
+        values = " ".join(number(row[variable.name]) for variable in shown)
+        goals = " ".join(
+            f"{row[entry.name]:{width}.{_decimals(entry)}f}"
+            for entry, width in zip(objectives.measures, widths, strict=True)
+        )
+        click.echo(f"{int(row['trial']):6d} {goals} {values}")
 
 
 @click.command()
@@ -141,8 +212,8 @@ def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
 
     wanted = required(selector)
     data = read_study(db)
-    rows, names = data.front(), shown_columns(data.trials)
-    picked = pick_design(rows, wanted)
+    rows, names = data.front(), shown_columns(data.trials, data.study.objectives)
+    picked = pick_design(rows, wanted, data.study.objectives)
     row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
     if as_json:
         click.echo(json.dumps(row | {"why": picked.why}, indent=2))

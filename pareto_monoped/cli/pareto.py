@@ -1,14 +1,17 @@
-"""Command ``pareto``: the main job, from the actuator map to the CAD of the knee design, made of the other commands."""
+"""Command ``pareto``: the main job, from the actuator map to two fronts and the CAD of a knee; made of the others."""
 
 import contextlib
 import io
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 if TYPE_CHECKING:
+    from pareto_monoped.pareto.objectives import Objectives
+    from pareto_monoped.study.choices import Choice
     from pareto_monoped.study.reader import StudyData
 
 
@@ -23,7 +26,10 @@ if TYPE_CHECKING:
 def pareto(
     study_file: Path, output: Path | None, db: Path | None, evaluations: int | None, workers: int | None
 ) -> None:
-    """Do the main job: actuator map, study, knee design, its CAD, report.
+    """Do the main job: actuator map, two fronts, knee design, its CAD, report.
+
+    The first front is that of the study. The second has the other energy in place of the study's: that at the battery
+    for mechanical energy. A study of other objectives has one front only.
 
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
@@ -31,6 +37,7 @@ def pareto(
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.made import is_made
     from pareto_monoped.pareto.pick import Knee, pick
+    from pareto_monoped.study.choices import counterpart
     from pareto_monoped.study.definition import load_study
     from pareto_monoped.study.reader import read_study
 
@@ -39,42 +46,78 @@ def pareto(
     db = db or study_file.with_suffix(".db")
     folder.mkdir(parents=True, exist_ok=True)
     table, report, cad = folder / "actuators.csv", folder / "report.html", folder / "cad"
+    other = counterpart(study.objectives)
+    steps = _Steps(total=4 if other is None else 5)
 
-    _step(1, "actuators", "--motor", study.motor, "--csv", table)
+    steps.do("actuators", "--motor", study.motor, "--csv", table)
     options = [f"--evaluations={evaluations}"] if evaluations else []
     options += [f"--workers={workers}"] if workers else []
-    _step(2, "run", study_file, "--db", db, *options)
-    data = read_study(db)
-    knee = pick(data.front(), Knee())
+    steps.do("run", study_file, "--db", db, *options)
+    dbs = [db]
+    if other is not None:
+        dbs.append(_beside(db, other))
+        steps.do("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options)
+    studies = [read_study(path) for path in dbs]
+    knee = pick(studies[0].front(), Knee(), study.objectives)
     design = cad / f"trial_{knee.trial}"
-    job = trial_job(data, knee.trial, folder=design)
+    job = trial_job(studies[0], knee.trial, folder=design)
     again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []
-    _step(3, "export", db, "--trial", knee.trial, "-o", design, *again, made=lambda: is_made(job))
-    _step(4, "report", db, "-o", report, "--exports", cad, made=lambda: _newer(report, db, design / "design.json"))
+    steps.do("export", db, "--trial", knee.trial, "-o", design, *again, made=lambda: is_made(job))
+    sources = (*dbs, design / "design.json")
+    steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources))
 
     click.echo("\nMade")
+    fronts = [(path, f"every jump by {_by(data)}; opens in Optuna") for path, data in zip(dbs, studies, strict=True)]
     for path, what in (
         (table, "the lightest actuator of every ratio"),
-        (db, "every jump; resumable, opens in Optuna"),
+        *fronts,
         (design, "CAD and models of the knee design"),
-        (report, "the front: open it in a browser"),
+        (report, "the fronts: open it in a browser" if other else "the front: open it in a browser"),
     ):
         click.echo(f"  {path!s:<32} {what}")
-    _print_headline(data, knee.trial)
+    _print_headline(studies[0], knee.trial)
+    if other is not None:
+        _print_choices(studies)
+    click.echo(f"Simulated with motor {study.motor}, calibration {study.calibration}.")
+    counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
+    click.echo(f"Designs on the front: {counts}.")
 
 
-def _step(number: int, command: str, *arguments: object, made: Callable[[], bool] = lambda: False) -> None:
-    """Run one of our own commands as a user would. Show the command, but not what it prints to stdout."""
-    from pareto_monoped.cli import cli
+@dataclass(slots=True)
+class _Steps:
+    """The steps of the job, counted as they are done."""
 
-    words = [command, *map(str, arguments)]
-    done = made()
-    click.echo(f"[{number}/4] pareto-monoped {' '.join(words)}{'  (up to date)' if done else ''}", err=True)
-    if not done:
-        with contextlib.redirect_stdout(io.StringIO()):
-            code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)
-        if code:
-            raise click.exceptions.Exit(code)
+    total: int
+    done: int = 0
+
+    def do(self, command: str, *arguments: object, made: Callable[[], bool] = lambda: False) -> None:
+        """Run one of our own commands as a user would. Show the command, but not what it prints to stdout."""
+        from pareto_monoped.cli import cli
+
+        self.done += 1
+        words = [command, *map(str, arguments)]
+        up_to_date = made()
+        note = "  (up to date)" if up_to_date else ""
+        click.echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{note}", err=True)
+        if not up_to_date:
+            with contextlib.redirect_stdout(io.StringIO()):
+                code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)
+            if code:
+                raise click.exceptions.Exit(code)
+
+
+def _beside(db: Path, other: "Objectives") -> Path:
+    """The database of the second front, such as case_c_battery.db beside case_c.db."""
+    word = "battery" if "electrical_energy_j" in other.names else "mechanical"
+    return db.with_name(f"{db.stem}_{word}{db.suffix}")
+
+
+def _by(data: "StudyData") -> str:
+    """What the study minimises, in words; for other objectives than height and an energy, their names."""
+    from pareto_monoped.study.choices import WORDS
+
+    names = data.study.objectives.names
+    return next((word for name, word in WORDS.items() if name in names), ", ".join(names))
 
 
 def _newer(target: Path, *sources: Path) -> bool:
@@ -95,8 +138,26 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
     for row in headline(data, knee_trial):
         table.add_row(row.label, f"{row.height_m:.3f}", f"{row.energy_j:.2f}")
     Console(width=80).print(table)
-    study = data.study
-    click.echo(
-        f"Simulated with motor {study.motor}, calibration {study.calibration}; "
-        f"{len(data.front())} designs on the front."
-    )
+
+
+def _print_choices(studies: "list[StudyData]") -> None:
+    """The closing table: what choosing by mechanical energy costs at the battery, height by height."""
+    from pareto_monoped.study.choices import choices, two_fronts
+
+    pair = two_fronts(studies)
+    if pair is None:
+        return
+    side = f"{'mech. J':>8} {'batt. J':>8} {'hip':>6} {'knee':>6}"
+    click.echo(f" {'least':6}{'chosen by mechanical energy':>31}  {'chosen by battery energy':>31} {'costs at':>8}")
+    click.echo(f" {'height':6}{side}  {side} {'battery':>8}")
+    click.echo(f" {'─' * 78}")
+    for row in choices(*pair):
+        cost = "-" if row.cost is None else f"{100.0 * row.cost:+.1f} %"
+        click.echo(f" {row.height_m:.1f} m {_cells(row.mechanical)}  {_cells(row.battery)} {cost:>8}")
+    click.echo("\nhip, knee: gear ratios; costs: what choosing by mechanical energy adds there.")
+
+
+def _cells(choice: "Choice | None") -> str:
+    if choice is None:
+        return f"{'not reached':>31}"
+    return f"{choice.energy_j:8.2f} {choice.electrical_energy_j:8.2f} {choice.hip_ratio:6.2f} {choice.knee_ratio:6.2f}"

@@ -39,7 +39,17 @@ _REASONS = {
 @click.option(
     "--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [default: STUDY.db beside STUDY.toml]"
 )
-def run(study_file: Path, evaluations: int | None, seed: int | None, workers: int | None, db: Path | None) -> int:
+@click.option(
+    "--objectives", metavar="A,B", help="Two or three measures, instead of the study's; needs a --db of its own."
+)
+def run(
+    study_file: Path,
+    evaluations: int | None,
+    seed: int | None,
+    workers: int | None,
+    db: Path | None,
+    objectives: str | None,
+) -> int:
     """Run a study, or continue it where it stopped.
 
     Every evaluated design is stored; the study can be stopped and run again at any time.
@@ -47,7 +57,7 @@ def run(study_file: Path, evaluations: int | None, seed: int | None, workers: in
     from pareto_monoped.study.definition import load_study
     from pareto_monoped.study.run import run as run_study
 
-    study = load_study(study_file)
+    study = load_study(study_file, objectives=objectives.split(",") if objectives is not None else None)
     target = db or study_file.with_suffix(".db")
     with progress_reports() as progress:
         summary = run_study(
@@ -81,7 +91,6 @@ def status(db: Path, as_json: bool) -> None:
         click.echo(json.dumps(facts, indent=2))
         return
     rate = facts["evaluations_per_second"]
-    at_height = facts["least_energy_at_0_8_m_j"]
     lines = {
         "study": facts["name"],
         "state": _state(facts),
@@ -92,9 +101,9 @@ def status(db: Path, as_json: bool) -> None:
         "evaluations": f"{facts['evaluations']} of {facts['budget']}",
         "feasible": f"{facts['feasible']} ({facts['infeasible']} infeasible, {facts['failed']} failed)",
         "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",
-        "hypervolume": f"{facts['hypervolume']:.4f} m J above "
-        f"({facts['reference_point']['height_m']:g} m, {facts['reference_point']['energy_j']:g} J)",
-        f"least energy at {_AT_HEIGHT}": f"{at_height:.2f} J" if at_height is not None else "not reached",
+        "objectives": ", ".join(facts["objectives"]),
+        "hypervolume": f"{facts['hypervolume']:.4f} {facts['hypervolume_unit']} from ({_corner(facts)})",
+        **_at_height(facts),
         "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
         "hash": facts["hash"][:16],
     }
@@ -111,6 +120,26 @@ def _state(facts: dict[str, Any]) -> str:
     return state
 
 
+def _corner(facts: dict[str, Any]) -> str:
+    from pareto_monoped.pareto.indicators import ReferencePoint
+    from pareto_monoped.pareto.objectives import Objectives
+
+    values: dict[str, float] = facts["reference_point"]
+    return ReferencePoint(objectives=Objectives(names=tuple(values)), values=tuple(values.values())).text()
+
+
+def _at_height(facts: dict[str, Any]) -> dict[str, str]:
+    """The line on the best design at the headline height; none for objectives without a height."""
+    from pareto_monoped.measures import measure
+
+    lines = {}
+    for name, value in (facts["best_at_0_8_m"] or {}).items():
+        entry = measure(name)
+        word = "most" if entry.direction == "maximise" else "least"
+        lines[f"{word} {entry.short} at {_AT_HEIGHT}"] = "not reached" if value is None else entry.text(value)
+    return lines
+
+
 def _say(line: str) -> None:
     click.echo(line, err=True)
 
@@ -121,7 +150,7 @@ def _finish(summary: "RunSummary") -> int:
         f"{_REASONS[summary.stop_reason]}"
     )
     click.echo(
-        f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} m J"
+        f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
     return 130 if summary.stop_reason == "interrupted" else 0
@@ -167,12 +196,9 @@ def _line_reports() -> "Callable[[Progress], None]":
 
 
 def _described(progress: "Progress") -> str:
-    if progress.least_energy_j is None:
-        energy = f"{_AT_HEIGHT} not reached"
-    else:
-        energy = f"{progress.least_energy_j:.2f} J at {_AT_HEIGHT}"
+    headline = f", {progress.at_height.text()}" if progress.at_height else ""
     minutes, seconds = divmod(round(progress.seconds_left), 60)
     return (
         f"{progress.evaluations}/{progress.budget}, {progress.per_second:.0f}/s, {minutes}:{seconds:02d} left, "
-        f"hypervolume {progress.hypervolume:.2f}, {energy}"
+        f"hypervolume {progress.hypervolume:.2f}{headline}"
     )

@@ -1,65 +1,88 @@
-"""How good a front is: hypervolume, additive epsilon and IGD+, computed by moocore.
+"""How good a front is: hypervolume, additive epsilon and IGD+, computed by moocore for two or three objectives.
 
-All functions take height and energy as they are. moocore minimises, so the sign of the height changes here.
+All functions take the objectives' values in stored units and with their natural sign. moocore minimises, so the signs
+change here.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
 Points = NDArray[np.float64]
-"""Designs in objective space, shape (n, 2): height in metres (maximised), energy in joules (minimised)."""
+"""Designs in objective space, shape (n, m)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferencePoint:
-    """The corner from which the hypervolume is measured: designs with less height or more energy add nothing."""
+    """The corner from which the hypervolume is measured: designs that are worse in any objective add nothing.
 
-    height_m: float
-    energy_j: float
+    Attributes:
+        objectives: of the search.
+        values: of each objective, in their order and stored units.
+    """
+
+    objectives: Objectives
+    values: tuple[float, ...]
+
+    def as_dict(self) -> dict[str, float]:
+        """The values by the names of their measures."""
+        return dict(zip(self.objectives.names, self.values, strict=True))
+
+    def text(self) -> str:
+        """The values with their units, such as "0.55 m, 100 J"."""
+        pairs = zip(self.objectives.measures, self.values, strict=True)
+        return ", ".join(f"{value:g} {entry.unit}" if entry.unit != "1" else f"{value:g}" for entry, value in pairs)
+
+
+def reference_point(objectives: Objectives, given: Mapping[str, float] | None = None) -> ReferencePoint:
+    """The corner for some objectives: the values ``given`` by name, for the others those of the table of measures."""
+    given = given or {}
+    values = (given.get(entry.name, entry.reference) for entry in objectives.measures)
+    return ReferencePoint(objectives=objectives, values=tuple(0.0 if value is None else value for value in values))
 
 
 def hypervolume(points: Points, reference: ReferencePoint) -> float:
-    """Area that ``points`` dominate, bounded by ``reference``, in m J; larger is better.
+    """Area or volume that ``points`` dominate, bounded by ``reference``, in the product of units; larger is better.
 
     Source: Zitzler and Thiele 1998; exact algorithm of moocore.
     """
     import moocore
 
-    inside = points[(points[:, 0] > reference.height_m) & (points[:, 1] < reference.energy_j)]
+    less_is_better = reference.objectives.minimised(points)
+    corner = reference.objectives.minimised(np.array(reference.values))
+    inside = less_is_better[(less_is_better < corner).all(axis=1)]
     if len(inside) == 0:
         return 0.0
-    return float(moocore.hypervolume(_minimised(inside), ref=[-reference.height_m, reference.energy_j]))
+    return float(moocore.hypervolume(np.ascontiguousarray(inside), ref=corner))
 
 
-def epsilon(points: Points, reference_front: Points) -> float:
+def epsilon(points: Points, reference_front: Points, objectives: Objectives = HEIGHT_AND_ENERGY) -> float:
     """Smallest shift after which ``points`` weakly dominate the whole reference front, as a share of its extent.
 
     Additive epsilon indicator (Zitzler et al. 2003) on objectives normalised to the reference front; 0 is best.
     """
     import moocore
 
-    return float(moocore.epsilon_additive(*_normalised(points, reference_front)))
+    return float(moocore.epsilon_additive(*_normalised(points, reference_front, objectives)))
 
 
-def igd_plus(points: Points, reference_front: Points) -> float:
+def igd_plus(points: Points, reference_front: Points, objectives: Objectives = HEIGHT_AND_ENERGY) -> float:
     """Mean distance by which ``points`` fall short of the reference front, as a share of its extent; 0 is best.
 
     IGD+ (Ishibuchi et al. 2015) on objectives normalised to the reference front.
     """
     import moocore
 
-    return float(moocore.igd_plus(*_normalised(points, reference_front)))
+    return float(moocore.igd_plus(*_normalised(points, reference_front, objectives)))
 
 
-def _minimised(points: Points) -> Points:
-    return np.ascontiguousarray(np.column_stack((-points[:, 0], points[:, 1])))
-
-
-def _normalised(points: Points, reference_front: Points) -> tuple[Points, Points]:
-    reference = _minimised(reference_front)
+def _normalised(points: Points, reference_front: Points, objectives: Objectives) -> tuple[Points, Points]:
+    reference = objectives.minimised(reference_front)
     low, high = reference.min(axis=0), reference.max(axis=0)
-    # A reference front of a single point has no extent; distances then stay in metres and joules.
+    # A reference front of a single point has no extent; distances then stay in the stored units.
     extent = np.where(high > low, high - low, 1.0)
-    return (_minimised(points) - low) / extent, (reference - low) / extent
+    return (objectives.minimised(points) - low) / extent, (reference - low) / extent

@@ -7,33 +7,50 @@ from numpy.typing import NDArray
 from pandas import DataFrame
 
 from pareto_monoped.errors import SelectionError
+from pareto_monoped.measures import Measure, measure
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
+Floats = NDArray[np.float64]
+
+_ENERGIES = ("energy_j", "electrical_energy_j")
+"""The measures that ``MaxEnergy`` may mean; it takes the first that is an objective."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MinHeight:
-    """The design of least energy that jumps at least ``height_m``."""
+    """The design that jumps at least ``height_m`` and is best in the first other objective: the least energy."""
 
     height_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaxEnergy:
-    """The design with the highest jump on at most ``energy_j``."""
+    """The design that needs at most ``energy_j`` and is best in the first other objective: the highest jump."""
 
     energy_j: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Within:
+    """The design whose measure is at ``value`` or better, and that is best in the first other objective.
+
+    ``value`` is in the measure's stored unit.
+    """
+
+    measure: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Knee:
-    """The knee of the front: the design farthest from the chord between its two ends."""
+    """The knee of the front: the design farthest from the line, or the plane, through its ends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Weights:
-    """The design with the best weighted sum of height and energy, each scaled to the extent of the front."""
+    """The design with the best weighted sum of the objectives, each scaled to the extent of the front."""
 
-    height: float
-    energy: float
+    values: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +60,7 @@ class Trial:
     number: int
 
 
-Selector = MinHeight | MaxEnergy | Knee | Weights | Trial
+Selector = MinHeight | MaxEnergy | Within | Knee | Weights | Trial
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,33 +71,36 @@ class Pick:
     why: str
 
 
-def pick(front: DataFrame, selector: Selector) -> Pick:
+def pick(front: DataFrame, selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
     """Pick the design of ``front`` that ``selector`` asks for.
 
     Args:
-        front: one row per design, in any order, with the columns ``trial, height_m, energy_j``.
+        front: one row per design, in any order, with the column ``trial`` and one per objective; for ``Within`` also
+            that of its measure.
         selector: which design.
+        objectives: under which the designs do not dominate each other.
 
     Raises:
-        SelectionError: the front is empty, or none of its designs fits.
+        SelectionError: the front is empty, none of its designs fits, or the selector does not suit the objectives.
     """
     if len(front) == 0:
         raise SelectionError(
             "front: has 0 designs, at least 1 is needed to pick from; run the study longer or relax its constraints"
         )
-    rows = front.sort_values("height_m", kind="stable")
+    rows = front.sort_values(objectives.names[0], kind="stable")
     trials = rows["trial"].to_numpy()
-    height_m = rows["height_m"].to_numpy(dtype=np.float64)
-    energy_j = rows["energy_j"].to_numpy(dtype=np.float64)
+    values = rows[list(objectives.names)].to_numpy(dtype=np.float64)
     match selector:
         case MinHeight(height_m=wanted):
-            row, why = _min_height(height_m, energy_j, wanted)
+            row, why = _within(rows, Within(measure="height_m", value=wanted), objectives, "min-height")
         case MaxEnergy(energy_j=allowed):
-            row, why = _max_energy(height_m, energy_j, allowed)
+            row, why = _within(rows, Within(measure=_energy(objectives), value=allowed), objectives, "max-energy")
+        case Within(measure=name):
+            row, why = _within(rows, selector, objectives, name)
         case Knee():
-            row, why = _knee(height_m, energy_j)
+            row, why = _knee(values, objectives)
         case Weights():
-            row, why = _weights(height_m, energy_j, selector)
+            row, why = _weights(values, selector, objectives)
         case Trial(number=number):
             found = np.flatnonzero(trials == number)
             if len(found) == 0:
@@ -88,68 +108,107 @@ def pick(front: DataFrame, selector: Selector) -> Pick:
                     f"trial = {number}: must be on the front, which has trials {_listed(trials)}; pick one of them"
                 )
             row, why = int(found[0]), "asked for by its number"
-    return Pick(
-        trial=int(trials[row]),
-        why=f"trial {int(trials[row])} ({height_m[row]:.3f} m on {energy_j[row]:.2f} J): {why}",
+    return Pick(trial=int(trials[row]), why=f"trial {int(trials[row])} ({objectives.text(values[row])}): {why}")
+
+
+def _energy(objectives: Objectives) -> str:
+    for name in _ENERGIES:
+        if name in objectives.names:
+            return name
+    raise SelectionError(
+        f"max-energy: no objective is an energy, they are {', '.join(objectives.names)}; limit another measure"
     )
 
 
-def _min_height(height_m: NDArray[np.float64], energy_j: NDArray[np.float64], wanted: float) -> tuple[int, str]:
-    high_enough = np.flatnonzero(height_m >= wanted)
-    if len(high_enough) == 0:
+def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -> tuple[int, str]:
+    limited, other = measure(asked.measure), objectives.other_than(asked.measure)
+    more_is_better = limited.direction == "maximise"
+    column = rows[asked.measure].to_numpy(dtype=np.float64)
+    fits = np.flatnonzero(column >= asked.value if more_is_better else column <= asked.value)
+    wanted = f"{asked.value:g} {limited.unit}"
+    if len(fits) == 0:
+        best = np.nanmax(column) if more_is_better else np.nanmin(column)
+        side, what, cure = ("most", "highest", "ask for less") if more_is_better else ("least", "lowest", "allow more")
         raise SelectionError(
-            f"min-height = {wanted:g} m: must be at most {height_m.max():.4f} m, the front's highest jump; "
-            "ask for less, or run the study longer"
+            f"{name} = {wanted}: must be at {side} {best:.4f} {limited.unit}, the front's {what} {limited.label}; "
+            f"{cure}, or run the study longer"
         )
-    row = int(high_enough[np.argmin(energy_j[high_enough])])
-    return row, f"the least energy of the {len(high_enough)} designs on the front that reach {wanted:g} m"
+    values = rows[other.name].to_numpy(dtype=np.float64)[fits]
+    row = int(fits[np.argmax(values) if other.direction == "maximise" else np.argmin(values)])
+    return row, (
+        f"the {_superlative(other)} of the {len(fits)} designs on the front that "
+        f"{_condition(limited, wanted, more_is_better)}"
+    )
 
 
-def _max_energy(height_m: NDArray[np.float64], energy_j: NDArray[np.float64], allowed: float) -> tuple[int, str]:
-    cheap_enough = np.flatnonzero(energy_j <= allowed)
-    if len(cheap_enough) == 0:
-        raise SelectionError(
-            f"max-energy = {allowed:g} J: must be at least {energy_j.min():.4f} J, the front's cheapest jump; "
-            "allow more, or run the study longer"
-        )
-    row = int(cheap_enough[np.argmax(height_m[cheap_enough])])
-    return row, f"the highest jump of the {len(cheap_enough)} designs on the front that need at most {allowed:g} J"
+def _superlative(entry: Measure) -> str:
+    if entry.name == "height_m":
+        return "highest jump"
+    return f"{'most' if entry.direction == 'maximise' else 'least'} {entry.label}"
 
 
-def _knee(height_m: NDArray[np.float64], energy_j: NDArray[np.float64]) -> tuple[int, str]:
+def _condition(limited: Measure, wanted: str, more_is_better: bool) -> str:
+    if limited.name == "height_m":
+        return f"reach {wanted}"
+    if limited.name == "energy_j":
+        return f"need at most {wanted}"
+    return f"have at {'least' if more_is_better else 'most'} {wanted} of {limited.label}"
+
+
+def _knee(values: Floats, objectives: Objectives) -> tuple[int, str]:
     """Das 1999 (On characterizing the "knee" of the Pareto curve): the greatest distance from the chord.
 
-    With both objectives scaled to the extent of the front, the chord runs from (0, 0) to (1, 1). The distance of a
-    point from it, positive towards more height and less energy, is (height - energy) / sqrt 2.
+    With each objective scaled to the extent of the front and its better end at 1, the ends of a front of two objectives
+    are (0, 1) and (1, 0), and a point's distance from the chord between them is (sum of the scaled objectives - 1) /
+    sqrt(2). For three objectives the chord becomes the plane through (1, 0, 0), (0, 1, 0) and (0, 0, 1), and the
+    divisor sqrt(3).
     """
-    distance = (_scaled(height_m) - _scaled(energy_j)) / np.sqrt(2.0)
+    n, m = values.shape
+    # The better end of a minimised objective lies at 1 - scaled. The ones are added last: with the paper's objectives
+    # nothing is left of them, so that no digit is lost.
+    ones = (objectives.signs > 0.0).sum() - 1
+    distance = (-(_scaled(values) * objectives.signs).sum(axis=1) + ones) / np.sqrt(float(m))
     row = int(np.argmax(distance))
-    if len(height_m) < 3:
-        return row, f"the front has only {len(height_m)} design(s), so its knee is an end of it"
-    return row, (
-        f"the knee, farthest ({distance[row]:.3f} of the scaled front) from the chord between the front's ends "
-        f"{height_m[0]:.3f} m at {energy_j[0]:.2f} J and {height_m[-1]:.3f} m at {energy_j[-1]:.2f} J"
-    )
+    if n < m + 1:
+        return row, f"the front has only {n} design(s), so its knee is an end of it"
+    if m == 2:
+        first, last = values[0], values[-1]
+        if objectives == HEIGHT_AND_ENERGY:
+            ends = [f"{height:.3f} m at {energy:.2f} J" for height, energy in (first, last)]
+        else:
+            ends = [objectives.text(end) for end in (first, last)]
+        where = f"the chord between the front's ends {ends[0]} and {ends[1]}"
+    else:
+        where = "the plane through the best of each objective"
+    return row, f"the knee, farthest ({distance[row]:.3f} of the scaled front) from {where}"
 
 
-def _weights(height_m: NDArray[np.float64], energy_j: NDArray[np.float64], weights: Weights) -> tuple[int, str]:
-    pair = (weights.height, weights.energy)
-    if not (np.isfinite(pair).all() and min(pair) >= 0.0 and sum(pair) > 0.0):
+def _weights(values: Floats, asked: Weights, objectives: Objectives) -> tuple[int, str]:
+    weights, given = np.array(asked.values, dtype=np.float64), ",".join(f"{value:g}" for value in asked.values)
+    count = {2: "two", 3: "three"}[len(objectives.names)]
+    if len(weights) != len(objectives.names) or not (
+        np.isfinite(weights).all() and weights.min() >= 0.0 and weights.sum() > 0.0
+    ):
         raise SelectionError(
-            f"weights = {weights.height:g},{weights.energy:g}: must be two finite numbers of at least 0, not both 0; "
-            "give for example 1,1"
+            f"weights = {given}: must be {count} finite numbers of at least 0, one per objective, not all 0; "
+            f"give for example {','.join('1' * len(objectives.names))}"
         )
-    value = weights.height * _scaled(height_m) - weights.energy * _scaled(energy_j)
+    value = -(_scaled(values) * objectives.signs) @ weights
     row = int(np.argmax(value))
-    return row, (
-        f"the best weighted sum, {weights.height:g} x height - {weights.energy:g} x energy = {value[row]:.3f}, "
-        "both scaled to the front's extent"
+    terms = "".join(
+        f"{' + ' if entry.direction == 'maximise' else ' - '}{weight:g} x {entry.label}"
+        for entry, weight in zip(objectives.measures, weights, strict=True)
+    )
+    return (
+        row,
+        f"the best weighted sum, {terms.removeprefix(' + ').strip()} = {value[row]:.3f}, scaled to the front's extent",
     )
 
 
-def _scaled(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    extent = float(values.max() - values.min())
-    return (values - values.min()) / extent if extent > 0.0 else np.zeros_like(values)
+def _scaled(values: Floats) -> Floats:
+    """Each column scaled to its extent, from 0 at its least to 1 at its greatest value; zeros where all are equal."""
+    least, extent = values.min(axis=0), np.ptp(values, axis=0)
+    return np.where(extent > 0.0, (values - least) / np.where(extent > 0.0, extent, 1.0), 0.0)
 
 
 def _listed(trials: NDArray[np.int64], most: int = 8) -> str:

@@ -1,7 +1,7 @@
 """One study -> its part of the page: pure functions of the stored study and of what was simulated again for it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -11,6 +11,7 @@ from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variabl
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
@@ -30,6 +31,7 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.weighted_cost import weighted_cost
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 """Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
@@ -45,7 +47,13 @@ class Source:
 
 
 def study_card(
-    source: Source, label: str, most_rows: int, map_number: int, first_gearbox: int, variables: Sequence[Variable]
+    source: Source,
+    label: str,
+    most_rows: int,
+    map_number: int,
+    first_gearbox: int,
+    variables: Sequence[Variable],
+    goals: Sequence[str] = (),
 ) -> StudyCard:
     """What the page says of one study.
 
@@ -56,6 +64,7 @@ def study_card(
         map_number: which of the page's stage 1 maps is its motor's.
         first_gearbox: number of that map's first gearbox.
         variables: those that the page shows.
+        goals: the objectives of all studies on the page.
     """
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
@@ -86,6 +95,7 @@ def study_card(
         map=map_number,
         algorithm=study.algorithm.name,
         seed=study.seed,
+        objectives=study.objectives.names,
         group=group_of(data),
         state="finished" if data.meta.finished else "unfinished",
         budget=data.meta.budget,
@@ -93,17 +103,18 @@ def study_card(
         counts={name: int((state == name).sum()) for name in LETTERS} | {"total": len(data.trials)},
         reasons=_failures(data.trials),
         hypervolume=float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
-        reference=asdict(data.reference_point),
+        hypervolume_unit=study.objectives.volume_unit,
+        reference=data.reference_point.text(),
         bounds={
             name: [value.lower, value.upper] if isinstance(value, Bounds) else [value, value]
             for name, value in study.variables.items()
         },
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
-        trials=trial_columns(trials, gearboxes(trials), len(data.trials), variables),
+        trials=trial_columns(trials, gearboxes(trials), len(data.trials), variables, goals),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
-        picks=_picks(front, row_of),
+        picks=_picks(front, row_of, study.objectives),
         more=front_columns(front, _body_masses_kg(data, front)),
         audits=audit_records(data.audits),
         jumps={str(trial): jump for trial, jump in again.jumps.items()},
@@ -142,16 +153,17 @@ def _failures(trials: pd.DataFrame) -> dict[str, int]:
     return {str(status): int(count) for status, count in counts.items()}
 
 
-def _picks(front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
-    """The knee, and the designs of least energy at the headline heights that the front reaches."""
+def _picks(front: pd.DataFrame, row_of: Mapping[int, int], objectives: Objectives) -> list[Picked]:
+    """The knee, and, if the height is an objective, the best designs at the headline heights that the front reaches."""
+    heights = HEADLINES_M if "height_m" in objectives.names else ()
     named: list[tuple[str, Selector]] = [
         ("knee", Knee()),
-        *((f"{height:g} m", MinHeight(height_m=height)) for height in HEADLINES_M),
+        *((f"{height:g} m", MinHeight(height_m=height)) for height in heights),
     ]
     found: list[Picked] = []
     for name, selector in named:
         try:
-            picked = pick(front, selector)
+            picked = pick(front, selector, objectives)
         except SelectionError:
             continue
         if row_of[picked.trial] not in [p.row for p in found]:
@@ -160,7 +172,7 @@ def _picks(front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
 
 
 def best_of_weights(data: StudyData) -> list[tuple[float, int]]:
-    """Each run of a weighted search: the weight of the height, and the trial of least cost."""
+    """Each run of a weighted search: the weight of the first objective, and the trial of least cost."""
     settings = data.study.algorithm
     if not isinstance(settings, WeightedSettings):
         return []
@@ -168,6 +180,7 @@ def best_of_weights(data: StudyData) -> list[tuple[float, int]]:
     best = []
     for weight, run in rows.groupby("height_weight"):
         share = float(weight)
-        cost = share * settings.height_scale_j * np.exp(-run["height_m"]) + (1.0 - share) * run["energy_j"]
-        best.append((share, int(run.loc[cost.idxmin(), "trial"])))
+        values = run[list(data.study.objectives.names)].to_numpy(dtype=np.float64)
+        cost = weighted_cost(values, share, data.reference_point, settings.height_scale_j)
+        best.append((share, int(run["trial"].iloc[int(np.argmin(cost))])))
     return best

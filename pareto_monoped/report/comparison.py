@@ -1,15 +1,19 @@
-"""Several studies side by side: hypervolume from one reference point, energy at given heights, spread over seeds."""
+"""Several studies side by side: hypervolume from one reference point, cost of given heights, spread over seeds."""
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.pareto.at_height import best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.rounding import number
 from pareto_monoped.report.schema import Comparison
+from pareto_monoped.study.choices import Choice, choices, two_fronts
 from pareto_monoped.study.reader import StudyData
 
 Floats = NDArray[np.float64]
@@ -27,12 +31,14 @@ def group_of(data: StudyData) -> str:
 
 
 def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequence[float]) -> Comparison:
-    """Compare studies; all hypervolumes are measured from the first one's reference point."""
+    """Compare studies under the objectives of the first; all hypervolumes are measured from its reference point."""
     reference = studies[0].reference_point
-    fronts = [data.front()[["height_m", "energy_j"]].to_numpy(dtype=np.float64) for data in studies]
+    objectives = reference.objectives
+    with_height = "height_m" in objectives.names
+    fronts = [data.front()[list(objectives.names)].to_numpy(dtype=np.float64) for data in studies]
     rows: list[dict[str, Any]] = []
     for data, label, front in zip(studies, labels, fronts, strict=True):
-        energies = energy_at(front, np.asarray(heights_m))
+        found = [best_at_height(front, objectives, height) for height in heights_m] if with_height else []
         rows.append(
             {
                 "label": label,
@@ -43,7 +49,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
                 "evaluations": len(data.trials),
                 "front": len(front),
                 "hypervolume": round(hypervolume(front, reference), 4),
-                "energy_j": [number(energy) for energy in energies],
+                "at_height": [None if best is None or best.value is None else number(best.value) for best in found],
             }
         )
     groups: dict[str, list[int]] = {}
@@ -51,34 +57,66 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
         groups.setdefault(group_of(data), []).append(index)
     several = [members for members in groups.values() if len(members) > 1]
     return Comparison(
-        reference={"height_m": reference.height_m, "energy_j": reference.energy_j},
-        heights_m=list(heights_m),
+        reference=reference.text(),
+        hypervolume_unit=objectives.volume_unit,
+        other=objectives.other_than("height_m").name,
+        heights_m=list(heights_m) if with_height else [],
         rows=rows,
-        surfaces=[_surface([fronts[i] for i in members], [labels[i] for i in members]) for members in several],
+        surfaces=[
+            _surface([fronts[i] for i in members], [labels[i] for i in members], objectives) for members in several
+        ]
+        if len(objectives.names) == 2
+        else [],
         growth=[_growth([studies[i] for i in members], [labels[i] for i in members]) for members in several],
+        choices=_choices(studies),
     )
 
 
-def energy_at(front: Floats, heights_m: Floats) -> Floats:
-    """Least energy of a front, shape (n, 2), for at least each height, shape (m,); infinite where none reaches it."""
-    reach = front[:, 0][None, :] >= heights_m[:, None]
-    return np.where(reach, front[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
+def _choices(studies: Sequence[StudyData]) -> list[dict[str, Any]]:
+    """The designs that two fronts by the two energies offer at some heights, as JSON values; else an empty list."""
+    pair = two_fronts(studies)
+    if pair is None:
+        return []
+    sides = ("mechanical", "battery")
+    return [
+        {"height_m": row.height_m, "cost": row.cost} | {side: _plain(getattr(row, side)) for side in sides}
+        for row in choices(*pair)
+    ]
 
 
-def _surface(fronts: Sequence[Floats], labels: Sequence[str]) -> dict[str, Any]:
+def _plain(choice: Choice | None) -> dict[str, Any] | None:
+    return None if choice is None else {name: number(value) for name, value in asdict(choice).items()}
+
+
+def least_second(front: Floats, levels: Floats, objectives: Objectives = HEIGHT_AND_ENERGY) -> Floats:
+    """Best second objective of a front, shape (n, 2), for each level of the first or better, shape (m,).
+
+    In the sign that makes less better; infinite where no design reaches the level. With the paper's objectives it is
+    the least energy for at least each height.
+    """
+    points = objectives.minimised(front)
+    reach = points[:, 0][None, :] <= (levels * objectives.signs[0])[:, None]
+    return np.where(reach, points[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
+
+
+def _surface(
+    fronts: Sequence[Floats], labels: Sequence[str], objectives: Objectives = HEIGHT_AND_ENERGY
+) -> dict[str, Any]:
     """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half and all of the runs reached.
 
-    For two objectives, a surface is an order statistic of the runs' least energies at each height. The median of an
-    even number of runs is the upper one of the middle two, so that at least half of the runs reach it.
+    For two objectives, a surface is an order statistic of the runs' best second objectives at each level of the first,
+    such as their least energies at each height. The median of an even number of runs is the worse one of the middle
+    two, so that at least half of the runs reach it.
     """
     everything = np.concatenate(fronts)
     if len(everything) == 0:
-        return {"labels": list(labels), "height_m": [], "best": [], "median": [], "worst": []}
-    heights = np.linspace(everything[:, 0].min(), everything[:, 0].max(), _POINTS)
-    ranked = np.sort(np.stack([energy_at(front, heights) for front in fronts]), axis=0)
+        return {"labels": list(labels), "first": [], "best": [], "median": [], "worst": []}
+    levels = np.linspace(everything[:, 0].min(), everything[:, 0].max(), _POINTS)
+    ranked = np.sort(np.stack([least_second(front, levels, objectives) for front in fronts]), axis=0)
+    ranked *= objectives.signs[1]
     return {
         "labels": list(labels),
-        "height_m": [round(h, 4) for h in heights.tolist()],
+        "first": [round(level, 4) for level in levels.tolist()],
         "best": [number(v) for v in ranked[0]],
         "median": [number(v) for v in ranked[len(fronts) // 2]],
         "worst": [number(v) for v in ranked[-1]],

@@ -13,6 +13,9 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import OutputError, complaint
 from pareto_monoped.files import replacing
+from pareto_monoped.measures import measure
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.report.goals import ENERGIES
 from pareto_monoped.report.quantities import QUANTITIES
 from pareto_monoped.report.schema import Column, Jump, Payload, StudyCard
 
@@ -22,7 +25,9 @@ _WIDTH_IN, _HEIGHT_IN = 3.5, 2.6  # one column of an IEEE paper is 3.5 in wide
 _DPI = 300
 _FORMATS = ("svg", "png")
 Mark = tuple[float, float, str]
-"""Energy in J, height in m, and name of a design."""
+"""Where a design stands, to the right and upward, in the units shown, and its name."""
+Axes2 = tuple[str, str]
+"""The measures to the right and upward."""
 _FIXED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
 """File information that would change from one run to the next, left out."""
 
@@ -89,48 +94,90 @@ def _values(column: Column, rows: Sequence[int] | None = None) -> NDArray[np.flo
     return np.array([np.nan if value is None else value for value in chosen], dtype=np.float64)
 
 
-def _objectives(card: StudyCard, rows: Sequence[int]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    columns = card.trials.columns
-    return _values(columns["energy_j"], rows), _values(columns["height_m"], rows)
+def _places(card: StudyCard, rows: Sequence[int], across_up: Axes2) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where trials stand, to the right and upward, in the units shown."""
+    across, up = (_values(card.trials.columns[name], rows) * measure(name).scale for name in across_up)
+    return across, up
 
 
 def _front(payload: Payload, figure: Any) -> bool:
+    """The first objective upward over the second; a third is the colour of the designs on the front."""
     axes = figure.add_subplot()
-    published = [(case["energy_j"], case["height_m"], case["name"]) for case in payload.published]
+    up, across, *third = payload.objectives
+    places = (across, up)
+    papers_own = (up, across) == HEIGHT_AND_ENERGY.names
+    published = [(c["energy_j"], c["height_m"], c["name"]) for c in payload.published] if papers_own else []
     for i, card in enumerate(payload.studies):
-        _cloud_and_front(axes, card, i)
+        _cloud_and_front(axes, card, i, places, third)
         if i == 0:
-            _diamonds(axes, _simulated(card), "black", "paper, simulated here")
+            _diamonds(axes, _simulated(card, places), "black", "paper, simulated here")
     _diamonds(axes, published, "white", "paper, published")
-    marks = [*published, *(mark for card in payload.studies for mark in (*_simulated(card), *_designs(card)))]
-    right, high = max(mark[0] for mark in marks), max(mark[1] for mark in marks)
-    _floor(axes, payload, 1.1 * right)
-    axes.set(xlim=(0.0, 1.06 * right), ylim=(BASE_START_HEIGHT_M, high + 0.06))
-    axes.set(xlabel="energy (J)", ylabel="height (m)")
-    axes.legend(loc="lower right")
+    marks = [*published]
+    marks += [mark for card in payload.studies for mark in (*_simulated(card, places), *_designs(card, places))]
+    _limits(axes, payload, marks, places)
+    axes.set(xlabel=_axis_title(across), ylabel=_axis_title(up))
+    if third and axes.collections:
+        figure.colorbar(axes.collections[-1], ax=axes, label=_axis_title(third[0]))
+    axes.legend(loc="best" if third else "lower right")
     return True
 
 
-def _designs(card: StudyCard) -> list[Mark]:
+def _limits(axes: Any, payload: Payload, marks: Sequence[Mark], places: Axes2) -> None:
+    """Limits of both axes that show every mark; with height over energy they begin at the start, and show the floor."""
+    right, high = max((mark[0] for mark in marks), default=1.0), max((mark[1] for mark in marks), default=1.0)
+    if places[1] == "height_m" and places[0] in ENERGIES:
+        _floor(axes, payload, 1.1 * right)
+        axes.set(xlim=(0.0, 1.06 * right), ylim=(BASE_START_HEIGHT_M, high + 0.06))
+        return
+    for found, setter in (
+        ([mark[0] for mark in marks], axes.set_xlim),
+        ([mark[1] for mark in marks], axes.set_ylim),
+    ):
+        if not found:
+            continue
+        room = 0.06 * (max(found) - min(found)) or 0.1
+        setter(min(found) - room, max(found) + room)
+
+
+def _axis_title(name: str) -> str:
+    entry = measure(name)
+    return f"{entry.label} ({entry.shown_unit})"
+
+
+def _designs(card: StudyCard, places: Axes2) -> list[Mark]:
     """The designs on the front, unnamed."""
-    energy, height = _objectives(card, card.front)
-    return [(e, h, "") for e, h in zip(energy.tolist(), height.tolist(), strict=True)]
+    across, up = _places(card, card.front, places)
+    return [(x, y, "") for x, y in zip(across.tolist(), up.tolist(), strict=True) if np.isfinite(x + y)]
 
 
-def _simulated(card: StudyCard) -> list[Mark]:
+def _simulated(card: StudyCard, places: Axes2) -> list[Mark]:
     """The paper's designs as simulated for a study, without those that do not jump."""
-    return [(c.energy_j, c.height_m, c.name) for c in card.cases if c.energy_j is not None and c.height_m is not None]
+    marks = []
+    for case in card.cases:
+        known = {**case.measures, "height_m": case.height_m, "energy_j": case.energy_j}
+        across, up = (known.get(name) for name in places)
+        if across is not None and up is not None:
+            marks.append((across * measure(places[0]).scale, up * measure(places[1]).scale, case.name))
+    return marks
 
 
-def _cloud_and_front(axes: Any, card: StudyCard, number: int) -> None:
-    """A study's dominated designs as faint dots, and its front as a line of steps."""
+def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, third: Sequence[str]) -> None:
+    """A study's dominated designs as faint dots, and its front as a line of steps, or as dots if that is no line."""
     tint, symbol = _STYLES[number % len(_STYLES)]
     on_front = set(card.front)
     others = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in on_front]
-    cloud = axes.scatter(*_objectives(card, others), s=1.5, color=tint if number else "#bbbbbb", alpha=0.35, lw=0)
+    cloud = axes.scatter(*_places(card, others, places), s=1.5, color=tint if number else "#bbbbbb", alpha=0.35, lw=0)
     cloud.set_rasterized(True)
-    energy, height = _objectives(card, card.front)
-    axes.plot(energy, height, drawstyle="steps-pre", marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
+    across, up = _places(card, card.front, places)
+    if third:
+        values = _values(card.trials.columns[third[0]], card.front) * measure(third[0]).scale
+        axes.scatter(across, up, c=values, s=7, marker=symbol, cmap="viridis", label=card.label, lw=0)
+    elif set(card.objectives) == set(places):
+        # With less upward the better end is below: a design then holds until the next one is reached.
+        steps = "steps-post" if measure(places[1]).direction == "maximise" else "steps-pre"
+        axes.plot(across, up, drawstyle=steps, marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
+    else:
+        axes.plot(across, up, symbol, ms=2.5, color=tint, label=card.label)
 
 
 def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
@@ -156,8 +203,12 @@ def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
 
 def _convergence(payload: Payload, figure: Any) -> bool:
     axes = figure.add_subplot()
+    # Hypervolumes under different objectives have different units: each then is a share of its last value.
+    alike = all(tuple(card.objectives) == tuple(payload.objectives) for card in payload.studies)
     for i, card in enumerate(payload.studies):
         x, y = (_values(card.history[name]) for name in ("evaluations", "hypervolume"))
+        if not alike and len(y):
+            y = 100.0 * y / (y[-1] or 1.0)
         axes.plot(
             x,
             y,
@@ -170,7 +221,8 @@ def _convergence(payload: Payload, figure: Any) -> bool:
         x = _values(growth["evaluations"])
         axes.fill_between(x, _values(growth["low"]), _values(growth["high"]), color="#999999", alpha=0.3, lw=0)
         axes.plot(x, _values(growth["median"]), color="black", label=f"median of {len(growth['labels'])} seeds")
-    axes.set(xlabel="evaluations", ylabel="hypervolume (m J)")
+    unit = payload.studies[0].hypervolume_unit if alike else "% of the last"
+    axes.set(xlabel="evaluations", ylabel=f"hypervolume ({unit})")
     if len(payload.studies) > 1:
         axes.legend(loc="lower right")
     return any(len(card.history["evaluations"]) for card in payload.studies)
@@ -179,6 +231,7 @@ def _convergence(payload: Payload, figure: Any) -> bool:
 def _along(payload: Payload, figure: Any) -> bool:
     figure.set_size_inches(2 * _WIDTH_IN, 1.4 * _HEIGHT_IN)
     names = {quantity.name: quantity for quantity in QUANTITIES}
+    along = payload.objectives[0]
     for k, variable in enumerate(payload.variables):
         axes = figure.add_subplot(2, 4, k + 1)
         quantity = names[variable["name"]]
@@ -186,11 +239,11 @@ def _along(payload: Payload, figure: Any) -> bool:
             columns = card.trials.columns
             tint, symbol = _STYLES[i % len(_STYLES)]
             y = _values(columns[variable["name"]], card.front) * quantity.scale
-            axes.plot(_values(columns["height_m"], card.front), y, symbol, ms=2, color=tint, ls="")
+            axes.plot(_values(columns[along], card.front) * measure(along).scale, y, symbol, ms=2, color=tint, ls="")
         unit = "" if quantity.unit == ": 1" else f" ({quantity.unit})"
         axes.set_title(f"{quantity.label}{unit}", fontsize=7)
         axes.tick_params(labelsize=6)
-        axes.set_xlabel("height (m)", fontsize=7)
+        axes.set_xlabel(_axis_title(along), fontsize=7)
     return any(card.front for card in payload.studies)
 
 

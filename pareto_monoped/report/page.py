@@ -16,6 +16,7 @@ from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import read_models
+from pareto_monoped.report.goals import ask_fields, kind, order
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.report.schema import Payload
@@ -85,6 +86,9 @@ def page(payload: Payload) -> str:
         title=safe(payload.title),
         style=_asset("style.css"),
         head=head(payload),
+        kind=safe(kind(payload)),
+        fields=ask_fields(payload),
+        order=safe(order(payload)),
         comparison=comparison_tables(payload),
         published_link=published_link(payload),
         cases=cases_table(payload),

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from pareto_monoped import __version__
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.report.card import HEADLINES_M, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.motors import motor_tables
 from pareto_monoped.report.quantities import QUANTITIES
-from pareto_monoped.report.schema import Constants, Gearbox, MotorMap, Payload
+from pareto_monoped.report.schema import Constants, Gearbox, MotorMap, Payload, StudyCard
 from pareto_monoped.report.trials import rows_per_study
+from pareto_monoped.study.choices import WORDS
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.ratiomap import ActuatorMap
@@ -48,15 +50,19 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     labels = _labels(sources)
     used = {variable.name for source in sources for variable in in_use(source.data.trials)}
     variables = [variable for variable in VARIABLES if variable.name in used]
+    goals = tuple(dict.fromkeys(name for source in sources for name in source.data.study.objectives.names))
     cards = []
     for source, label, most_rows in zip(
         sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
     ):
         number = mapped.index(_origin(source.data.actuator_map))
-        cards.append(study_card(source, label, most_rows, number, first_gearboxes[number], variables))
+        cards.append(study_card(source, label, most_rows, number, first_gearboxes[number], variables, goals))
     return Payload(
         version=__version__,
-        title=cards[0].name if len(cards) == 1 else f"{cards[0].name} and {len(cards) - 1} more",
+        title=_title(cards),
+        objectives=cards[0].objectives,
+        goals=goals,
+        directions=Objectives(names=goals).directions,
         constants=Constants(
             gravity_m_per_s2=GRAVITY_M_PER_S2,
             base_start_height_m=BASE_START_HEIGHT_M,
@@ -83,11 +89,29 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:
-    """Names of the studies; where several have the same, with seed, database or number until no two are alike."""
+    """Names of the studies; where several have the same, with what they are for, seed, database or number.
+
+    Each is as long as it must be, so that no two are alike.
+    """
     names = [source.data.study.name for source in sources]
+    if len({source.data.study.objectives for source in sources}) > 1:
+        names = [f"{name} by {_aim(source)}" for source, name in zip(sources, names, strict=True)]
     labels: list[str] = []
     for source, name in zip(sources, names, strict=True):
         label = name if names.count(name) == 1 else f"{name}, seed {source.data.study.seed}"
         tries = [label, f"{label}, {source.data.db}", *(f"{label} ({n})" for n in range(2, len(sources) + 2))]
         labels.append(next(text for text in tries if text not in labels))
     return labels
+
+
+def _title(cards: Sequence[StudyCard]) -> str:
+    """The study's name, where it is one study, or one by several objectives; else the first one's and a count."""
+    by = {(card.name, tuple(card.objectives)) for card in cards}
+    one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
+    return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"
+
+
+def _aim(source: Source) -> str:
+    """The objectives of a study but the height, in words."""
+    measures = source.data.study.objectives.measures
+    return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, columns
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.rounding import number
 from pareto_monoped.report.schema import Case, Jump
 from pareto_monoped.study.reader import StudyData
@@ -59,7 +60,7 @@ def resimulate(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Resimulation
     front = data.front()
     chosen = set(_spread(len(front), most_jumps))
     if len(front):
-        knee = pick(front, Knee()).trial
+        knee = pick(front, Knee(), data.study.objectives).trial
         chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
     rows = front.iloc[sorted(chosen)]
     jumps = jumps_of(rows[list(NAMES)].to_numpy(dtype=np.float64), data.actuator_map, data.calibration)
@@ -124,6 +125,7 @@ def paper_cases(actuator_map: "ActuatorMap", calibration: "Calibration") -> list
             height_m=number(result.height_m[i]),
             energy_j=number(result.energy_j[i]),
             mass_kg=number(result.mass_kg[i]),
+            measures={name: number(getattr(result, name)[i]) for name in MEASURE_NAMES},
             jump=next(jumps) if result.ok[i] else None,
         )
         for i, name in enumerate(PAPER_CASES)

@@ -116,7 +116,7 @@ class Jump:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One row of the paper's Table I, simulated with a study's motor and calibration."""
+    """One row of the paper's Table I, simulated with a study's motor and calibration; ``measures`` holds every one."""
 
     name: str
     status: str
@@ -124,6 +124,7 @@ class Case:
     height_m: Number
     energy_j: Number
     mass_kg: Number
+    measures: Mapping[str, Number]
     jump: Jump | None
 
 
@@ -174,6 +175,7 @@ class StudyCard:
         motor, calibration: as shown.
         motor_name, calibration_name: as the command line takes them.
         map: index of the motor's stage 1 map on the page.
+        objectives: of the study, which decide what is on its front.
         group: equal for studies that are runs of one study with several seeds.
         bounds: variable -> [lower, upper], equal for a fixed one.
         front, ill_conditioned: rows of ``trials``.
@@ -181,7 +183,7 @@ class StudyCard:
         audits: trial number -> measures of its audit.
         jumps, models: by trial number.
         case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
-        weighted: results of a weighted search: weight of the height, and row.
+        weighted: results of a weighted search: weight of the first objective, and row.
         floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
         notes: what readers have to know before they trust the page.
     """
@@ -197,6 +199,7 @@ class StudyCard:
     map: int
     algorithm: str
     seed: int
+    objectives: Sequence[str]
     group: str
     state: str
     budget: int
@@ -204,7 +207,8 @@ class StudyCard:
     counts: Mapping[str, int]
     reasons: Mapping[str, int]
     hypervolume: float
-    reference: Mapping[str, float]
+    hypervolume_unit: str
+    reference: str
     bounds: Mapping[str, Sequence[float]]
     summary: Sequence[str]
     notes: Sequence[str]
@@ -229,21 +233,30 @@ class StudyCard:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """Several studies side by side.
+    """Several studies side by side, under the first one's objectives.
 
     Attributes:
-        reference: the point that all hypervolumes here are measured from.
-        rows: one per study: label, hypervolume, least energy at each of ``heights_m`` (None where the front does not
-            reach it), and more.
-        surfaces: of each group with several seeds: heights, and the least, median and greatest energy there.
-        growth: the same for hypervolume over evaluations.
+        reference: the point that all hypervolumes here are measured from, in words.
+        hypervolume_unit: of these hypervolumes.
+        other: the objective that is compared at heights.
+        heights_m: where; empty for objectives without a height.
+        rows: one per study: label, hypervolume, best value of ``other`` at each of ``heights_m`` (``at_height``, None
+            where the front does not reach it), and more.
+        surfaces: of each group with several seeds, for two objectives: values of the first (``first``), and the best,
+            median and worst of the second there.
+        growth: least, median and greatest hypervolume over evaluations.
+        choices: for two fronts by the two energies, the designs that both offer at some heights, and what choosing by
+            the mechanical one costs at the battery.
     """
 
-    reference: Mapping[str, float]
+    reference: str
+    hypervolume_unit: str
+    other: str
     heights_m: Sequence[float]
     rows: Sequence[Mapping[str, Any]]
     surfaces: Sequence[Mapping[str, Any]]
     growth: Sequence[Mapping[str, Any]]
+    choices: Sequence[Mapping[str, Any]] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -263,10 +276,19 @@ class Constants:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Payload:
-    """Everything on the page."""
+    """Everything on the page.
+
+    Attributes:
+        objectives: the first study's, which are the axes of the front chart.
+        goals: the objectives of all studies, without repetition; the page has them of every trial.
+        directions: "maximise" or "minimise" of each goal.
+    """
 
     version: str
     title: str
+    objectives: Sequence[str]
+    goals: Sequence[str]
+    directions: Mapping[str, str]
     constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]

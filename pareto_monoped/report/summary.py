@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from pareto_monoped.design import HEADLINE_HEIGHT_M, PAPER_CASES
+from pareto_monoped.pareto.at_height import best_at_height
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.schema import Case
 from pareto_monoped.study.reader import StudyData
 
@@ -25,9 +27,12 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
             f"None of the {done} designs is feasible: there is no front to choose from. Run longer, widen the bounds, "
             "or relax the constraints."
         ]
+    objectives = data.study.objectives
     if len(front) == 1:
-        only = front.iloc[0]
-        lines = [f"One design is on the front: {only['height_m']:.3f} m on {only['energy_j']:.2f} J."]
+        only = front.iloc[0][list(objectives.names)].tolist()
+        lines = [f"One design is on the front: {objectives.text(only)}."]
+    elif objectives != HEIGHT_AND_ENERGY:
+        lines = [_extent(front, objectives)]
     else:
         low, high = front.iloc[0], front.iloc[-1]
         lines = [
@@ -35,7 +40,24 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
             f"from {low['height_m']:.2f} m on {low['energy_j']:.1f} J "
             f"to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
         ]
-    return [*lines, *_against_paper(front, cases)]
+    return [*lines, *(_against_paper(front, cases) if objectives == HEIGHT_AND_ENERGY else [])]
+
+
+def _extent(front: pd.DataFrame, objectives: Objectives) -> str:
+    """What a height costs, where the height is an objective, and how far the front reaches in every objective."""
+    values = front[list(objectives.names)].to_numpy(dtype=float)
+    ranges = [
+        f"{entry.label.split(',')[0]} from {entry.text(column.min())} to {entry.text(column.max())}"
+        for entry, column in zip(objectives.measures, values.T, strict=True)
+    ]
+    text = f"the front of {len(front)} designs has {', '.join(ranges)}."
+    best = best_at_height(values, objectives)
+    if best is None:
+        return f"{text[0].upper()}{text[1:]}"
+    if best.value is None:
+        return f"No design reaches {best.height_m:.2f} m; {text}"
+    side = "allows at most" if best.measure.direction == "maximise" else "needs at least"
+    return f"{best.height_m:.2f} m {side} {best.measure.text(best.value)} of {best.measure.label}; {text}"
 
 
 def _price(front: pd.DataFrame, height_m: float) -> str:

@@ -1,9 +1,12 @@
 """The page's text and tables, which are painted before any script runs. Every text from a study is escaped here."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
+from math import isfinite
+from typing import Any
 
-from pareto_monoped.report.schema import Number, Payload, StudyCard
+from pareto_monoped.measures import measure
+from pareto_monoped.report.schema import Comparison, Number, Payload, StudyCard
 
 
 def safe(value: object) -> str:
@@ -50,7 +53,7 @@ def _facts(card: StudyCard) -> list[tuple[str, str]]:
         ("run time", _duration(card.seconds)),
         (
             "hypervolume",
-            f"{card.hypervolume:.3f} m J from {card.reference['height_m']:g} m, {card.reference['energy_j']:g} J",
+            f"{card.hypervolume:.3f} {card.hypervolume_unit} from {card.reference}",
         ),
     ]
 
@@ -64,7 +67,7 @@ def _duration(seconds: float) -> str:
 
 
 def _number(value: Number, decimals: int) -> str:
-    return "-" if value is None else f"{value:.{decimals}f}"
+    return "-" if value is None or not isfinite(value) else f"{value:.{decimals}f}"
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
@@ -142,8 +145,10 @@ def comparison_tables(payload: Payload) -> str:
     comparison = payload.comparison
     if comparison is None:
         return ""
-    columns = ["study", "motor", "calibration", "search", "seed", "evaluations", "front", "hypervolume, m J"]
-    columns += [f"J at {height:g} m" for height in comparison.heights_m]
+    columns = ["study", "motor", "calibration", "search", "seed", "evaluations", "front"]
+    other = measure(comparison.other)
+    columns += [f"hypervolume, {comparison.hypervolume_unit}"]
+    columns += [f"{other.unit} at {height:g} m" for height in comparison.heights_m]
     rows = [
         [
             *(
@@ -151,17 +156,45 @@ def comparison_tables(payload: Payload) -> str:
                 for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
             ),
             _number(row["hypervolume"], 3),
-            *(_number(energy, 2) for energy in row["energy_j"]),
+            *(_number(value, 2) for value in row["at_height"]),
         ]
         for row in comparison.rows
     ]
-    corner = comparison.reference
     caption = (
-        f"All hypervolumes are measured from {corner['height_m']:g} m and {corner['energy_j']:g} J, the first study's "
-        "reference point. Energy: the least on the front for at least that height."
+        f"All hypervolumes are measured from {comparison.reference}, the first study's reference point. "
+        f"{other.unit} at a height: {other.label}, the best on the front for at least that height."
     )
     chart = '<div id="attainment" class="chart"></div>' if comparison.surfaces else ""
-    return f"<h3>Studies compared</h3>{_table(columns, rows, caption=caption)}{chart}"
+    return f"<h3>Studies compared</h3>{_table(columns, rows, caption=caption)}{chart}{_choices_table(comparison)}"
+
+
+def _choices_table(comparison: Comparison) -> str:
+    """What choosing by mechanical energy costs at the battery; an empty text if the studies are not two such fronts."""
+    if not comparison.choices:
+        return ""
+    sides = '<th scope="colgroup" colspan="4" class="n">chosen by mechanical energy</th>'
+    sides += '<th scope="colgroup" colspan="4" class="n">chosen by battery energy</th>'
+    four = "".join(f'<th scope="col" class="n">{name}</th>' for name in ("mechanical, J", "battery, J", "hip", "knee"))
+    top = f'<th scope="col" rowspan="2">height</th>{sides}<th scope="col" rowspan="2" class="n">costs</th>'
+    body = ""
+    for row in comparison.choices:
+        cost = "-" if row["cost"] is None else f"{100.0 * row['cost']:+.1f} %"
+        cells = "".join(
+            f'<td class="n">{c}</td>' for c in (*_choice(row["mechanical"]), *_choice(row["battery"]), cost)
+        )
+        body += f'<tr><th scope="row">{row["height_m"]:.1f} m</th>{cells}</tr>'
+    caption = (
+        "For each height, the designs of least energy on either front with the ratios of their gearboxes, and what "
+        "choosing by mechanical energy costs at the battery."
+    )
+    table = f"<caption>{caption}</caption><thead><tr>{top}</tr><tr>{four}{four}</tr></thead><tbody>{body}</tbody>"
+    return f'<h3>The two energies</h3><div class="scroll" tabindex="0" id="energies"><table>{table}</table></div>'
+
+
+def _choice(chosen: Mapping[str, Any] | None) -> list[str]:
+    if chosen is None:
+        return ["-"] * 4
+    return [_number(chosen[name], 2) for name in ("energy_j", "electrical_energy_j", "hip_ratio", "knee_ratio")]
 
 
 def provenance_tables(payload: Payload) -> str:

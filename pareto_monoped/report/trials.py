@@ -37,7 +37,11 @@ def thinned(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> pd.Da
 
 
 def trial_columns(
-    trials: pd.DataFrame, gearboxes: Mapping[str, Sequence[int]], total: int, variables: Sequence[Variable]
+    trials: pd.DataFrame,
+    gearboxes: Mapping[str, Sequence[int]],
+    total: int,
+    variables: Sequence[Variable],
+    goals: Sequence[str] = (),
 ) -> Trials:
     """The trials on the page.
 
@@ -46,8 +50,9 @@ def trial_columns(
         gearboxes: number of each trial's gearbox, by joint.
         total: trials in the database.
         variables: those that the page shows.
+        goals: measures that are objectives of a study on the page.
     """
-    names = [*(variable.name for variable in variables), "height_m", "energy_j", *EVERY_TRIAL]
+    names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(trials[name]) for name in names}
     columns |= {f"{joint}_gearbox": numbers for joint, numbers in gearboxes.items()}
     return Trials(

@@ -65,15 +65,17 @@ _NOMINAL = PAPER_CASES["nominal"]
 class WeightedSettings:
     """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run per weight, one after the other.
 
+    For other objectives than the paper's, ``weighted_cost`` says what the cost is.
+
     Attributes:
-        height_weights: lambda1 of each run, with lambda2 = 1 - lambda1.
+        height_weights: weight of the first objective in each run (lambda1); the other's is 1 - lambda1.
         population: designs per iteration (paper: N = 8).
         sigma: first step size, in variables scaled to their bounds (paper: 0.1).
         iterations: greatest number of iterations per run (paper: M = 200).
         start: where each run starts, by variable name. Other variables start at the paper's nominal design, which is
             its start vector [0.4, 0.4, 6, 6, 50, 2.5, 10].
         height_scale_j: Kh. The paper chooses it "to ensure that the order of both terms is similar". The default makes
-            both terms equal at the published nominal design: E exp(h) = 31.44 J exp(0.887).
+            both terms equal at the published nominal design: E exp(h) = 31.44 J exp(0.887). For the paper's objectives.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -101,3 +103,8 @@ ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
     "weighted_cmaes": WeightedSettings,
 }
 """Name of an algorithm in a study file -> its settings."""
+
+
+def default_algorithm(objectives: int) -> AlgorithmSettings:
+    """The search of a study that names none, by its number of objectives."""
+    return EvolutionSettings(name="nsga2" if objectives == 2 else "sms_emoa")

@@ -11,7 +11,7 @@ from pareto_monoped.study.protocol import Algorithm, Space
 def make_algorithm(study: Study) -> Algorithm:
     """The search algorithm that the study's settings name, before its first ``ask``."""
     free = np.array([name in study.free for name in NAMES])
-    space = Space(names=study.free, lower=study.lower[free], upper=study.upper[free])
+    space = Space(names=study.free, lower=study.lower[free], upper=study.upper[free], objectives=study.objectives)
     match study.algorithm:
         case EvolutionSettings() as settings:
             from pareto_monoped.study.evolution import Evolution
@@ -26,7 +26,7 @@ def make_algorithm(study: Study) -> Algorithm:
 
             nominal = PAPER_CASES["nominal"].design.as_dict()
             start = np.array([settings.start.get(name, nominal[name]) for name in space.names])
-            return WeightedSearch(space, settings, start, study.seed)
+            return WeightedSearch(space, settings, start, study.seed, study.reference_point)
         case RandomSettings() as settings:
             from pareto_monoped.study.random_search import RandomSearch
 

@@ -1,12 +1,12 @@
 """The columns of a trial: name, storage, what it is, and where its values come from. Storage and reader read this."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
 from pareto_monoped.measures import MEASURES
-from pareto_monoped.study.definition import Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 
 if TYPE_CHECKING:
     from pareto_monoped.study.generation import Generation
@@ -101,7 +101,7 @@ _JUDGEMENT = (
         name="height_weight",
         sql="REAL",
         dtype="float64",
-        meaning="lambda1 of a weighted search; missing for other searches",
+        meaning="weight of the first objective in a weighted search; missing for other searches",
         values=lambda generation: [generation.height_weight] * len(generation.designs),
     ),
 )
@@ -111,10 +111,7 @@ _MEASURES = tuple(_measure(measure.name, measure.meaning) for measure in MEASURE
 COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, *_MEASURES)
 """All columns of a trial, in the order of the database."""
 
-OBJECTIVES: tuple[str, ...] = tuple(field.name for field in fields(Objectives))
-"""Columns of the objectives: the height first."""
-
-REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *OBJECTIVES)
+REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *HEIGHT_AND_ENERGY.names)
 """Columns that every study has, in the order of the data frame; the others follow as the database has them."""
 
 LATER: tuple[Column, ...] = tuple(column for column in (*_VARIABLES, *_MEASURES) if column.name not in REQUIRED)

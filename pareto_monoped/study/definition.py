@@ -1,6 +1,6 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -10,14 +10,19 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.design import BASE_START_HEIGHT_M, DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
+from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration import rules_for
 from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.study.algorithm_settings import ALGORITHMS, AlgorithmSettings, EvolutionSettings, WeightedSettings
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.study.algorithm_settings import (
+    ALGORITHMS,
+    AlgorithmSettings,
+    WeightedSettings,
+    default_algorithm,
+)
+from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
 
-_FIRST_LIMITS = ("min_height_m", "max_energy_j", "max_mass_kg", "min_foot_clearance_m")
-"""Limits that every stored study names, also where they are off."""
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
 
@@ -27,41 +32,6 @@ class Bounds:
 
     lower: float
     upper: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Constraints:
-    """Limits that a feasible design keeps; None switches a limit off.
-
-    ``min_height_m`` keeps robots that only stand, and therefore spend no energy, off the front. 0.55 m is a jump of
-    5 cm.
-    """
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    min_height_m: Annotated[float, Field(ge=BASE_START_HEIGHT_M, le=10.0)] = 0.55
-    max_energy_j: Positive | None = None
-    max_mass_kg: Positive | None = None
-    min_foot_clearance_m: Annotated[float, Field(gt=0.0, le=10.0)] | None = None
-    max_electrical_energy_j: Positive | None = None
-    max_peak_gear_torque_hip_n_m: Positive | None = None
-    max_peak_gear_torque_knee_n_m: Positive | None = None
-    max_peak_chain_tension_n: Positive | None = None
-    max_peak_stop_torque_n_m: Positive | None = None
-    max_stop_energy_j: Positive | None = None
-    max_peak_foot_force_n: Positive | None = None
-    max_drift_m: Positive | None = None
-    min_sustained_jumps_per_minute: Positive | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Objectives:
-    """Both objectives and their directions. They cannot be changed; the table in a study file documents them."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    height_m: Literal["maximise"] = "maximise"
-    energy_j: Literal["minimise"] = "minimise"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,17 +52,8 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Reference:
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    # The default of min_height_m, and more energy than any design with the VT8020 spends.
-    height_m: Annotated[float, Field(ge=0.0, le=10.0)] = 0.55
-    energy_j: Positive = 100.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class _File:
-    """Keys of a study file; ``variables`` and ``algorithm`` are checked separately."""
+    """Keys of a study file; its tables but ``stop``, and the objectives, are checked separately."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -105,9 +66,9 @@ class _File:
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
     variables: dict[str, Any] = field(default_factory=dict)
-    objectives: Objectives = field(default_factory=Objectives)
-    constraints: Constraints = field(default_factory=Constraints)
-    reference_point: _Reference = field(default_factory=_Reference)
+    objectives: Any = None
+    constraints: dict[str, Any] = field(default_factory=dict)
+    reference_point: dict[str, Any] = field(default_factory=dict)
     stop: Stop = field(default_factory=Stop)
     audit: bool = True
     algorithm: dict[str, Any] = field(default_factory=dict)
@@ -159,7 +120,8 @@ class Study:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
         Optional variables at their defaults, limits that are off and came later, and the rules ``paper`` are left out,
-        so that studies stored before there were any keep their hash.
+        and the paper's objectives stand as 0.1.0 stored them, so that studies stored before there were others keep
+        their hash.
         """
         plain = asdict(self)
         if self.rules == "paper":
@@ -169,18 +131,22 @@ class Study:
             for name, v in zip(NAMES, self._ordered(), strict=True)
             if v != DEFAULTS.get(name)
         }
-        limits = plain["constraints"]
-        plain["constraints"] = {k: v for k, v in limits.items() if v is not None or k in _FIRST_LIMITS}
+        plain["objectives"] = stored_objectives(self.objectives)
+        plain["constraints"] = self.constraints.as_dict()
+        plain["reference_point"] = self.reference_point.as_dict()
         return plain
 
 
-def load_study(path: Path, *, evaluations: int | None = None, seed: int | None = None) -> Study:
+def load_study(
+    path: Path, *, evaluations: int | None = None, seed: int | None = None, objectives: Sequence[str] | None = None
+) -> Study:
     """The study in a TOML file.
 
     Args:
         path: the file.
         evaluations: budget to use instead of the one in the file.
         seed: seed to use instead of the one in the file.
+        objectives: measures to use instead of those in the file; what its reference point says of others is left out.
 
     Raises:
         StudyError: an unknown key, a wrong type, impossible bounds, or no readable TOML.
@@ -196,6 +162,10 @@ def load_study(path: Path, *, evaluations: int | None = None, seed: int | None =
     if seed is not None:
         values["seed"] = seed
     values.setdefault("rules", rules_for(str(values.get("calibration"))))
+    if objectives is not None:
+        values["objectives"] = list(objectives)
+        if isinstance(corner := values.get("reference_point"), dict):
+            values["reference_point"] = {name: value for name, value in corner.items() if name in objectives}
     return study_from_dict(values, source=f"study file {str(path)!r}")
 
 
@@ -211,6 +181,8 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     """
     file = checked(_File, values, source=source, error=StudyError)
     rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
+    objectives = objectives_of(file.objectives, source=source)
+    corner = corner_of(file.reference_point, objectives, source=source)
     return Study(
         name=file.name,
         description=file.description,
@@ -221,18 +193,18 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         evaluations=file.evaluations,
         seed=file.seed,
         variables=_variables(file, source),
-        objectives=file.objectives,
-        constraints=file.constraints,
-        reference_point=ReferencePoint(height_m=file.reference_point.height_m, energy_j=file.reference_point.energy_j),
+        objectives=objectives,
+        constraints=constraints_of(file.constraints, source=source),
+        reference_point=corner,
         stop=file.stop,
         audit=file.audit,
-        algorithm=_algorithm(file.algorithm, source),
+        algorithm=_algorithm(file.algorithm, corner, source),
     )
 
 
-def _algorithm(table: Mapping[str, Any], source: str) -> AlgorithmSettings:
+def _algorithm(table: Mapping[str, Any], corner: ReferencePoint, source: str) -> AlgorithmSettings:
     if not table:
-        return EvolutionSettings(name="nsga2")
+        return default_algorithm(len(corner.values))
     name = table.get("name")
     kind = ALGORITHMS.get(name) if isinstance(name, str) else None
     if kind is None:
@@ -245,7 +217,22 @@ def _algorithm(table: Mapping[str, Any], source: str) -> AlgorithmSettings:
                 allowed = f"one of {', '.join(NAMES)}"
                 raise StudyError(f"{source}: {complaint('variable in algorithm.start', key, allowed, 'correct it')}")
             _number(f"{source}: algorithm.start.{key}", key, value)
+        _check_weighted(corner, source)
     return settings
+
+
+def _check_weighted(corner: ReferencePoint, source: str) -> None:
+    """Refuse what the weighted search cannot weigh: three objectives, or a scale of zero."""
+    if len(corner.values) != 2:
+        raise StudyError(
+            f"{source}: objectives: weighted_cmaes weighs two, {len(corner.values)} are named; drop one, or choose "
+            "another algorithm"
+        )
+    for name, value in corner.as_dict().items():
+        if value == 0.0 and corner.objectives != HEIGHT_AND_ENERGY:
+            raise StudyError(
+                f"{source}: reference_point.{name} = 0: weighted_cmaes divides {name} by it; give a number above 0"
+            )
 
 
 def _variables(file: _File, source: str) -> dict[str, Bounds | float]:

@@ -25,7 +25,9 @@ class Evolution:
 
     def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
         self._algorithm = _algorithm(settings, seed)
-        problem = Problem(n_var=len(space.names), n_obj=2, n_ieq_constr=1, xl=space.lower, xu=space.upper)
+        problem = Problem(
+            n_var=len(space.names), n_obj=len(space.objectives.names), n_ieq_constr=1, xl=space.lower, xu=space.upper
+        )
         self._algorithm.setup(problem, termination=NoTermination())
         self._asked: Population = Population.empty()
 
@@ -65,7 +67,7 @@ class Evolution:
             return
         arrays = {key: np.array(state[key], dtype=np.float64) for key in ("X", "F", "G")}
         n = len(state["rank"])
-        for key, width in (("X", algorithm.problem.n_var), ("F", 2), ("G", 1)):
+        for key, width in (("X", algorithm.problem.n_var), ("F", algorithm.problem.n_obj), ("G", 1)):
             if arrays[key].shape != (n, width):
                 raise ValueError(f"{key} of the population has the shape {arrays[key].shape}, must be {(n, width)}")
         population = Population.new(**arrays)

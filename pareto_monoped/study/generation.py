@@ -21,7 +21,7 @@ class Generation:
         first_trial: number of the first of these trials.
         designs: shape (n, number of variables).
         evaluations, judgement: of these designs.
-        height_weight: lambda1 of a weighted search; None for other searches.
+        height_weight: weight of the first objective in a weighted search; None for other searches.
         state: the algorithm's state once it knows the scores of the whole generation; None while some are missing.
         hypervolume: of all trials up to here.
         seconds: running time up to here, over all sessions.

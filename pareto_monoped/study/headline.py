@@ -38,10 +38,11 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
         height_m=float(evaluations.height_m[0]),
         energy_j=float(evaluations.energy_j[0]),
     )
-    front = data.front()
+    front, objectives = data.front(), data.study.objectives
     chosen = []
     with contextlib.suppress(SelectionError):
-        chosen.append(("front: at least that height", pick(front, MinHeight(height_m=simulated.height_m)).trial))
+        wanted = MinHeight(height_m=simulated.height_m)
+        chosen.append(("front: at least that height", pick(front, wanted, objectives).trial))
     chosen.append(("front: knee", knee_trial))
     jumps = front.set_index("trial")[["height_m", "energy_j"]]
     return (

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import optuna
 
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.algorithm_settings import OptunaSettings
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 
@@ -30,7 +31,7 @@ class OptunaSampler:
         }
         self._asked: list[optuna.trial.Trial] = []
         with _quiet():
-            self._study = optuna.create_study(directions=["maximize", "minimize"], sampler=self._sampler())
+            self._study = optuna.create_study(directions=_directions(space.objectives), sampler=self._sampler())
 
     def ask(self) -> Proposal:
         """The sampler's next designs."""
@@ -42,13 +43,10 @@ class OptunaSampler:
 
     def tell(self, scores: Scores) -> None:
         """Complete the trials of the last ``ask``; the violation becomes Optuna's constraint."""
-        objectives = scores.minimised()
         with _quiet():
-            for trial, (minus_height, energy), violation in zip(
-                self._asked, objectives.tolist(), scores.violation.tolist(), strict=True
-            ):
+            for trial, values, violation in zip(self._asked, _values(scores), scores.violation.tolist(), strict=True):
                 trial.set_constraint("violation", violation)
-                self._study.tell(trial, [-minus_height, energy])
+                self._study.tell(trial, values)
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
@@ -69,13 +67,11 @@ class OptunaSampler:
                     sampler.get_parent_population(self._study, generation)
 
     def _add(self, generation: int, values: Floats, scores: Scores) -> None:
-        for row, (minus_height, energy), violation in zip(
-            values.tolist(), scores.minimised().tolist(), scores.violation.tolist(), strict=True
-        ):
+        for row, found, violation in zip(values.tolist(), _values(scores), scores.violation.tolist(), strict=True):
             trial = optuna.trial.create_trial(
                 params=dict(zip(self._distributions, row, strict=True)),
                 distributions=self._distributions,
-                values=[-minus_height, energy],
+                values=found,
                 constraints={"violation": violation},
                 # NSGAIISampler reads the generation of a trial here; other samplers ignore it.
                 system_attrs={"NSGAIISampler:generation": generation},
@@ -89,6 +85,17 @@ class OptunaSampler:
         # All designs of a batch are asked for before any score is known. The constant liar counts pending trials as
         # bad, which keeps the designs of a batch apart.
         return optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
+
+
+def _directions(objectives: Objectives) -> list[optuna.study.StudyDirection]:
+    maximize, minimize = optuna.study.StudyDirection.MAXIMIZE, optuna.study.StudyDirection.MINIMIZE
+    return [maximize if sign < 0.0 else minimize for sign in objectives.signs]
+
+
+def _values(scores: Scores) -> list[list[float]]:
+    """The objectives with their own signs, as lists of n times m; zeros for a failed jump."""
+    values: list[list[float]] = scores.objectives.minimised(scores.minimised()).tolist()
+    return values
 
 
 @contextmanager

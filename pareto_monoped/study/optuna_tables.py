@@ -10,6 +10,7 @@ from typing import Any
 from pareto_monoped.design import NAMES
 from pareto_monoped.study.definition import Bounds, Study
 from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.scoring import values_of
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
 """Revisions of Optuna's schema that are written directly. For any other, Optuna writes its tables itself."""
@@ -30,10 +31,14 @@ def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> No
     try:
         storage = _optuna_storage(path)
         study_id = storage.create_new_study(
-            [optuna.study.StudyDirection.MAXIMIZE, optuna.study.StudyDirection.MINIMIZE], study.name
+            [
+                optuna.study.StudyDirection.MAXIMIZE if sign < 0.0 else optuna.study.StudyDirection.MINIMIZE
+                for sign in study.objectives.signs
+            ],
+            study.name,
         )
         # This is what optuna.study.Study.set_metric_names writes; calling it would warn that it is experimental.
-        storage.set_study_system_attr(study_id, "study:metric_names", ["height_m", "energy_j"])
+        storage.set_study_system_attr(study_id, "study:metric_names", list(study.objectives.names))
         for key, value in attributes.items():
             storage.set_study_user_attr(study_id, key, value)
         storage.remove_session()
@@ -57,6 +62,7 @@ class OptunaTables:
     def __init__(self, path: Path, study_id: int, study: Study) -> None:
         self._path = path
         self._study_id = study_id
+        self._objectives = study.objectives
         self._free = [i for i, name in enumerate(NAMES) if name in study.free]
         self._distributions = {
             name: json.dumps(
@@ -97,10 +103,10 @@ class OptunaTables:
                 for k in self._free
             ],
         )
-        objectives = zip(ids, failed, evaluations.height_m.tolist(), evaluations.energy_j.tolist(), strict=True)
+        objectives = zip(ids, failed, values_of(evaluations, self._objectives).tolist(), strict=True)
         executemany(
             "INSERT INTO trial_values (trial_id, objective, value, value_type) VALUES (?, ?, ?, 'FINITE')",
-            [(i, k, v) for i, bad, *values in objectives if not bad for k, v in enumerate(values)],
+            [(i, k, v) for i, bad, values in objectives if not bad for k, v in enumerate(values)],
         )
         # Both Optuna and its dashboard read the constraints as one list under this key.
         executemany(
@@ -139,9 +145,7 @@ class OptunaTables:
                             name: optuna.distributions.json_to_distribution(text)
                             for name, text in self._distributions.items()
                         },
-                        values=None
-                        if bad
-                        else [float(generation.evaluations.height_m[k]), float(generation.evaluations.energy_j[k])],
+                        values=None if bad else values_of(generation.evaluations, self._objectives)[k].tolist(),
                         system_attrs={"constraints": generation.judgement.constraints[k].tolist()},
                         user_attrs=_attributes(generation, k),
                     ),

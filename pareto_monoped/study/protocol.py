@@ -10,16 +10,24 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
-    """The free variables' names and bounds, each of length d."""
+    """What is searched, and for what.
+
+    Attributes:
+        names, lower, upper: names and bounds of the free variables, each of length d.
+        objectives: two or three measures.
+    """
 
     names: tuple[str, ...]
     lower: Floats
     upper: Floats
+    objectives: Objectives = HEIGHT_AND_ENERGY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,7 +36,8 @@ class Proposal:
 
     Attributes:
         values: values of the free variables, shape (n, d).
-        height_weight: lambda1 of a weighted search, stored with each of these trials; None for other searches.
+        height_weight: weight of the first objective in a weighted search (the paper's lambda1), stored with each of
+            these trials; None for other searches.
     """
 
     values: Floats
@@ -40,17 +49,22 @@ class Scores:
     """What a search algorithm may know about n evaluated designs.
 
     Attributes:
-        height_m, energy_j: the objectives, shape (n,); NaN where the jump failed.
+        objectives: which measures the search is for.
+        values: of these m objectives, shape (n, m); NaN where the jump failed.
         violation: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed.
     """
 
-    height_m: Floats
-    energy_j: Floats
+    objectives: Objectives
+    values: Floats
     violation: Floats
 
     def minimised(self) -> Floats:
-        """Both objectives as minimisation, shape (n, 2). Failed jumps get zeros; their violation tells them apart."""
-        return np.nan_to_num(np.column_stack((-self.height_m, self.energy_j)), nan=0.0)
+        """All objectives as minimisation, shape (n, m). Failed jumps get zeros; their violation tells them apart."""
+        return np.nan_to_num(self.objectives.minimised(self.values), nan=0.0)
+
+    def of(self, rows: slice) -> "Scores":
+        """The scores of some of the designs."""
+        return Scores(objectives=self.objectives, values=self.values[rows], violation=self.violation[rows])
 
 
 class Algorithm(Protocol):

@@ -14,6 +14,7 @@ from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
@@ -109,18 +110,20 @@ class StudyData:
         """Corner from which the study's hypervolume is measured."""
         return self.study.reference_point
 
-    def front(self, include_ill_conditioned: bool = False) -> pd.DataFrame:
-        """The non-dominated feasible trials, from the lowest jump to the highest.
+    def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
+        """The non-dominated feasible trials, by the first objective: from the lowest jump to the highest.
 
         Args:
+            objectives: other measures than the study's own, under which trials dominate each other.
             include_ill_conditioned: whether trials that failed their audit may be on the front. Without them, trials
                 that they dominate may enter.
         """
         eligible = (self.trials["state"] == "feasible").to_numpy()
         if not include_ill_conditioned:
             eligible = eligible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()
-        mask = front_mask(self.trials["height_m"].to_numpy(), self.trials["energy_j"].to_numpy(), eligible)
-        return self.trials[mask].sort_values("height_m", ignore_index=True)
+        chosen = objectives or self.study.objectives
+        mask = front_mask(self.trials[list(chosen.names)].to_numpy(dtype=np.float64), chosen, eligible)
+        return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
 def read_study(db: Path) -> StudyData:

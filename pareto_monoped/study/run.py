@@ -31,7 +31,8 @@ class RunSummary:
         evaluations, new_evaluations: number of trials in all, and of this session.
         front_size: number of designs on the front.
         ill_conditioned: number of designs that failed their audit.
-        hypervolume: of the front, in m J.
+        hypervolume: of the front.
+        hypervolume_unit: product of the objectives' units, such as "m J".
         seconds: duration of this session.
         stop_reason: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or
             ``interrupted``.
@@ -43,6 +44,7 @@ class RunSummary:
     front_size: int
     ill_conditioned: int
     hypervolume: float
+    hypervolume_unit: str
     seconds: float
     stop_reason: str
 
@@ -202,14 +204,15 @@ def _go_on(
 
 
 def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> RunSummary:
-    front = after.front()
+    front, objectives = after.front(), after.study.objectives
     return RunSummary(
         db=db,
         evaluations=len(after.trials),
         new_evaluations=len(after.trials) - len(before.trials),
         front_size=len(front),
         ill_conditioned=len(after.ill_conditioned),
-        hypervolume=hypervolume(front[["height_m", "energy_j"]].to_numpy(), after.reference_point),
+        hypervolume=hypervolume(front[list(objectives.names)].to_numpy(), after.reference_point),
+        hypervolume_unit=objectives.volume_unit,
         seconds=seconds,
         stop_reason=after.meta.stop_reason or "",
     )

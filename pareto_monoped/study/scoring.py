@@ -1,55 +1,17 @@
 """Judge evaluations by a study's constraints: feasible, infeasible or failed, with a graded violation and a reason."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.jump.evaluate import Evaluations
-from pareto_monoped.study.definition import Constraints
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.study.goals import Constraints
 from pareto_monoped.study.protocol import Scores
 
 FAILED_VIOLATION = 100.0
 """Violation of a failed jump in each constraint: so large that it ranks behind jumps that only miss a limit."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Constraint:
-    """One constraint of a study.
-
-    Attributes:
-        key: field of ``definition.Constraints`` with the limit.
-        measure: what is limited.
-        violated: on which side of the limit a value violates it.
-    """
-
-    key: str
-    measure: str
-    violated: Literal["above", "below"]
-
-    def shares(self, values: NDArray[np.float64], limit: float) -> NDArray[np.float64]:
-        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0."""
-        sign = 1.0 if self.violated == "above" else -1.0
-        return sign * (values - limit) / limit
-
-
-CONSTRAINTS: tuple[Constraint, ...] = (
-    Constraint(key="min_height_m", measure="height_m", violated="below"),
-    Constraint(key="max_energy_j", measure="energy_j", violated="above"),
-    Constraint(key="max_mass_kg", measure="mass_kg", violated="above"),
-    Constraint(key="min_foot_clearance_m", measure="foot_clearance_m", violated="below"),
-    Constraint(key="max_electrical_energy_j", measure="electrical_energy_j", violated="above"),
-    Constraint(key="max_peak_gear_torque_hip_n_m", measure="peak_gear_torque_hip_n_m", violated="above"),
-    Constraint(key="max_peak_gear_torque_knee_n_m", measure="peak_gear_torque_knee_n_m", violated="above"),
-    Constraint(key="max_peak_chain_tension_n", measure="peak_chain_tension_n", violated="above"),
-    Constraint(key="max_peak_stop_torque_n_m", measure="peak_stop_torque_n_m", violated="above"),
-    Constraint(key="max_stop_energy_j", measure="stop_energy_j", violated="above"),
-    Constraint(key="max_peak_foot_force_n", measure="peak_foot_force_n", violated="above"),
-    Constraint(key="max_drift_m", measure="drift_m", violated="above"),
-    Constraint(key="min_sustained_jumps_per_minute", measure="sustained_jumps_per_minute", violated="below"),
-)
-"""All constraints that a study may set, in the order in which they are stored and named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,32 +32,37 @@ class Judgement:
     violation: NDArray[np.float64]
 
 
-def judge(evaluations: Evaluations, constraints: Constraints) -> Judgement:
+def judge(evaluations: Evaluations, constraints: Constraints, objectives: Objectives = HEIGHT_AND_ENERGY) -> Judgement:
     """Judge evaluations by a study's constraints.
 
-    The violation is graded: (limit - value) / limit for a lower limit, (value - limit) / limit for an upper one. A
-    search can thus see which of two infeasible designs is closer to being feasible.
+    A jump failed if its status says so, or if its height, its energy or an objective is not a finite number. The
+    violation is graded: (limit - value) / limit for a lower limit, (value - limit) / limit for an upper one. A search
+    can thus see which of two infeasible designs is closer to being feasible. A measure without a value misses its
+    limit as a failed jump does.
     """
-    n = len(evaluations.height_m)
-    failed = (evaluations.status != "ok") | ~np.isfinite(evaluations.height_m) | ~np.isfinite(evaluations.energy_j)
+    failed = evaluations.status != "ok"
+    for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *objectives.names)):
+        failed = failed | ~np.isfinite(getattr(evaluations, name))
     reasons = list(evaluations.reason)
     columns = []
-    for constraint in CONSTRAINTS:
-        limit = getattr(constraints, constraint.key)
-        if limit is None:
-            continue
-        values = np.asarray(getattr(evaluations, constraint.measure), dtype=np.float64)
-        shares = np.where(failed, FAILED_VIOLATION, constraint.shares(values, limit))
+    for limit in constraints.limits:
+        values = np.asarray(getattr(evaluations, limit.measure), dtype=np.float64)
+        shares = np.where(failed | np.isnan(values), FAILED_VIOLATION, limit.shares(values))
         columns.append(shares)
         for i in np.flatnonzero(~failed & (shares > 0.0)):
             also = f"{reasons[i]}; " if reasons[i] else ""
-            reasons[i] = f"{also}{constraint.measure} = {values[i]:.4g} is {constraint.violated} the limit of {limit:g}"
-    table = np.column_stack(columns) if columns else np.zeros((n, 0))
+            reasons[i] = f"{also}{limit.measure} = {values[i]:.4g} is {limit.violated} the limit of {limit.value:g}"
+    table = np.column_stack(columns) if columns else np.zeros((len(failed), 0))
     violation = np.maximum(table, 0.0).sum(axis=1)
     state = np.where(failed, "failed", np.where(violation > 0.0, "infeasible", "feasible"))
     return Judgement(state=state, reason=tuple(reasons), constraints=table, violation=violation)
 
 
-def scores(evaluations: Evaluations, judgement: Judgement) -> Scores:
+def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.float64]:
+    """The objectives' values in stored units, shape (n, m)."""
+    return np.column_stack([getattr(evaluations, name) for name in objectives.names])
+
+
+def scores(evaluations: Evaluations, judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:
     """What a search algorithm may know about these evaluations."""
-    return Scores(height_m=evaluations.height_m, energy_j=evaluations.energy_j, violation=judgement.violation)
+    return Scores(objectives=objectives, values=values_of(evaluations, objectives), violation=judgement.violation)

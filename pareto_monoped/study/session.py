@@ -10,8 +10,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES
+from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.pareto.at_height import AtHeight, best_at_height
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
@@ -20,7 +21,7 @@ from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.protocol import Algorithm, Scores
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.study.scoring import judge, scores, values_of
 from pareto_monoped.study.simulator import Evaluate
 from pareto_monoped.study.store import Store
 
@@ -33,8 +34,8 @@ class Progress:
         evaluations, budget: number of designs evaluated so far, and to be evaluated in all.
         per_second: designs evaluated per second in this session.
         seconds_left: time until the budget is used up, at this rate.
-        hypervolume: of the front so far, in m J.
-        least_energy_j: least energy of the designs that reach ``HEADLINE_HEIGHT_M``; None while there are none.
+        hypervolume: of the front so far, in the product of the objectives' units.
+        at_height: what the designs that reach ``HEADLINE_HEIGHT_M`` cost; None for objectives without a height.
     """
 
     evaluations: int
@@ -42,7 +43,7 @@ class Progress:
     per_second: float
     seconds_left: float
     hypervolume: float
-    least_energy_j: float | None
+    at_height: AtHeight | None
 
 
 class Session:
@@ -71,8 +72,9 @@ class Session:
             zip(data.history["evaluations"].tolist(), data.history["hypervolume"].tolist(), strict=True)
         )
         feasible = (data.trials["state"] == "feasible").to_numpy()
-        self._front = np.zeros((0, 2))
-        self._add_to_front(data.trials.loc[feasible, ["height_m", "energy_j"]].to_numpy())
+        names = list(study.objectives.names)
+        self._front = np.zeros((0, len(names)))
+        self._add_to_front(data.trials.loc[feasible, names].to_numpy())
         self._algorithm: Algorithm = make_algorithm(study)
         try:
             self._algorithm.restore(data.checkpoint.state, _history(data, self._free))
@@ -137,11 +139,12 @@ class Session:
         missing = designs[there : there + self._budget - self.total]
         started = datetime.now(UTC)
         evaluations = self._evaluate(missing)
-        judgement = judge(evaluations, self._study.constraints)
+        objectives = self._study.objectives
+        judgement = judge(evaluations, self._study.constraints, objectives)
         self._designs = np.vstack((self._designs, missing))
-        self._scores = _joined(self._scores, scores(evaluations, judgement))
+        self._scores = _joined(self._scores, scores(evaluations, judgement, objectives))
         feasible = judgement.state == "feasible"
-        self._add_to_front(np.column_stack((evaluations.height_m, evaluations.energy_j))[feasible])
+        self._add_to_front(values_of(evaluations, objectives)[feasible])
         number, first = self._generation, self.total
         self.total += len(missing)
         state = None
@@ -168,18 +171,17 @@ class Session:
 
     def _add_to_front(self, points: NDArray[np.float64]) -> None:
         points = np.vstack((self._front, points))
-        self._front = points[front_mask(points[:, 0], points[:, 1], np.ones(len(points), dtype=bool))]
+        self._front = points[front_mask(points, self._study.objectives)]
 
     def _present(self) -> Progress:
         rate = (self.total - self._before) / max(self.elapsed, 1e-9)
-        high = self._front[self._front[:, 0] >= HEADLINE_HEIGHT_M, 1]
         return Progress(
             evaluations=self.total,
             budget=self._budget,
             per_second=rate,
             seconds_left=(self._budget - self.total) / rate,
             hypervolume=self._volumes[-1][1],
-            least_energy_j=float(high.min()) if len(high) else None,
+            at_height=best_at_height(self._front, self._study.objectives),
         )
 
     def _write(self, generation: Generation, present: Progress) -> Progress:
@@ -194,8 +196,8 @@ class Session:
 def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Scores]:
     rows = data.trials.iloc[first:end]
     return rows[list(NAMES)].to_numpy(dtype=np.float64), Scores(
-        height_m=rows["height_m"].to_numpy(),
-        energy_j=rows["energy_j"].to_numpy(),
+        objectives=data.study.objectives,
+        values=rows[list(data.study.objectives.names)].to_numpy(dtype=np.float64),
         violation=rows["violation"].to_numpy(),
     )
 
@@ -213,9 +215,9 @@ def _history(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray
 def _joined(before: Scores, new: Scores | None) -> Scores:
     """Both, one after the other; empty scores if ``new`` is None."""
     if new is None:
-        return Scores(height_m=before.height_m[:0], energy_j=before.energy_j[:0], violation=before.violation[:0])
+        return before.of(slice(0))
     return Scores(
-        height_m=np.concatenate((before.height_m, new.height_m)),
-        energy_j=np.concatenate((before.energy_j, new.energy_j)),
+        objectives=before.objectives,
+        values=np.concatenate((before.values, new.values)),
         violation=np.concatenate((before.violation, new.violation)),
     )

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.design import HEADLINE_HEIGHT_M
+from pareto_monoped.pareto.at_height import best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.lock import holder
 from pareto_monoped.study.reader import read_study
@@ -16,10 +17,12 @@ def status(db: Path) -> dict[str, Any]:
         DatabaseError: not a study, damaged, or of a newer version.
     """
     data = read_study(db)
-    front = data.front()
+    front, objectives = data.front(), data.study.objectives
+    values = front[list(objectives.names)].to_numpy()
     states = data.trials["state"]
     done, seconds = len(data.trials), data.wall_time_s
     high = front[front["height_m"] >= HEADLINE_HEIGHT_M]
+    best = best_at_height(values, objectives)
     running = holder(db)
     return {
         "name": data.study.name,
@@ -41,9 +44,12 @@ def status(db: Path) -> dict[str, Any]:
         "evaluations_per_second": done / seconds if seconds > 0.0 else None,
         "front": len(front),
         "ill_conditioned": len(data.ill_conditioned),
-        "hypervolume": hypervolume(front[["height_m", "energy_j"]].to_numpy(), data.reference_point),
-        "reference_point": {"height_m": data.reference_point.height_m, "energy_j": data.reference_point.energy_j},
-        "least_energy_at_0_8_m_j": float(high["energy_j"].iloc[0]) if len(high) else None,
+        "hypervolume": hypervolume(values, data.reference_point),
+        "hypervolume_unit": objectives.volume_unit,
+        "objectives": objectives.directions,
+        "reference_point": data.reference_point.as_dict(),
+        "least_energy_at_0_8_m_j": float(high["energy_j"].min()) if len(high) else None,
+        "best_at_0_8_m": None if best is None else {best.measure.name: best.value},
         "hash": data.meta.hash,
         "versions": data.meta.versions,
         "created": data.meta.created,

@@ -1,4 +1,4 @@
-"""The paper's search: CMA-ES on a weighted cost of height and energy, one run per weight."""
+"""The paper's search: CMA-ES on a weighted cost of two objectives, one run per weight."""
 
 from collections.abc import Iterable
 from itertools import islice
@@ -7,23 +7,37 @@ from typing import Any
 import cma
 import numpy as np
 
+from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
+from pareto_monoped.study.weighted_cost import weighted_cost
 
 
 class WeightedSearch:
-    """CMA-ES (Hansen's ``cma``) on lambda1 Kh exp(-h) + lambda2 E, with lambda2 = 1 - lambda1.
+    """CMA-ES (Hansen's ``cma``) on ``weighted_cost``.
 
-    Cost: paper, section III-B, and the commented-out passage on C_h in its source. The runs follow one another. A run
+    The runs follow one another. A run
     ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run is
     replayed from its history. This is exact because each run has its own random generator, and it takes a fraction of
     a second.
     """
 
-    def __init__(self, space: Space, settings: WeightedSettings, start: Floats, seed: int) -> None:
+    def __init__(
+        self, space: Space, settings: WeightedSettings, start: Floats, seed: int, corner: ReferencePoint
+    ) -> None:
+        """Begin with the first weight.
+
+        Args:
+            space: the free variables and two objectives.
+            settings: weights, population and the like.
+            start: where each run starts, in the units of the variables, shape (d,).
+            seed: of the study.
+            corner: the study's reference point, which scales other objectives than the paper's.
+        """
         self._space = space
         self._settings = settings
         self._seed = seed
+        self._corner = corner
         extent = space.upper - space.lower
         self._start = np.clip((start - space.lower) / extent, 0.0, 1.0)
         self._run = 0
@@ -60,7 +74,7 @@ class WeightedSearch:
         ranks.
         """
         weight, scale = self._settings.height_weights[self._run], self._settings.height_scale_j
-        feasible = weight * scale * np.exp(-scores.height_m) + (1.0 - weight) * scores.energy_j
+        feasible = weighted_cost(scores.values, weight, self._corner, scale)
         return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)
 
     def state(self) -> dict[str, Any]:

@@ -115,7 +115,9 @@ def test_all_keeps_designs_that_failed_their_audit(db, capsys, monkeypatch):
     monkeypatch.setattr(
         StudyData,
         "front",
-        lambda data, include_ill_conditioned=False: asked.append(include_ill_conditioned) or front(data),
+        lambda data, include_ill_conditioned=False, objectives=None: (
+            asked.append(include_ill_conditioned) or front(data, objectives=objectives)
+        ),
     )
     assert cli(["front", db]) == 0
     assert cli(["front", db, "--all"]) == 0

@@ -8,6 +8,8 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.studies import _described
+from pareto_monoped.measures import measure
+from pareto_monoped.pareto.at_height import AtHeight
 from pareto_monoped.study.run import RunSummary
 from pareto_monoped.study.session import Progress
 
@@ -125,7 +127,9 @@ FACTS = {
     "ill_conditioned": 1,
     "hypervolume": 12.34567,
     "reference_point": {"height_m": 0.55, "energy_j": 100.0},
-    "least_energy_at_0_8_m_j": 23.456,
+    "hypervolume_unit": "m J",
+    "objectives": {"height_m": "maximise", "energy_j": "minimise"},
+    "best_at_0_8_m": {"energy_j": 23.456},
     "hash": "0123456789abcdef0123",
     "settings": {"variables": dict.fromkeys("abcdefg"), "constraints": {"min_height_m": 0.6}},
 }
@@ -142,9 +146,9 @@ FACTS = {
         ({}, ("evaluations", "30 of 40")),
         ({}, ("feasible", "20 (7 infeasible, 3 failed)")),
         ({}, ("front", "9 designs (1 ill-conditioned left out)")),
-        ({}, ("hypervolume", "12.3457 m J above (0.55 m, 100 J)")),
+        ({}, ("hypervolume", "12.3457 m J from (0.55 m, 100 J)")),
         ({}, ("least energy at 0.8 m", "23.46 J")),
-        ({"least_energy_at_0_8_m_j": None}, ("least energy at 0.8 m", "not reached")),
+        ({"best_at_0_8_m": {"energy_j": None}}, ("least energy at 0.8 m", "not reached")),
         ({}, ("time", "12.3 s, 2 designs/s")),
         ({"evaluations_per_second": None}, ("time", "12.3 s")),
         ({}, ("hash", "0123456789abcdef")),
@@ -164,6 +168,7 @@ SUMMARY = RunSummary(
     front_size=9,
     ill_conditioned=0,
     hypervolume=12.34567,
+    hypervolume_unit="m J",
     seconds=3.21,
     stop_reason="budget",
 )
@@ -184,8 +189,10 @@ def test_an_interrupted_run_ends_with_code_130_and_says_how_to_continue(study, m
 
 
 def test_progress_gives_the_time_left_in_minutes_and_seconds():
+    unreached = AtHeight(height_m=0.8, measure=measure("energy_j"), value=None)
     progress = Progress(
-        evaluations=20, budget=40, per_second=12.6, seconds_left=125.4, hypervolume=1.234, least_energy_j=None
+        evaluations=20, budget=40, per_second=12.6, seconds_left=125.4, hypervolume=1.234, at_height=unreached
     )
     assert _described(progress) == "20/40, 13/s, 2:05 left, hypervolume 1.23, 0.8 m not reached"
-    assert _described(replace(progress, least_energy_j=9.876)).endswith("9.88 J at 0.8 m")
+    assert _described(replace(progress, at_height=replace(unreached, value=9.876))).endswith("9.88 J at 0.8 m")
+    assert _described(replace(progress, at_height=None)).endswith("hypervolume 1.23")

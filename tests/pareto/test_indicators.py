@@ -1,13 +1,18 @@
 """Indicators against areas and distances worked out by hand."""
 
+import itertools
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
+from pareto_monoped.measures import measure
+from pareto_monoped.pareto.indicators import epsilon, hypervolume, igd_plus, reference_point
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
-REFERENCE = ReferencePoint(height_m=0.5, energy_j=10.0)
+REFERENCE = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.5, "energy_j": 10.0})
 
 
 def test_hypervolume_of_one_point_is_a_rectangle():
@@ -62,3 +67,60 @@ def test_a_dominating_front_is_better_than_none_away():
 
 def test_a_single_reference_point_is_measured_in_metres_and_joules():
     assert epsilon(np.array([[0.7, 2.0]]), np.array([[0.8, 2.0]])) == pytest.approx(0.1, rel=1e-12)
+
+
+THREE = Objectives(names=("height_m", "electrical_energy_j", "mass_kg"))
+CORNER = reference_point(THREE, {"height_m": 0.5, "electrical_energy_j": 10.0, "mass_kg": 5.0})
+
+
+def volume_by_cells(designs, corner):
+    """The dominated volume, cell by cell of the grid through all coordinates: each cell is in or out."""
+    less = [(-height, energy, mass) for height, energy, mass in designs]
+    end = (-corner[0], corner[1], corner[2])
+    axes = [sorted({point[k] for point in less if point[k] < end[k]} | {end[k]}) for k in range(3)]
+    total = 0.0
+    for cell in itertools.product(*(range(len(axis) - 1) for axis in axes)):
+        low = [axes[k][cell[k]] for k in range(3)]
+        if any(all(point[k] <= low[k] for k in range(3)) for point in less):
+            total += math.prod(axes[k][cell[k] + 1] - axes[k][cell[k]] for k in range(3))
+    return total
+
+
+triples = st.lists(st.tuples(st.floats(0.3, 2.0), st.floats(0.1, 12.0), st.floats(1.0, 6.0)), max_size=7)
+
+
+@given(triples)
+def test_hypervolume_of_three_objectives_is_the_sum_of_its_cells(designs):
+    values = np.array(designs).reshape(-1, 3)
+    assert hypervolume(values, CORNER) == pytest.approx(volume_by_cells(designs, CORNER.values), rel=1e-9, abs=1e-12)
+
+
+def test_hypervolume_of_one_design_is_a_box():
+    assert hypervolume(np.array([[0.8, 4.0, 3.0]]), CORNER) == pytest.approx(0.3 * 6.0 * 2.0, rel=1e-14)
+
+
+cubes = st.lists(st.tuples(*(st.floats(0.1, 9.0),) * 3), min_size=2, max_size=6)
+
+
+@given(cubes, cubes)
+def test_epsilon_and_igd_plus_of_three_objectives_are_their_definitions(points, front):
+    less, wanted = (np.array(p) * [-1.0, 1.0, 1.0] for p in (points, front))
+    extent = np.ptp(wanted, axis=0)
+    extent[extent == 0.0] = 1.0
+    shift, distances = -np.inf, []
+    for target in wanted:
+        gaps = (less - target) / extent
+        shift = max(shift, gaps.max(axis=1).min())
+        distances.append(np.sqrt((np.maximum(gaps, 0.0) ** 2).sum(axis=1)).min())
+    assert epsilon(np.array(points), np.array(front), THREE) == pytest.approx(shift, rel=1e-9, abs=1e-9)
+    assert igd_plus(np.array(points), np.array(front), THREE) == pytest.approx(np.mean(distances), rel=1e-9, abs=1e-9)
+
+
+def test_a_corner_takes_what_is_not_given_from_the_table_of_measures():
+    corner = reference_point(THREE, {"mass_kg": 4.0})
+    assert corner.as_dict() == {
+        "height_m": measure("height_m").reference,
+        "electrical_energy_j": measure("electrical_energy_j").reference,
+        "mass_kg": 4.0,
+    }
+    assert reference_point(HEIGHT_AND_ENERGY).text() == "0.55 m, 100 J"

@@ -340,7 +340,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     reached = tab.page.evaluate(lines, "attainment")
     for line, key in zip(reached, ("best", "median", "worst"), strict=True):
         assert line["name"].startswith(key)
-        assert (line["x"], line["y"]) == (surface[key], surface["height_m"])
+        assert (line["x"], line["y"]) == (surface[key], surface["first"])
     weights = tab.page.evaluate("document.getElementById('front-chart').data.find((t) => t.name === 'weighted').text")
     assert [text.split("<br>")[0] for text in weights] == [
         f"weighted search, height weight {weight}" for weight, _ in made["studies"][2]["weighted"]

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.indicators import hypervolume, reference_point
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.comparison import _held, _surface, compare, energy_at, group_of
+from pareto_monoped.report.comparison import _held, _surface, compare, group_of, least_second
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.reader import read_study
@@ -16,10 +16,10 @@ numbers = st.floats(0.5, 2.0)
 
 
 @given(st.lists(st.tuples(numbers, st.floats(1.0, 90.0)), max_size=8), numbers)
-def test_energy_at_a_height_is_the_least_of_those_that_reach_it(points, height):
+def test_the_energy_at_a_height_is_the_least_of_those_that_reach_it(points, height):
     front = np.array(points).reshape(-1, 2)
     able = [energy for reached, energy in points if reached >= height]
-    assert energy_at(front, np.array([height]))[0] == (min(able) if able else np.inf)
+    assert least_second(front, np.array([height]))[0] == (min(able) if able else np.inf)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,8 @@ def both(data, other_seed):
 
 def test_hypervolumes_come_from_one_corner(both):
     first, second = both
-    further = replace(second.study, reference_point=replace(second.reference_point, energy_j=300.0))
+    corner = reference_point(second.study.objectives, {"energy_j": 300.0})
+    further = replace(second.study, reference_point=corner)
     comparison = compare([first, replace(second, study=further)], ["a", "b"], (0.7, 0.8))
     for row, data in zip(comparison.rows, both, strict=True):
         points = data.front()[["height_m", "energy_j"]].to_numpy()
@@ -43,7 +44,7 @@ def test_seeds_of_one_study_are_a_group_with_ordered_surfaces(both):
         assert worst is None or best <= worst
     # The best surface is the front of both runs together.
     together = np.concatenate([d.front()[["height_m", "energy_j"]].to_numpy() for d in both])
-    expected = energy_at(together, np.array(surface["height_m"]))
+    expected = least_second(together, np.array(surface["first"]))
     near = np.array([np.nan if v is None else v for v in surface["best"]])
     # Heights are rounded in the payload, so a step of the front may fall on the other side of one.
     assert np.nanmedian(np.abs(near - expected)[np.isfinite(expected)]) < 1e-3
@@ -70,7 +71,7 @@ def test_growth_holds_the_last_value_until_the_next_generation():
 
 def test_rows_give_the_energy_at_each_height(both):
     for row, data in zip(compare(both, ["a", "b"], (0.7, 0.8)).rows, both, strict=True):
-        for height, energy in zip((0.7, 0.8), row["energy_j"], strict=True):
+        for height, energy in zip((0.7, 0.8), row["at_height"], strict=True):
             front = data.front()
             assert energy == round(front.loc[front["height_m"] >= height, "energy_j"].min(), 4)
 

@@ -71,7 +71,7 @@ def test_comparison_has_a_row_per_study(source, source_u12):
     assert header[-3:] == ["J at 0.7 m", "J at 0.8 m", "J at 0.9 m"]
     assert [row[1] for row in rows] == ["VT8020", "U12"]
     for row, compared in zip(rows, payload.comparison.rows, strict=True):
-        assert row[-3:] == ["-" if energy is None else f"{energy:.2f}" for energy in compared["energy_j"]]
+        assert row[-3:] == ["-" if energy is None else f"{energy:.2f}" for energy in compared["at_height"]]
 
 
 def test_the_published_link_in_words(payload):

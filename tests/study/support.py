@@ -63,7 +63,7 @@ def made_generation(study, number, first, evaluations, state=None, seed=0, heigh
         first_trial=first,
         designs=designs,
         evaluations=evaluations,
-        judgement=judge(evaluations, study.constraints),
+        judgement=judge(evaluations, study.constraints, study.objectives),
         height_weight=height_weight,
         state=state,
         hypervolume=float(number),

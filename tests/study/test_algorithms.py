@@ -5,11 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from pareto_monoped.pareto.indicators import ReferencePoint, hypervolume
+from pareto_monoped.pareto.indicators import hypervolume, reference_point
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.protocol import Scores
+from pareto_monoped.study.weighted_cost import weighted_cost
 
 # AGE-MOEA2 compiles itself for some six seconds in every process.
 SLOW = {"age_moea2": pytest.mark.long}
@@ -36,9 +38,8 @@ def zdt1(values, lower, upper):
     f2 = g * (1.0 - np.sqrt(f1 / g))
     failed = unit[:, -1] > 0.97
     violation = np.where(failed, 100.0, np.maximum(0.0, 0.1 - f1))
-    return Scores(
-        height_m=np.where(failed, np.nan, 1.0 - f1), energy_j=np.where(failed, np.nan, f2), violation=violation
-    )
+    values = np.where(failed[:, None], np.nan, np.column_stack((1.0 - f1, f2)))
+    return Scores(objectives=HEIGHT_AND_ENERGY, values=values, violation=violation)
 
 
 def free_bounds(definition):
@@ -47,7 +48,7 @@ def free_bounds(definition):
     return definition.lower[free], definition.upper[free]
 
 
-def search(definition, generations, algorithm=None, history=None):
+def search(definition, generations, algorithm=None, history=None, problem=zdt1):
     """Ask and tell; returns the algorithm and [(values, scores)]."""
     algorithm = algorithm or make_algorithm(definition)
     history = [] if history is None else history
@@ -55,7 +56,7 @@ def search(definition, generations, algorithm=None, history=None):
         proposal = algorithm.ask()
         if proposal is None:
             break
-        scores = zdt1(proposal.values, *free_bounds(definition))
+        scores = problem(proposal.values, *free_bounds(definition))
         algorithm.tell(scores)
         history.append((proposal.values, scores))
     return algorithm, history
@@ -114,13 +115,13 @@ def test_restored_from_json_it_goes_on_exactly(name, told):
 
 @pytest.mark.parametrize("name", LEARNING)
 def test_beats_random_search_at_equal_evaluations(name):
-    reference = ReferencePoint(height_m=0.0, energy_j=5.0)
+    reference = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.0, "energy_j": 5.0})
 
     def volume(algorithm_name, evaluations=400):
         definition = study(algorithm_name)
         batch = len(make_algorithm(definition).ask().values)
         _, history = search(definition, evaluations // batch)
-        feasible = [np.column_stack((s.height_m, s.energy_j))[s.violation == 0.0] for _, s in history]
+        feasible = [s.values[s.violation == 0.0] for _, s in history]
         return hypervolume(np.vstack(feasible), reference)
 
     assert volume(name) > 1.1 * volume("random")
@@ -136,7 +137,7 @@ def test_infeasible_designs_give_way_to_feasible_ones(name):
         values = algorithm.ask().values
         unit = (values - lower) / (upper - lower)
         violation = np.maximum(0.0, unit[:, 0] - 0.1)
-        algorithm.tell(Scores(height_m=unit[:, 1], energy_j=unit[:, 2], violation=violation))
+        algorithm.tell(Scores(objectives=HEIGHT_AND_ENERGY, values=unit[:, 1:3], violation=violation))
     assert (violation == 0.0).mean() > 0.8
 
 
@@ -176,10 +177,10 @@ def test_the_weighted_cost_is_the_papers():
 
     settings = WeightedSettings(name="weighted_cmaes", height_weights=(0.25,), height_scale_j=80.0)
     space = Space(names=("a", "b"), lower=np.zeros(2), upper=np.ones(2))
-    algorithm = WeightedSearch(space, settings, np.full(2, 0.5), 1)
+    algorithm = WeightedSearch(space, settings, np.full(2, 0.5), 1, reference_point(HEIGHT_AND_ENERGY))
     scores = Scores(
-        height_m=np.array([0.8, 0.52, np.nan]),
-        energy_j=np.array([20.0, 1.0, np.nan]),
+        objectives=HEIGHT_AND_ENERGY,
+        values=np.array([[0.8, 20.0], [0.52, 1.0], [np.nan, np.nan]]),
         violation=np.array([0, 0.05, 100]),
     )
     cost = algorithm.cost(scores)
@@ -192,3 +193,76 @@ def test_the_default_height_scale_makes_both_terms_equal_at_the_papers_nominal_d
     from pareto_monoped.study.algorithm_settings import WeightedSettings
 
     assert WeightedSettings(name="weighted_cmaes").height_scale_j * np.exp(-0.887) == pytest.approx(31.44, rel=1e-12)
+
+
+THREE = ["height_m", "electrical_energy_j", "mass_kg"]
+OF_THREE = (
+    "sms_emoa",
+    "nsga2",
+    "optuna_nsga2",
+    "optuna_tpe",
+    "random",
+    pytest.param("age_moea2", marks=pytest.mark.long),
+)
+
+
+def dtlz2(values, lower, upper):
+    """DTLZ2 (Deb, Thiele, Laumanns, Zitzler 2002) of three objectives, the first of them negated for the height."""
+    unit = (values - lower) / (upper - lower)
+    radius = 1.0 + ((unit[:, 2:] - 0.5) ** 2).sum(axis=1)
+    a, b = 0.5 * np.pi * unit[:, 0], 0.5 * np.pi * unit[:, 1]
+    columns = (-radius * np.cos(a) * np.cos(b), radius * np.cos(a) * np.sin(b), radius * np.sin(a))
+    violation = np.maximum(0.0, 0.05 - unit[:, 0])
+    return Scores(objectives=Objectives(names=tuple(THREE)), values=np.column_stack(columns), violation=violation)
+
+
+@pytest.mark.parametrize("told", [0, 1, 6])
+@pytest.mark.parametrize("name", OF_THREE)
+def test_with_three_objectives_it_goes_on_exactly_from_json(name, told):
+    definition = study(name, objectives=THREE)
+    algorithm, history = search(definition, told, problem=dtlz2)
+    restored = make_algorithm(definition)
+    restored.restore(json.loads(json.dumps(algorithm.state())), iter(history))
+    _, expected = search(definition, 3, algorithm, problem=dtlz2)
+    _, got = search(definition, 3, restored, problem=dtlz2)
+    assert len(got) == len(expected) > 0
+    for (values, _), (wanted, _) in zip(got, expected, strict=True):
+        assert np.array_equal(values, wanted)
+
+
+@pytest.mark.parametrize("name", ["sms_emoa", "nsga2"])
+def test_with_three_objectives_it_beats_random_search(name):
+    reference = reference_point(
+        Objectives(names=tuple(THREE)), {"height_m": -2.5, "electrical_energy_j": 2.5, "mass_kg": 2.5}
+    )
+
+    def missed(algorithm_name):
+        """Volume between the front and the sphere of radius 1, which it cannot pass."""
+        _, history = search(study(algorithm_name, objectives=THREE), 20, problem=dtlz2)
+        feasible = [s.values[s.violation == 0.0] for _, s in history]
+        return 2.5**3 - np.pi / 6.0 - hypervolume(np.vstack(feasible), reference)
+
+    assert missed(name) < 0.6 * missed("random")
+
+
+def test_the_weighted_cost_of_another_pair_is_the_sum_of_shares_of_the_reference_point():
+    corner = reference_point(Objectives(names=("height_m", "electrical_energy_j")))
+    values = np.array([[0.8, 50.0], [1.1, 20.0]])
+    cost = weighted_cost(values, 0.25, corner, 80.0)
+    expected = [0.25 * -h / 0.55 + 0.75 * e / 200.0 for h, e in values]
+    assert cost == pytest.approx(expected, rel=1e-14)
+
+
+def test_the_weighted_search_runs_on_another_pair():
+    more = {"objectives": ["mass_kg", "electrical_energy_j"], "algorithm": {"name": "weighted_cmaes"}}
+    definition = study_from_dict({"name": "w", "evaluations": 1} | more, source="test")
+    algorithm = make_algorithm(definition)
+    objectives, violation = definition.objectives, np.zeros(8)
+    lower, upper = free_bounds(definition)
+    first = None
+    for _ in range(25):
+        unit = (algorithm.ask().values - lower) / (upper - lower)
+        away = ((unit - 0.3) ** 2).sum(axis=1)
+        first = away.mean() if first is None else first
+        algorithm.tell(Scores(objectives=objectives, values=np.column_stack((1 + away, away)), violation=violation))
+    assert away.mean() < 0.2 * first

@@ -1,13 +1,10 @@
 import sqlite3
-from dataclasses import fields
 from pathlib import Path
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.study.columns import COLUMNS, LATER, OBJECTIVES, REQUIRED
-from pareto_monoped.study.definition import Constraints
+from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.scoring import CONSTRAINTS
 from tests.study.support import made_database, made_study
 
 STORED = Path(__file__).parent / "data" / "plain.db"
@@ -18,7 +15,6 @@ def test_every_variable_and_measure_has_one_column():
     assert len(set(names)) == len(names)
     assert {*NAMES, *MEASURE_NAMES} < set(names)
     assert all(column.meaning for column in COLUMNS)
-    assert OBJECTIVES == ("height_m", "energy_j")
     assert set(REQUIRED) < set(names)
 
 
@@ -57,8 +53,3 @@ def test_a_column_of_a_later_version_is_read_as_a_number(tmp_path):
     connection.commit()
     connection.close()
     assert read_study(path).trials["later_j"].tolist() == [2.5] * 6
-
-
-def test_every_constraint_of_a_study_file_is_judged():
-    assert [constraint.key for constraint in CONSTRAINTS] == [field.name for field in fields(Constraints)]
-    assert {constraint.measure for constraint in CONSTRAINTS} <= set(MEASURE_NAMES)

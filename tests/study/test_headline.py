@@ -7,6 +7,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.single import simulate
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.headline import headline
 
 
@@ -20,7 +21,11 @@ def study(*front):
     """A study with this front of trial, height and energy."""
     table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"])
     return SimpleNamespace(
-        front=lambda: table, actuator_map=map_for("U8"), calibration=load_calibration("ideal"), motor=None
+        front=lambda: table,
+        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY),
+        actuator_map=map_for("U8"),
+        calibration=load_calibration("ideal"),
+        motor=None,
     )
 
 

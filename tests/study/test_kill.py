@@ -14,12 +14,12 @@ WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 3
 NSGA2 = 'name = "nsga2"\npopulation = 20'
 
 
-def killed(folder, algorithms, evaluations, kills, seed=3, variables=""):
+def killed(folder, algorithms, evaluations, kills, seed=3, variables="", top=""):
     """Runs tests/study/killed.py; checks everything that must hold after each kill and at the end."""
     folders = [folder / str(k) for k in range(len(algorithms))]
     for place, algorithm in zip(folders, algorithms, strict=True):
         place.mkdir()
-        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n{variables}[algorithm]\n{algorithm}\n'
+        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n{top}{variables}[algorithm]\n{algorithm}\n'
         (place / "s.toml").write_text(text)
     done = subprocess.run(
         [sys.executable, "-m", "tests.study.killed", str(kills), str(seed), *map(str, folders)],
@@ -53,6 +53,28 @@ def test_killed_with_optional_variables_free(tmp_path):
     )
     killed(tmp_path, [NSGA2], evaluations=240, kills=3, variables=variables)
     assert read_study(tmp_path / "0" / "whole.db").trials["knee_release_rad"].nunique() > 100
+
+
+BATTERY = 'objectives = ["height_m", "electrical_energy_j"]\n'
+THREE = 'objectives = ["height_m", "electrical_energy_j", "mass_kg"]\n[constraints]\nmass_kg = { max = 4.6 }\n'
+
+
+def test_killed_with_other_objectives(tmp_path):
+    killed(tmp_path, [NSGA2, WEIGHTED], evaluations=240, kills=3, top=BATTERY)
+
+
+def test_killed_with_three_objectives_and_a_constraint(tmp_path):
+    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20'], evaluations=240, kills=3, top=THREE)
+    data = read_study(tmp_path / "0" / "killed.db")
+    assert data.study.objectives.names == ("height_m", "electrical_energy_j", "mass_kg")
+    assert (data.trials["mass_kg"] > 4.6).any()
+    assert (data.front()["mass_kg"] <= 4.6).all()
+
+
+@pytest.mark.long
+def test_three_objectives_killed_five_times(tmp_path):
+    names = ("nsga2", "age_moea2", "optuna_nsga2", "optuna_tpe", "random")
+    killed(tmp_path, [f'name = "{name}"' for name in names], evaluations=400, kills=5, top=THREE)
 
 
 @pytest.mark.long

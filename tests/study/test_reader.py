@@ -34,7 +34,7 @@ def test_history_and_meta(tmp_path):
     assert data.history["hypervolume"].tolist() == [0.0, 1.0]
     assert data.wall_time_s == 1.5
     assert data.meta.finished is False
-    assert (data.reference_point.height_m, data.reference_point.energy_j) == (0.55, 100.0)
+    assert data.reference_point.as_dict() == {"height_m": 0.55, "energy_j": 100.0}
 
 
 def test_a_study_without_trials(tmp_path):

@@ -17,7 +17,9 @@ from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study.definition import Bounds, Constraints, Stop, study_from_dict
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.study.definition import Bounds, Stop, study_from_dict
+from pareto_monoped.study.goals import constraints_of
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
@@ -61,13 +63,13 @@ def test_progress_and_history_tell_what_is_stored(whole):
     assert summary.hypervolume == pytest.approx(hypervolume(points, data.reference_point), rel=1e-12)
     assert summary.front_size == len(data.front())
     high = points[points[:, 0] >= 0.8, 1]
-    assert seen[-1].least_energy_j == high.min()
+    assert seen[-1].at_height.value == high.min()
 
 
 def test_every_evaluated_design_counts_for_the_front(whole):
     data = whole[2]
     ok = (data.trials["state"] == "feasible").to_numpy()
-    mask = front_mask(data.trials["height_m"].to_numpy(), data.trials["energy_j"].to_numpy(), ok)
+    mask = front_mask(data.trials[["height_m", "energy_j"]].to_numpy(), HEIGHT_AND_ENERGY, ok)
     assert set(data.front()["trial"]) == set(data.trials["trial"][mask])
 
 
@@ -229,7 +231,7 @@ def test_a_weighted_sweep_ends_by_itself(tmp_path):
 
 
 def test_infeasible_trials_are_kept_and_off_the_front(tmp_path):
-    study = replace(made(), constraints=Constraints(max_energy_j=25.0))
+    study = replace(made(), constraints=constraints_of({"max_energy_j": 25.0}))
     run(study, tmp_path / "s.db", evaluations=40)
     data = read_study(tmp_path / "s.db")
     infeasible = data.trials[data.trials["state"] == "infeasible"]

@@ -1,16 +1,17 @@
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.study.definition import Constraints
-from pareto_monoped.study.scoring import CONSTRAINTS, FAILED_VIOLATION, judge, scores
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.study.goals import constraints_of
+from pareto_monoped.study.scoring import FAILED_VIOLATION, judge, scores
 from tests.study.support import made_evaluations
 
 
 def test_constraints_are_shares_of_their_limits_feasible_at_zero():
-    judgement = judge(made_evaluations([0.55, 0.5225, 1.1], [5.0, 5.0, 5.0]), Constraints())
+    judgement = judge(made_evaluations([0.55, 0.5225, 1.1], [5.0, 5.0, 5.0]), constraints_of({}))
     assert judgement.constraints[:, 0] == pytest.approx([0.0, 0.05, -1.0], abs=1e-15)
     assert judgement.violation == pytest.approx([0.0, 0.05, 0.0], abs=1e-15)
     assert judgement.state.tolist() == ["feasible", "infeasible", "feasible"]
@@ -18,7 +19,7 @@ def test_constraints_are_shares_of_their_limits_feasible_at_zero():
 
 def test_the_violation_is_graded():
     heights = np.linspace(0.5, 0.6, 21)
-    violation = judge(made_evaluations(heights, np.full(21, 5.0)), Constraints()).violation
+    violation = judge(made_evaluations(heights, np.full(21, 5.0)), constraints_of({})).violation
     below = heights < 0.55
     assert (np.diff(violation[below]) < 0.0).all()
     assert (violation[~below] == 0.0).all()
@@ -26,7 +27,7 @@ def test_the_violation_is_graded():
 
 def test_violations_of_several_constraints_add_up_and_are_all_named():
     evaluations = made_evaluations([0.44, 0.8], [24.0, 12.0])
-    judgement = judge(evaluations, Constraints(max_energy_j=16.0))
+    judgement = judge(evaluations, constraints_of({"max_energy_j": 16.0}))
     assert judgement.violation == pytest.approx([0.2 + 0.5, 0.0])
     assert judgement.reason == (
         "height_m = 0.44 is below the limit of 0.55; energy_j = 24 is above the limit of 16",
@@ -36,7 +37,7 @@ def test_violations_of_several_constraints_add_up_and_are_all_named():
 
 def test_failed_jumps_keep_their_reason_and_are_farther_off_than_any_real_one():
     evaluations = made_evaluations([np.nan, 0.5], [np.nan, 1.0], ["no_lift_off", "ok"])
-    judgement = judge(evaluations, Constraints())
+    judgement = judge(evaluations, constraints_of({}))
     assert judgement.state.tolist() == ["failed", "infeasible"]
     assert judgement.reason[0] == "it was no_lift_off"
     assert judgement.violation[0] == FAILED_VIOLATION > judgement.violation[1]
@@ -45,7 +46,7 @@ def test_failed_jumps_keep_their_reason_and_are_farther_off_than_any_real_one():
 
 def test_an_ok_status_without_numbers_is_still_a_failure():
     evaluations = made_evaluations([np.inf, 1.0, 1.0], [1.0, np.inf, np.nan])
-    assert judge(evaluations, Constraints()).state.tolist() == ["failed"] * 3
+    assert judge(evaluations, constraints_of({})).state.tolist() == ["failed"] * 3
 
 
 @pytest.mark.parametrize(
@@ -73,7 +74,7 @@ def test_an_ok_status_without_numbers_is_still_a_failure():
 )
 def test_each_constraint_refuses_the_values_on_its_wrong_side(key, limit, measure, values, violation):
     evaluations = replace(made_evaluations([1.0, 1.0, 1.0], [5.0, 5.0, 5.0]), **{measure: np.array(values)})
-    judgement = judge(evaluations, Constraints(**{key: limit}))
+    judgement = judge(evaluations, constraints_of({key: limit}))
     assert judgement.violation == pytest.approx(violation, abs=1e-12)
     assert judgement.state.tolist() == ["infeasible" if v else "feasible" for v in violation]
     for value, missed, reason in zip(values, violation, judgement.reason, strict=True):
@@ -81,11 +82,41 @@ def test_each_constraint_refuses_the_values_on_its_wrong_side(key, limit, measur
         assert reason == (f"{measure} = {value:g} is {side} the limit of {limit:g}" if missed else "")
 
 
-def test_every_limit_of_a_study_is_judged_and_the_other_way_round():
-    assert [constraint.key for constraint in CONSTRAINTS] == [field.name for field in fields(Constraints)]
-    assert {constraint.measure for constraint in CONSTRAINTS} <= set(MEASURE_NAMES)
-
-
 def test_a_limit_that_is_not_set_is_not_judged():
-    judgement = judge(made_evaluations([1.0], [5.0]), Constraints())
+    judgement = judge(made_evaluations([1.0], [5.0]), constraints_of({}))
     assert judgement.constraints.shape == (1, 1)
+
+
+@pytest.mark.parametrize("name", MEASURE_NAMES)
+def test_every_measure_is_judged_by_its_limits(name):
+    values = np.array([0.6, 0.8, 1.2])
+    evaluations = replace(made_evaluations([1.0, 1.0, 1.0], [5.0, 5.0, 5.0]), **{name: values})
+    judgement = judge(evaluations, constraints_of({name: {"min": 0.75, "max": 1.0}}))
+    assert judgement.violation == pytest.approx([0.2, 0.0, 0.2])
+    assert judgement.reason == (
+        f"{name} = 0.6 is below the limit of 0.75",
+        "",
+        f"{name} = 1.2 is above the limit of 1",
+    )
+
+
+def test_a_measure_without_a_value_misses_its_limit():
+    evaluations = replace(made_evaluations([1.0], [5.0]), mass_kg=np.array([np.nan]))
+    judgement = judge(evaluations, constraints_of({"mass_kg": {"max": 4.0}}))
+    assert judgement.state.tolist() == ["infeasible"]
+    assert judgement.reason == ("mass_kg = nan is above the limit of 4",)
+
+
+def test_a_jump_without_a_value_of_an_objective_failed():
+    evaluations = replace(made_evaluations([1.0, 1.0], [5.0, 5.0]), electrical_energy_j=np.array([9.0, np.inf]))
+    objectives = Objectives(names=("height_m", "electrical_energy_j"))
+    assert judge(evaluations, constraints_of({}), objectives).state.tolist() == ["feasible", "failed"]
+    assert judge(evaluations, constraints_of({})).state.tolist() == ["feasible", "feasible"]
+
+
+def test_scores_hold_the_objectives_in_their_order():
+    evaluations = replace(made_evaluations([1.0], [5.0]), mass_kg=np.array([4.0]))
+    objectives = Objectives(names=("mass_kg", "height_m", "energy_j"))
+    found = scores(evaluations, judge(evaluations, constraints_of({}), objectives), objectives)
+    assert found.values.tolist() == [[4.0, 1.0, 5.0]]
+    assert found.minimised().tolist() == [[4.0, -1.0, 5.0]]

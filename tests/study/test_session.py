@@ -49,7 +49,7 @@ def test_progress_counts_the_designs_and_seconds_of_this_session(tmp_path, monke
     _, first = session_of(tmp_path / "s.db", [0.7, 0.9], evaluations=20)
     assert [p.per_second for p in first] == [5.0, 10.0]
     assert [p.seconds_left for p in first] == [2.0, 0.0]
-    assert [p.least_energy_j for p in first] == [None, 50.0]
+    assert [p.at_height.value for p in first] == [None, 50.0]
     _, second = session_of(tmp_path / "s.db", [0.8, 0.8], evaluations=40)
     assert [(p.evaluations, p.budget, p.per_second) for p in second] == [(30, 40, 5.0), (40, 40, 10.0)]
     assert read_study(tmp_path / "s.db").history["seconds"].tolist() == [2.0, 2.0, 4.0, 4.0]
@@ -59,9 +59,9 @@ def test_the_hypervolume_counts_feasible_designs_only(tmp_path):
     """A jump on 50 J is infeasible with a limit of 40 J, however high."""
     _, seen = session_of(tmp_path / "s.db", [0.9], evaluations=10, constraints={"max_energy_j": 40.0})
     assert seen[-1].hypervolume == 0.0
-    assert seen[-1].least_energy_j is None
+    assert seen[-1].at_height.value is None
 
 
 def test_a_jump_of_exactly_the_headline_height_counts(tmp_path):
     _, seen = session_of(tmp_path / "s.db", [0.8], evaluations=10)
-    assert seen[-1].least_energy_j == 50.0
+    assert seen[-1].at_height.value == 50.0

@@ -11,7 +11,7 @@ function showSubject(chosen) {
   const several = page.studies.length > 1 ? `, ${chosen.study.label}` : "";
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
   box.append(make("span", {}, chosen.why));
-  for (const name of ["height_m", "energy_j", "mass_kg"]) {
+  for (const name of new Set([...page.goals, "mass_kg"])) {
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
   }
   const { height_m: h, energy_j: e, mass_kg: m } = chosen.measures;

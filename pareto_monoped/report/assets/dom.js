@@ -4,6 +4,8 @@ const SVG = "http://www.w3.org/2000/svg";
 const page = JSON.parse(document.getElementById("payload").textContent);
 const { gravity_m_per_s2: GRAVITY, base_start_height_m: START_HEIGHT } = page.constants;
 const quantity = Object.fromEntries(page.quantities.map((q) => [q.name, q]));
+const [FIRST, SECOND] = page.objectives;
+const PAPERS_OWN = FIRST === "height_m" && SECOND === "energy_j";
 
 function byId(id) { return document.getElementById(id); }
 
@@ -35,6 +37,15 @@ function shown(name, value, withUnit = true) {
   const q = quantity[name];
   const text = (value * q.scale).toFixed(q.decimals);
   return withUnit ? `${text} ${q.unit}` : text;
+}
+
+// A measure with its unit, as the title of an axis.
+function titled(name) { return `${quantity[name].label}, ${quantity[name].unit}`; }
+
+// The named measures of a design in words: "0.800 m on 15.36 J", or each with its label.
+function told(names, valueOf) {
+  if (names.length === 2 && names[0] === "height_m" && names[1] === "energy_j") return `${shown("height_m", valueOf("height_m"))} on ${shown("energy_j", valueOf("energy_j"))}`;
+  return names.map((name) => `${quantity[name].label} ${shown(name, valueOf(name))}`).join(", ");
 }
 
 function round(value, digits = 3) { return Number(value).toFixed(digits); }

@@ -1,4 +1,4 @@
-// The front: energy to the right, height upward; click a point to select it.
+// The front: the first objective upward, another to the right, a third as colour; click a point to select it.
 
 const CELL_PX = 3; // cells of this size show at most one trial of the cloud
 const MOST_DRAWN = 4000;
@@ -7,27 +7,38 @@ const gd = byId("front-chart");
 const ring = make("div", { class: "ring", "aria-hidden": "true" });
 let points = []; // for each trace, what its points stand for: [study, row] or [study, case name]
 
+// What a column or a case has on an axis, in the unit shown; null where it has nothing.
+function inShown(name, value) { return value === null || value === undefined ? null : value * quantity[name].scale; }
+
+function ofCase(made, name) { return inShown(name, made[name] ?? made.measures[name]); }
+
+// Work against gravity is a floor of these energies.
+function hasFloor() { return FIRST === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.across); }
+
+function papersAxes() { return FIRST === "height_m" && state.across === "energy_j"; }
+
 function startRange() {
-  let energy = 0, low = Infinity, high = START_HEIGHT + 0.1;
-  const see = (e, h) => {
-    if (e === null || h === null || e === undefined || h === undefined) return;
-    energy = Math.max(energy, e);
-    low = Math.min(low, h);
-    high = Math.max(high, h);
+  const x = [], y = [];
+  const see = (across, up) => {
+    if (across === null || up === null) return;
+    x.push(across);
+    y.push(up);
   };
   for (const study of page.studies) {
-    const { energy_j: e, height_m: h } = study.trials.columns;
-    for (const row of study.front) see(e[row], h[row]);
-    for (const made of study.cases) see(made.energy_j, made.height_m);
-    if (!study.front.length) study.trials.trial.forEach((_, row) => see(e[row], h[row]));
+    const { [state.across]: e, [FIRST]: h } = study.trials.columns;
+    const rows = study.front.length ? study.front : study.trials.trial.map((_, row) => row);
+    for (const row of rows) see(inShown(state.across, e[row]), inShown(FIRST, h[row]));
+    for (const made of study.cases) see(ofCase(made, state.across), ofCase(made, FIRST));
   }
-  for (const made of page.published) see(made.energy_j, made.height_m);
-  low = Math.min(low, START_HEIGHT + 0.05);
-  const room = 0.06 * (high - low);
-  return { x: [0, energy * 1.06], y: [low - room, high + room] };
+  if (papersAxes()) for (const made of page.published) see(made.energy_j, made.height_m);
+  if (FIRST === "height_m") y.push(START_HEIGHT + 0.05, START_HEIGHT + 0.1);
+  const [low, high] = extent(y);
+  const room = 0.06 * (high - low) || 1e-3;
+  // With a floor, which begins at no energy, so does the chart.
+  return { x: hasFloor() ? [0, extent(x)[1] * 1.06] : padded(extent(x)), y: [low - room, high + room] };
 }
 
-const home = startRange();
+let home = startRange();
 
 function viewRange() {
   const full = gd._fullLayout;
@@ -37,17 +48,18 @@ function viewRange() {
 // What is drawn over the cloud, and how many cells it covers to each side of its own.
 function marks() {
   return [...state.visible].flatMap((study) => {
-    const { cases, front, trials: { columns: { energy_j: e, height_m: h } } } = page.studies[study];
-    const designs = show.front ? front.map((row) => ({ x: e[row], y: h[row], cells: 1 })) : [];
-    const paper = show.simulated ? cases.map((made) => ({ x: made.energy_j, y: made.height_m, cells: 2 })) : [];
+    const { cases, front, trials: { columns: { [state.across]: e, [FIRST]: h } } } = page.studies[study];
+    const designs = show.front ? front.map((row) => ({ x: inShown(state.across, e[row]), y: inShown(FIRST, h[row]), cells: 1 })) : [];
+    const paper = show.simulated ? cases.map((made) => ({ x: ofCase(made, state.across), y: ofCase(made, FIRST), cells: 2 })) : [];
     return [...designs, ...paper];
   });
 }
 
 // One row per small cell of the view: as many as can be told apart.
 function thinned(study, letter, skip) {
-  const { state: letters, columns: { energy_j: e, height_m: h } } = page.studies[study].trials;
+  const { state: letters, columns: { [state.across]: e, [FIRST]: h } } = page.studies[study].trials;
   const { x, y } = viewRange();
+  const toX = quantity[state.across].scale, toY = quantity[FIRST].scale;
   const columns = Math.max(Math.floor((gd.clientWidth - 72) / CELL_PX), 50);
   const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
   const seen = new Set();
@@ -61,7 +73,7 @@ function thinned(study, letter, skip) {
   let within = 0;
   for (let row = 0; row < letters.length; row += 1) {
     if (letters[row] !== letter || skip.has(row) || e[row] === null || h[row] === null) continue;
-    const u = (e[row] - x[0]) / (x[1] - x[0]), v = (h[row] - y[0]) / (y[1] - y[0]);
+    const u = (e[row] * toX - x[0]) / (x[1] - x[0]), v = (h[row] * toY - y[0]) / (y[1] - y[0]);
     if (u < 0 || u > 1 || v < 0 || v > 1) continue;
     within += 1;
     const cell = cellAt(u, v);
@@ -77,7 +89,9 @@ function hoverText(study, row) {
   const card = page.studies[study];
   const { columns, trial } = card.trials;
   const lines = [`<b>trial ${trial[row]}</b>${page.studies.length > 1 ? `, ${plain(card.label)}` : ""}`];
-  lines.push(`${shown("height_m", columns.height_m[row])} on ${shown("energy_j", columns.energy_j[row])}`);
+  if (PAPERS_OWN) lines.push(told(page.objectives, (name) => columns[name][row]));
+  const named = PAPERS_OWN ? page.goals.filter((name) => !page.objectives.includes(name)) : page.goals;
+  for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, columns[name][row])}`);
   for (const variable of page.variables) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
   return lines.join("<br>");
 }
@@ -92,8 +106,8 @@ function trace(name, entries, marker, more = {}) {
 }
 
 function rowsOf(study, rows) {
-  const { energy_j: e, height_m: h } = page.studies[study].trials.columns;
-  return rows.map((row) => ({ x: e[row], y: h[row], text: hoverText(study, row), stands: [study, row] }));
+  const { [state.across]: e, [FIRST]: h } = page.studies[study].trials.columns;
+  return rows.map((row) => ({ x: inShown(state.across, e[row]), y: inShown(FIRST, h[row]), text: hoverText(study, row), stands: [study, row] }));
 }
 
 function traces() {
@@ -119,7 +133,7 @@ function traces() {
       list.push(trace(letter === "f" ? "dominated" : "infeasible", rowsOf(study, cloud.rows), marker));
     }
   }
-  if (show.floor) {
+  if (show.floor && hasFloor()) {
     const masses = each.map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
     if (masses.length) {
       const mass = Math.min(...masses), end = viewRange().x[1] * 4;
@@ -133,11 +147,17 @@ function traces() {
     const tint = studyColour(study);
     const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
     const symbol = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"][study % 6];
-    list.push(trace("front", rowsOf(study, card.front), { size: 7.5, symbol, color: tint, opacity, line: { width: 0.8, color: colour("card") } },
-      { mode: "lines+markers", line: { shape: "vh", width: 1.2, color: tint } }));
+    const marker = { size: 7.5, symbol, color: tint, opacity, line: { width: 0.8, color: colour("card") } };
+    const third = tinted();
+    if (third) Object.assign(marker, colourOf(study, third, list));
+    // A line of steps joins designs that hold until the next one is reached; on other axes than its own a front is none.
+    const own = card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(state.across);
+    const steps = page.directions[FIRST] === "maximise" ? "hv" : "vh";
+    list.push(trace("front", rowsOf(study, card.front), marker,
+      own ? { mode: "lines+markers", line: { shape: steps, width: 1.2, color: tint } } : { mode: "markers" }));
     if (card.weighted.length) {
       const rows = rowsOf(study, card.weighted.map(([, row]) => row));
-      rows.forEach((entry, i) => { entry.text = `weighted search, height weight ${card.weighted[i][0]}<br>${entry.text}`; });
+      rows.forEach((entry, i) => { entry.text = `weighted search, ${FIRST === "height_m" ? "height" : plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${entry.text}`; });
       list.push(trace("weighted", rows, { size: 12, symbol: "square-open", color: tint, line: { width: 2, color: tint } }));
     }
   }
@@ -152,7 +172,7 @@ function traces() {
   const paper = (entries, name, symbol) => list.push(trace(name, entries,
     { size: 11, symbol, color: entries.map((p) => p.tint ?? colour("paper")), line: { width: 1.8, color: colour("paper") } },
     { mode: "markers", customdata: entries.map((p) => p.label) }));
-  if (show.published) {
+  if (show.published && papersAxes()) {
     paper(page.published.map((c) => ({
       x: c.energy_j, y: c.height_m, label: c.name, stands: null,
       text: `<b>paper, ${c.name}</b>, as published<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J`,
@@ -167,12 +187,13 @@ function traces() {
       if (seen.has(key)) continue;
       seen.add(key);
       for (const c of card.cases) {
-        if (c.height_m === null || c.energy_j === null) continue;
+        const across = ofCase(c, state.across), up = ofCase(c, FIRST);
+        if (up === null || across === null) continue;
         // Only the first motor's have names; the others are in the same order and have their study's colour.
         entries.push({
-          x: c.energy_j, y: c.height_m, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
+          x: across, y: up, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
           tint: seen.size === 1 ? colour("paper") : studyColour(study),
-          text: `<b>paper, ${c.name}</b>, simulated here<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J<br>motor ${plain(card.motor)}, calibration ${plain(card.calibration)}`,
+          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.across], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.motor)}, calibration ${plain(card.calibration)}`,
         });
       }
     }
@@ -215,14 +236,15 @@ function labels(list) {
 }
 
 function drawFront() {
+  for (const [key, fits] of [["published", papersAxes()], ["floor", hasFloor()]]) document.querySelector(`[data-show=${key}]`).closest("label").hidden = !fits;
   const list = traces();
-  const x = axis("energy from start to apex, J", { range: [...home.x], constraintoward: "left" });
-  const y = axis("jump height of the base, m", { range: [...home.y] });
+  const x = axis(state.across === "energy_j" ? "energy from start to apex, J" : titled(state.across), { range: [...home.x], constraintoward: "left" });
+  const y = axis(FIRST === "height_m" ? "jump height of the base, m" : titled(FIRST), { range: [...home.y] });
   const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
   const shape = layout(x, y, {
     annotations: labels(list), dragmode: "zoom",
     // The chart's buttons have a strip of their own above it: points under them could not be clicked.
-    margin: { l: 58, r: 14, t: 26, b: 46 },
+    margin: { l: 58, r: tinted() && !narrow() ? 84 : 14, t: tinted() && narrow() ? 92 : 26, b: 46 }, uirevision: state.across,
   });
   const done = Plotly.react(gd, list, shape, config);
   if (!gd.contains(ring)) gd.append(ring);
@@ -234,8 +256,9 @@ function drawFront() {
 function placeRing() {
   const chosen = subject();
   const full = gd._fullLayout;
-  const e = chosen && chosen.measures.energy_j, h = chosen && chosen.measures.height_m;
-  if (!full || !chosen || e === null || h === null || e === undefined) { ring.hidden = true; return; }
+  const value = (name) => (chosen ? inShown(name, chosen.measures[name] ?? chosen.more[name]) : null);
+  const e = value(state.across), h = value(FIRST);
+  if (!full || !chosen || e === null || h === null) { ring.hidden = true; return; }
   const { xaxis, yaxis } = full;
   const left = xaxis._offset + xaxis.d2p(e), top = yaxis._offset + yaxis.d2p(h);
   ring.hidden = left < xaxis._offset || left > xaxis._offset + xaxis._length || top < yaxis._offset || top > yaxis._offset + yaxis._length;
@@ -251,7 +274,7 @@ function describeFront() {
   gd.setAttribute("aria-valuenow", at + 1);
   const chosen = subject();
   gd.setAttribute("aria-valuetext", chosen
-    ? `${chosen.kind === "case" ? `paper's ${chosen.name}` : `trial ${trials.trial[state.row]}`}, ${shown("height_m", chosen.measures.height_m)} on ${shown("energy_j", chosen.measures.energy_j)}`
+    ? `${chosen.kind === "case" ? `paper's ${chosen.name}` : `trial ${trials.trial[state.row]}`}, ${told(page.objectives, (name) => chosen.measures[name])}`
     : "no design");
 }
 
@@ -284,9 +307,41 @@ function startFront() {
     if (event.key === "ArrowRight") moveAlongFront(1);
     if (event.key === "ArrowLeft") moveAlongFront(-1);
   });
+  startAxes();
   on("selection", () => { placeRing(); describeFront(); });
   on("view", drawFront);
   charts.push(drawFront);
+}
+
+// On a narrow page the bar of colours lies above the chart.
+function narrow() { return gd.clientWidth < 520; }
+
+const ABOVE = { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", len: 1, thickness: 10 };
+
+// The colours of a front by a third measure: one scale for all studies, with one bar beside the chart.
+function colourOf(study, name, list) {
+  const values = (i) => page.studies[i].front.map((row) => inShown(name, page.studies[i].trials.columns[name][row]));
+  const [low, high] = extent([...state.visible].flatMap(values));
+  const first = !list.some((one) => one.name === "front");
+  return {
+    color: values(study), cmin: low, cmax: high, colorscale: "Viridis", showscale: first, size: 8.5,
+    colorbar: { title: { text: plain(titled(name)), side: narrow() ? "top" : "right" }, thickness: 12, outlinewidth: 0, tickcolor: colour("soft"), ...(narrow() ? ABOVE : {}) },
+  };
+}
+
+// A choice of what is to the right, where the page has more than one such measure.
+function startAxes() {
+  const names = page.goals.filter((name) => name !== FIRST);
+  if (names.length < 2) return;
+  const choice = make("select", { id: "across" }, ...names.map((name) => make("option", { value: name }, titled(name))));
+  choice.value = state.across;
+  choice.addEventListener("change", () => {
+    state.across = choice.value;
+    home = startRange();
+    tell("view");
+  });
+  byId("axes").append(make("label", {}, "To the right ", choice));
+  byId("axes").hidden = false;
 }
 
 let lastView = "";

@@ -98,7 +98,7 @@ function noJump(chosen) {
   return `This page keeps the jumps of ${Object.keys(chosen.study.jumps).length} of the ${chosen.study.front.length} designs on the front; the commands below simulate this one.`;
 }
 
-// Each variable against height along the front.
+// Each variable against the first objective along the front.
 let dots = [];
 
 function drawAlong() {
@@ -110,8 +110,8 @@ function drawAlong() {
     byId("along-note").textContent = "There is no front to show.";
     return;
   }
-  const heights = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns.height_m[row])));
-  const x = padded(heights, 0.03);
+  const firsts = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns[FIRST][row])));
+  const x = padded(firsts.map((value) => value * quantity[FIRST].scale), 0.03);
   const several = page.studies.length > 1;
   const width = window.innerWidth <= 700 ? 180 : 300; // keeps the words readable on a phone
   for (const variable of page.variables) {
@@ -123,13 +123,13 @@ function drawAlong() {
       const { front, trials } = page.studies[i];
       const family = (row) => (joint ? page.gearboxes[trials.columns[joint][row]]?.family : "ISSPG");
       return {
-        x: front.map((row) => trials.columns.height_m[row]), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
+        x: front.map((row) => trials.columns[FIRST][row] * quantity[FIRST].scale), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
         mark: front.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), opacity: front.map((row) => (inRanges(i, row) ? 0.8 : 0.12)),
         colour: several ? `var(--c${i % 6})` : "var(--c0)",
       };
     });
     const title = `${q.label}${q.unit === ": 1" ? "" : `, ${q.unit}`}`;
-    const chart = smallChart({ width, height: 190, left: 40, x, y, title, xTitle: "height, m", series, label: `${title}, against height along the front` });
+    const chart = smallChart({ width, height: 190, left: 40, x, y, title, xTitle: titled(FIRST), series, label: `${title}, against ${quantity[FIRST].label} along the front` });
     for (const bound of limits) chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(bound * q.scale), y2: chart.toY(bound * q.scale), stroke: "var(--faint)", "stroke-dasharray": "2 3" }));
     const change = joint ? switchRatio() : null;
     if (change !== null && change > y[0] && change < y[1]) {
@@ -154,14 +154,15 @@ function switchRatio() {
 
 function switchesText() {
   const { front, trials } = current();
+  const at = (value) => `${round(value * quantity[FIRST].scale, 2)} ${quantity[FIRST].unit}`;
   const parts = ["hip", "knee"].map((side) => {
     const families = front.map((row) => page.gearboxes[trials.columns[`${side}_gearbox`][row]]?.family);
     const external = families.filter((f) => f === "ESSPG").length;
     if (!external) return `the ${side} stays with ISSPG`;
     if (external === families.length) return `the ${side} stays with ESSPG`;
-    const changes = families.flatMap((f, i) => (i && f !== families[i - 1] ? [trials.columns.height_m[front[i]]] : []));
-    if (changes.length <= 3) return `the ${side} changes at ${changes.map((h) => `${round(h, 2)} m`).join(", ")}`;
-    return `the ${side} has ESSPG in ${external} of ${families.length} designs, changing ${changes.length} times between ${round(changes[0], 2)} m and ${round(changes.at(-1), 2)} m`;
+    const changes = families.flatMap((f, i) => (i && f !== families[i - 1] ? [trials.columns[FIRST][front[i]]] : []));
+    if (changes.length <= 3) return `the ${side} changes at ${changes.map(at).join(", ")}`;
+    return `the ${side} has ESSPG in ${external} of ${families.length} designs, changing ${changes.length} times between ${at(changes[0])} and ${at(changes.at(-1))}`;
   });
   return front.length > 1 ? ` Along this front ${parts.join("; ")}.` : "";
 }
@@ -169,8 +170,8 @@ function switchesText() {
 function moveDots() {
   const chosen = subject();
   for (const { dot, chart, variable, q } of dots) {
-    const h = chosen?.measures.height_m;
-    const cx = h === null || h === undefined ? -1 : chart.toX(h);
+    const first = chosen?.measures[FIRST];
+    const cx = first === null || first === undefined ? -1 : chart.toX(first * quantity[FIRST].scale);
     const inside = cx >= chart.left && cx <= chart.left + chart.w;
     dot.setAttribute("display", inside ? "inline" : "none");
     if (!inside) continue;

@@ -1,6 +1,6 @@
 // Parallel coordinates of variables and objectives, drawn on a canvas; ranges and selection are shared with the front.
 
-const AXES = [...page.variables.map((v) => v.name), "mass_kg", "height_m", "energy_j"];
+const AXES = [...page.variables.map((v) => v.name), ...(page.goals.includes("mass_kg") ? [] : ["mass_kg"]), ...page.goals];
 const MOST_LINES = 3000;
 const NEAR_PX = 8;
 const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 46, right: 46, limits: {}, lines: [] };
@@ -201,7 +201,7 @@ function nearestLine(x, y) {
 }
 
 function startParallel() {
-  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables, mass, height and energy" });
+  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables and measures" });
   par.svg = draw("svg", { "aria-hidden": "true" });
   par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
     draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--c1)", "stroke-width": 3, id: "parallel-selected" }));

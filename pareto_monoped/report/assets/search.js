@@ -19,20 +19,24 @@ function drawConvergence(node) {
     node.style.height = "auto";
     return;
   }
+  // Hypervolumes under different objectives have different units: each then is a share of its last value.
+  const alike = page.studies.every((study) => String(study.objectives) === String(page.objectives));
+  const unit = alike ? page.studies[0].hypervolume_unit : "% of the last";
+  const volumes = ({ hypervolume: all }) => (alike ? all : all.map((value) => 100 * value / (all.at(-1) || 1)));
   const list = page.studies.map((study, i) => ({
     type: "scatter", mode: study.history.evaluations.length > 1 ? "lines" : "markers", name: plain(study.label),
-    x: study.history.evaluations, y: study.history.hypervolume, line: { ...seriesStyle(i), shape: "hv" },
-    hovertemplate: "%{x} evaluations: %{y:.3f} m J<extra></extra>",
+    x: study.history.evaluations, y: volumes(study.history), line: { ...seriesStyle(i), shape: "hv" },
+    hovertemplate: `%{x} evaluations: %{y:.3f} ${unit}<extra></extra>`,
   }));
   (comparison?.growth ?? []).forEach((growth, k) => {
     const first = page.studies.findIndex((study) => study.label === growth.labels[0]);
     list.push(...band(growth.evaluations, growth.low, growth.median, growth.high, studyColour(first), `median of ${growth.labels.length} seeds`));
   });
-  Plotly.react(node, list, layout(axis("evaluations", { rangemode: "tozero" }), axis("hypervolume, m J"), {
+  Plotly.react(node, list, layout(axis("evaluations", { rangemode: "tozero" }), axis(`hypervolume, ${unit}`), {
     showlegend: list.length > 1, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
   }), CONFIG);
   const last = page.studies[0].history;
-  describe(node, last.evaluations.length ? `Hypervolume over evaluations: ${round(last.hypervolume.at(-1), 2)} m J after ${last.evaluations.at(-1)}` : "No evaluations yet");
+  describe(node, last.evaluations.length ? `Hypervolume over evaluations: ${round(last.hypervolume.at(-1), 2)} ${page.studies[0].hypervolume_unit} after ${last.evaluations.at(-1)}` : "No evaluations yet");
 }
 
 // Attainment surfaces of several seeds: what the best, the median and the worst run reached.
@@ -40,14 +44,16 @@ function drawAttainment(node) {
   const list = page.comparison.surfaces.flatMap((surface) => {
     const first = page.studies.findIndex((study) => study.label === surface.labels[0]);
     const tint = studyColour(first);
-    const line = (name, y, dash, width) => ({ type: "scatter", mode: "lines", name, x: y, y: surface.height_m, line: { color: tint, dash, width }, hovertemplate: "%{y:.3f} m on %{x:.2f} J<extra></extra>" });
+    const line = (name, y, dash, width) => ({ type: "scatter", mode: "lines", name, x: inUnit(SECOND, y), y: inUnit(FIRST, surface.first), line: { color: tint, dash, width }, hovertemplate: `${plain(quantity[FIRST].label)} %{y}, ${plain(quantity[SECOND].label)} %{x}<extra></extra>` });
     return [line("best seed", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst seed", surface.worst, "dash", 1.2)];
   });
-  Plotly.react(node, list, layout(axis("energy, J", { rangemode: "tozero" }), axis("height reached, m"), {
+  Plotly.react(node, list, layout(axis(titled(SECOND), { rangemode: "tozero" }), axis(`${quantity[FIRST].label} reached, ${quantity[FIRST].unit}`), {
     showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
   }), CONFIG);
-  describe(node, "Attainment surfaces: the height that the best, the median and the worst seed reached on an energy");
+  describe(node, `Attainment surfaces: the ${quantity[FIRST].label} that the best, the median and the worst seed reached at each ${quantity[SECOND].label}`);
 }
+
+function inUnit(name, values) { return values.map((value) => (value === null ? null : value * quantity[name].scale)); }
 
 function drawMap(node) {
   const list = [];

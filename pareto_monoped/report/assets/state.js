@@ -1,6 +1,6 @@
-// What is selected, and which studies and ranges are shown; everything else listens to it.
+// What is selected, and which studies, axes and ranges are shown; everything else listens to it.
 
-const state = { study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {} };
+const state = { across: SECOND, study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {} };
 const listeners = { selection: [], view: [], time: [] };
 
 function on(event, listener) { listeners[event].push(listener); }
@@ -29,9 +29,9 @@ function moveAlongFront(steps) {
   if (!front.length) return;
   let at = place();
   if (at < 0 && Number.isFinite(steps)) {
-    // From a design off the front to the first one on it that jumps at least as high.
-    const height = state.row === null ? 0 : trials.columns.height_m[state.row] ?? 0;
-    at = front.findIndex((row) => trials.columns.height_m[row] >= height);
+    // From a design off the front to the first one on it that has at least as much of the first objective.
+    const first = state.row === null ? 0 : trials.columns[FIRST][state.row] ?? 0;
+    at = front.findIndex((row) => trials.columns[FIRST][row] >= first);
     if (at < 0) at = front.length - 1;
     steps = 0;
   }
@@ -47,6 +47,9 @@ function inRanges(study, row) {
   return true;
 }
 
+// The third objective of the page, which is then the colour, whichever of the others is to the right; null without one.
+function tinted() { return page.objectives.length > 2 ? page.objectives.slice(1).find((name) => name !== state.across) : null; }
+
 // The selection as one object, a trial or one of the paper's cases.
 function subject() {
   const study = current();
@@ -56,7 +59,7 @@ function subject() {
     const published = page.published.find((c) => c.name === state.caseName);
     const values = published.design;
     return {
-      kind: "case", study, name: made.name, values, measures: made, more: {}, jump: made.jump, status: made.status,
+      kind: "case", study, name: made.name, values, measures: { ...made.measures, ...made }, more: {}, jump: made.jump, status: made.status,
       hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
       why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
     };
@@ -73,7 +76,7 @@ function subject() {
   const letter = study.trials.state[row];
   const ill = study.ill_conditioned.includes(row);
   let why = `on the front, ${at + 1} of ${study.front.length}`;
-  if (picked) why = picked.why.replace(/^trial \d+ \([^)]*\): /, "");
+  if (picked) why = picked.why.replace(/^trial \d+ \(.*?\): /, "");
   else if (ill) why = "taken off the front by its audit";
   else if (at < 0) why = { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[letter];
   return {

@@ -1,0 +1,40 @@
+"""The page's words that depend on the objectives: what it is about, and the questions that the front answers."""
+
+from pareto_monoped.measures import Measure, measure
+from pareto_monoped.report.schema import Payload
+from pareto_monoped.report.tables import safe
+
+ENERGIES = ("energy_j", "electrical_energy_j")
+"""Measures that are never less than the work against gravity, m g (H - start height): the floor of the front chart."""
+
+
+def kind(payload: Payload) -> str:
+    """What the page is about, in one line above its title."""
+    if tuple(payload.objectives) == ("height_m", "energy_j"):
+        return "Pareto report: jump height against energy of a monoped"
+    labels = [measure(name).label for name in payload.objectives]
+    return f"Pareto report: {', '.join(labels[:-1])} and {labels[-1]} of a monoped"
+
+
+def order(payload: Payload) -> str:
+    """The order of the designs on the front, for readers who hear the page."""
+    first = payload.objectives[0]
+    if first == "height_m":
+        return "Designs on the front, from the lowest jump to the highest"
+    return f"Designs on the front, from the least {measure(first).label} to the most"
+
+
+def ask_fields(payload: Payload) -> str:
+    """The two number fields of the form: the first objective wanted, or the second allowed."""
+    first, second = (measure(name) for name in payload.objectives[:2])
+    return "\n".join((_field("ask-height", "", first), _field("ask-energy", "or ", second)))
+
+
+def _field(name: str, before: str, entry: Measure) -> str:
+    word = "wanted" if entry.direction == "maximise" else "allowed"
+    label = f"{before}{entry.label} {word}"
+    return (
+        f'<label for="{name}">{safe(label[0].upper() + label[1:] if not before else label)}</label>'
+        f'<span class="field"><input id="{name}" type="number" step="any" inputmode="decimal">'
+        f"<i>{safe(entry.shown_unit)}</i></span>"
+    )

@@ -1,0 +1,98 @@
+"""Two fronts of one robot, by mechanical energy and by energy at the battery: what choosing by the first costs."""
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pareto_monoped.errors import SelectionError
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.pick import MinHeight, pick
+from pareto_monoped.study.reader import StudyData
+
+HEIGHT_AND_BATTERY = Objectives(names=("height_m", "electrical_energy_j"))
+"""What the owner of a robot pays for, in place of the paper's mechanical energy."""
+
+WORDS = {"energy_j": "mechanical energy", "electrical_energy_j": "battery energy"}
+"""The two energies, told apart in few words."""
+
+HEIGHTS_M = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
+"""Heights at which the designs of both fronts are compared: from the paper's cases to what few designs reach."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """A design that a front offers for a height: its trial, its energies, and the real ratios of its gearboxes."""
+
+    trial: int
+    energy_j: float
+    electrical_energy_j: float
+    hip_ratio: float
+    knee_ratio: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pair:
+    """The designs of least energy for a height, by mechanical energy and by that at the battery; None: not reached."""
+
+    height_m: float
+    mechanical: Choice | None
+    battery: Choice | None
+
+    @property
+    def cost(self) -> float | None:
+        """Energy at the battery that choosing by mechanical energy costs, as a share of the least; None if unknown."""
+        if self.mechanical is None or self.battery is None:
+            return None
+        share = self.mechanical.electrical_energy_j / self.battery.electrical_energy_j - 1.0
+        return share if np.isfinite(share) else None
+
+
+def counterpart(objectives: Objectives) -> Objectives | None:
+    """The same search by the other energy; None if it is not one of height against one energy."""
+    pairs = {HEIGHT_AND_ENERGY: HEIGHT_AND_BATTERY, HEIGHT_AND_BATTERY: HEIGHT_AND_ENERGY}
+    return pairs.get(objectives)
+
+
+def two_fronts(studies: Sequence[StudyData]) -> tuple[StudyData, StudyData] | None:
+    """The studies by mechanical energy and by energy at the battery, if there are just these two and else they agree.
+
+    Seed, budget, stopping rule, name and description may differ.
+    """
+    by = {data.study.objectives: data for data in studies}
+    if len(studies) != 2 or set(by) != {HEIGHT_AND_ENERGY, HEIGHT_AND_BATTERY}:
+        return None
+    mechanical, battery = by[HEIGHT_AND_ENERGY], by[HEIGHT_AND_BATTERY]
+    free = ("name", "description", "seed", "evaluations", "objectives", "reference_point", "stop")
+    same = replace(battery.study, **{key: getattr(mechanical.study, key) for key in free}) == mechanical.study
+    return (mechanical, battery) if same and mechanical.meta.contents == battery.meta.contents else None
+
+
+def choices(mechanical: StudyData, battery: StudyData, heights_m: Sequence[float] = HEIGHTS_M) -> list[Pair]:
+    """The designs that both fronts offer for each height.
+
+    Args:
+        mechanical: a study of height and mechanical energy.
+        battery: one of height and energy at the battery.
+        heights_m: least heights.
+    """
+    return [
+        Pair(height_m=height, mechanical=_choice(mechanical, height), battery=_choice(battery, height))
+        for height in heights_m
+    ]
+
+
+def _choice(data: StudyData, height_m: float) -> Choice | None:
+    front = data.front()
+    with contextlib.suppress(SelectionError):
+        trial = pick(front, MinHeight(height_m=height_m), data.study.objectives).trial
+        row = front.set_index("trial").loc[trial]
+        return Choice(
+            trial=trial,
+            energy_j=float(row["energy_j"]),
+            electrical_energy_j=float(row["electrical_energy_j"]),
+            hip_ratio=data.actuator_map.lookup(float(row["hip_ratio"])).ratio,
+            knee_ratio=data.actuator_map.lookup(float(row["knee_ratio"])).ratio,
+        )
+    return None

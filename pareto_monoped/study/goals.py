@@ -1,0 +1,192 @@
+"""What a study asks for, as in its file: the objectives, the constraints on measures, the hypervolume's corner."""
+
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import BASE_START_HEIGHT_M
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.measures import MEASURE_NAMES, MEASURES, measure
+from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
+from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
+
+Side = Literal["min", "max"]
+
+MIN_HEIGHT_M = 0.55
+"""Least height of a study that names none: a jump of 5 cm. It keeps robots that only stand, and therefore spend no
+energy, off the front."""
+_ALWAYS_STORED = ("min_height_m", "max_energy_j", "max_mass_kg", "min_foot_clearance_m")
+"""Limits that every stored study names, also where they are off, in this order; 0.1.0 had no others."""
+_ALLOWED = {("min", "height_m"): (BASE_START_HEIGHT_M, 10.0), ("min", "foot_clearance_m"): (0.0, 10.0)}
+"""Ranges of limits that are narrower than all numbers above 0."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """One constraint: ``measure`` is at least (``min``) or at most (``max``) ``value``, in its stored unit."""
+
+    measure: str
+    side: Side
+    value: float
+
+    @property
+    def key(self) -> str:
+        """Its key in a stored study, such as "max_mass_kg"."""
+        return f"{self.side}_{self.measure}"
+
+    @property
+    def violated(self) -> str:
+        """On which side of the limit a value violates it."""
+        return "above" if self.side == "max" else "below"
+
+    def shares(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0."""
+        sign = 1.0 if self.side == "max" else -1.0
+        return sign * (values - self.value) / self.value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraints:
+    """The limits that a feasible design keeps, in the order in which they are judged and stored."""
+
+    limits: tuple[Limit, ...]
+
+    def value(self, key: str) -> float | None:
+        """The limit with a key such as "max_mass_kg"; None where there is none."""
+        return next((limit.value for limit in self.limits if limit.key == key), None)
+
+    def as_dict(self) -> dict[str, float | None]:
+        """The one stored form: a number per key, None for the limits that are off and always stored."""
+        return dict.fromkeys(_ALWAYS_STORED) | {limit.key: limit.value for limit in self.limits}
+
+
+def constraints_of(table: Mapping[str, Any], *, source: str = "constraints") -> Constraints:
+    """Limits from a table of ``measure = { min = a, max = b }``, or of keys such as ``max_mass_kg``.
+
+    Args:
+        table: as in a study file or a stored study; a value of None is off.
+        source: where it comes from, for messages.
+
+    Raises:
+        StudyError: an unknown measure or key, a limit given twice, or a value out of range.
+    """
+    given: dict[tuple[Side, str], Any] = {}
+    for key, value in table.items():
+        for side, name, limit in _entries(key, value, source):
+            if (side, name) in given:
+                raise StudyError(f"{source}: constraints.{name}: its {side} is given twice; drop one")
+            given[side, name] = limit
+    chosen = {place: _value(place, value, source) for place, value in given.items() if value is not None}
+    chosen.setdefault(("min", "height_m"), MIN_HEIGHT_M)
+    for name in {name for _, name in chosen}:
+        low, high = chosen.get(("min", name)), chosen.get(("max", name))
+        if low is not None and high is not None and low > high:
+            raise StudyError(f"{source}: constraints.{name}: min = {low:g}, max = {high:g}: min must not exceed max")
+    limits = [Limit(measure=name, side=side, value=value) for (side, name), value in chosen.items()]
+    return Constraints(limits=tuple(sorted(limits, key=_place)))
+
+
+def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
+    """Side, measure and value of each limit that one key of the table sets."""
+    for side in ("min", "max"):
+        name = key.removeprefix(f"{side}_")
+        if name != key and name in MEASURE_NAMES:
+            return [(side, name, value)]
+    if key not in MEASURE_NAMES:
+        near = _near(key.removeprefix("min_").removeprefix("max_"))
+        raise StudyError(f"{source}: constraints.{key}: must be the name of a measure; {near}")
+    if not isinstance(value, Mapping) or not value or not set(value) <= {"min", "max"}:
+        allowed = "a table with min, max or both, such as { max = 4.0 }"
+        raise StudyError(f"{source}: {complaint(f'constraints.{key}', value, allowed, 'correct it')}")
+    return [(side, key, value[side]) for side in ("min", "max") if side in value]
+
+
+def _value(place: tuple[Side, str], value: Any, source: str) -> float:
+    side, name = place
+    low, high = _ALLOWED.get(place, (0.0, math.inf))
+    number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
+    if not number or value <= 0.0 or not low <= value <= high:
+        allowed = "a number above 0" if high == math.inf else f"a number from {low:g} to {high:g}, above 0"
+        raise StudyError(f"{source}: {complaint(f'constraints.{side}_{name}', value, allowed, 'correct it')}")
+    return float(value)
+
+
+def _place(limit: Limit) -> tuple[int, int, bool]:
+    """Where a limit stands among the others: those of 0.1.0 first, in their order, so that its studies go on."""
+    if limit.key in _ALWAYS_STORED:
+        return _ALWAYS_STORED.index(limit.key), 0, False
+    return len(_ALWAYS_STORED), MEASURE_NAMES.index(limit.measure), limit.side == "max"
+
+
+def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
+    """Objectives from a list of measures, from a table of measure and direction, or, for None, the paper's.
+
+    Args:
+        given: as in a study file or a stored study.
+        source: where it comes from, for messages.
+
+    Raises:
+        StudyError: an unknown measure, one without a direction, one named twice, or not two or three of them.
+    """
+    if given is None:
+        return HEIGHT_AND_ENERGY
+    if isinstance(given, str) or not isinstance(given, Sequence | Mapping):
+        allowed = 'a list of two or three measures, such as ["height_m", "energy_j"]'
+        raise StudyError(f"{source}: {complaint('objectives', given, allowed, 'correct it')}")
+    # The order of a table means nothing; that of a list decides which objective charts and tables show first.
+    names = tuple(sorted(given, key=_rank) if isinstance(given, Mapping) else given)
+    for name in names:
+        if name not in MEASURE_NAMES:
+            raise StudyError(f"{source}: objectives: {name!r} is not a measure; {_near(name)}")
+        direction = measure(name).direction
+        if direction is None:
+            raise StudyError(f"{source}: objectives: {name!r} has no direction, neither way is better; take another")
+        if isinstance(given, Mapping) and given[name] != direction:
+            raise StudyError(f"{source}: {complaint(f'objectives.{name}', given[name], repr(direction), 'correct it')}")
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise StudyError(f"{source}: objectives: {twice[0]!r} is named twice; drop one")
+    if not FEWEST <= len(names) <= MOST:
+        raise StudyError(f"{source}: objectives: {len(names)} are named, must be two or three; correct the list")
+    return Objectives(names=names)
+
+
+def stored_objectives(objectives: Objectives) -> dict[str, str] | list[str]:
+    """The stored form of objectives: for the paper's the table that 0.1.0 stored, for others the list of names.
+
+    The order of a list is kept, because a search depends on it; a table's order is not part of a study's hash.
+    """
+    return objectives.directions if objectives == HEIGHT_AND_ENERGY else list(objectives.names)
+
+
+def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) -> ReferencePoint:
+    """The reference point from its table, with the values of the table of measures for those left out.
+
+    Raises:
+        StudyError: a measure that is no objective, or a value out of range.
+    """
+    for name, value in table.items():
+        if name not in objectives.names:
+            allowed = f"one of {', '.join(objectives.names)}"
+            raise StudyError(f"{source}: {complaint('measure in reference_point', name, allowed, 'correct it')}")
+        number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
+        least = 0.0 if measure(name).direction == "maximise" else 1e-9
+        if not number or value < least:
+            allowed = "a number of at least 0" if least == 0.0 else "a number above 0"
+            raise StudyError(f"{source}: {complaint(f'reference_point.{name}', value, allowed, 'correct it')}")
+    return reference_point(objectives, {name: float(value) for name, value in table.items()})
+
+
+def _rank(name: object) -> int:
+    return MEASURE_NAMES.index(name) if name in MEASURE_NAMES else -1
+
+
+def _near(name: object) -> str:
+    found = difflib.get_close_matches(str(name), MEASURE_NAMES, n=1)
+    if found:
+        return f"did you mean {found[0]!r}?"
+    return f"choose from {', '.join(entry.name for entry in MEASURES if entry.direction is not None)}"
