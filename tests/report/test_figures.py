@@ -9,7 +9,8 @@ from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import _along, _front, _links, _states, write_figures, write_map_figure
+from pareto_monoped.report.figures import _along, _links, _states, write_figures, write_map_figure
+from pareto_monoped.report.front_figure import front_figure
 from pareto_monoped.report.payload import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
@@ -41,7 +42,7 @@ def test_svg_has_readable_text_and_the_width_of_a_column(figures):
 @pytest.fixture
 def front_axes(payload):
     figure = Figure()
-    assert _front(payload, figure)
+    assert front_figure(payload, figure)
     (axes,) = figure.axes
     return axes
 
@@ -73,7 +74,7 @@ def test_the_front_figure_begins_at_the_start_height_and_holds_every_mark(front_
 def test_the_floor_is_that_of_the_lightest_robot_of_all_studies(payload):
     (card,) = payload.studies
     figure = Figure()
-    _front(replace(payload, studies=[card, replace(card, floor_mass_kg=0.5 * card.floor_mass_kg)]), figure)
+    front_figure(replace(payload, studies=[card, replace(card, floor_mass_kg=0.5 * card.floor_mass_kg)]), figure)
     (floor,) = (line for line in figure.axes[0].lines if line.get_label().startswith("m g"))
     energy, height = (values[1] for values in floor.get_data())
     assert height == pytest.approx(0.5 + energy / (0.5 * card.floor_mass_kg * 9.81))
