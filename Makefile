@@ -11,7 +11,7 @@ JOBS ?= 2
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make pareto     set up, then: actuator map, NSGA-II study, report, knee design, its CAD"
+	@echo "make pareto     set up, then: actuator map, two fronts, report, knee design, its CAD"
 	@echo "make test       set up, then the tests (about five minutes)"
 	@echo "make test-long  the tests that take longer, too"
 	@echo "make lint       ruff and mypy"

@@ -187,9 +187,9 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
     widths = [max(len(head), 8) for head in heads]
     wide = 6 + sum(widths) + len(widths) + 8 * len(shown) <= _TABLE_WIDTH
-    # With a third objective the usual columns do not fit; four digits of each variable then must do.
-    number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{value:6.4g}")
-    symbols = " ".join(f"{variable.symbol:>{7 if wide else 6}}" for variable in shown)
+    # With a third objective the usual columns do not fit; three digits of each variable then must do.
+    number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
+    symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
     click.echo(f"{'trial':>6} {words} {symbols}")
     for _, row in rows.iterrows():

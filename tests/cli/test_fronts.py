@@ -2,12 +2,13 @@
 
 import csv
 import json
+from pathlib import Path
 
 import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.design import PAPER_NAMES
-from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.reader import StudyData, read_study
 from tests.study.support import made_database
 
 
@@ -123,3 +124,81 @@ def test_all_keeps_designs_that_failed_their_audit(db, capsys, monkeypatch):
     assert cli(["front", db, "--all"]) == 0
     assert cli(["pick", db, "--knee"]) == 0
     assert asked == [False, True, False]
+
+
+def test_other_objectives_take_other_designs_of_the_stored_trials(db, capsys):
+    names = ["height_m", "electrical_energy_j"]
+    assert cli(["front", db, "--objectives", ",".join(names), "--json"]) == 0
+    said = capsys.readouterr()
+    rows = json.loads(said.out)
+    assert f"{len(rows)} of these {len(rows)} designs are not audited" in said.err
+    trials = read_study(Path(db)).trials
+    able = trials[trials["state"] == "feasible"].to_dict(orient="records")
+    expected = [
+        int(a["trial"])
+        for a in able
+        if not any(
+            b["height_m"] >= a["height_m"]
+            and b["electrical_energy_j"] <= a["electrical_energy_j"]
+            and b["trial"] != a["trial"]
+            for b in able
+        )
+    ]
+    assert sorted(row["trial"] for row in rows) == sorted(expected)
+    assert [list(row) for row in rows] == [["trial", *names, *PAPER_NAMES]] * len(rows)
+
+
+def test_three_objectives_fit_into_the_window(db, capsys):
+    assert cli(["front", db, "--objectives", "height_m,electrical_energy_j,mass_kg"]) == 0
+    heading, *lines = capsys.readouterr().out.splitlines()
+    assert heading.split()[:7] == ["trial", "height", "m", "battery", "J", "mass", "kg"]
+    assert lines
+    assert max(len(line) for line in (heading, *lines)) <= 80
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        ("height_m", "1 are named"),
+        ("height_m,watts", "'watts' is not a measure"),
+        ("height_m,apex_s", "no direction"),
+        ("height_m,energy_j,mass_kg,drift_m", "4 are named"),
+    ],
+)
+def test_bad_objectives_get_one_line(db, capsys, given, word):
+    assert cli(["front", db, "--objectives", given]) == 2
+    said = capsys.readouterr()
+    assert (said.out, said.err.count("\n")) == ("", 1)
+    assert word in said.err
+
+
+def test_a_measure_that_no_trial_has_is_refused(capsys):
+    """Version 0.1.0 did not store what the battery pays."""
+    old = Path(__file__).parents[1] / "study" / "data" / "plain.db"
+    assert cli(["front", str(old), "--objectives", "height_m,electrical_energy_j"]) == 2
+    assert "no trial" in capsys.readouterr().err
+    assert cli(["front", str(old), "--objectives", "height_m,mass_kg"]) == 0
+
+
+def test_a_limit_on_any_measure(db, capsys):
+    front = read_study(Path(db)).front()
+    drift = sorted(front["drift_m"])[1]
+    assert cli(["pick", db, "--limit", f"drift_m={drift}", "--json"]) == 0
+    able = front[front["drift_m"] <= drift]
+    assert json.loads(capsys.readouterr().out)["trial"] == able.loc[able["height_m"].idxmax(), "trial"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "word"),
+    [
+        ("drift_m", "with a number"),
+        ("drift_m=x", "with a number"),
+        ("apex_s=1", "a measure"),
+        ("x=1", "a measure"),
+    ],
+)
+def test_a_bad_limit_gets_one_line(db, capsys, limit, word):
+    assert cli(["pick", db, "--limit", limit]) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert word in said.err

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.pareto.pick import Knee, pick
+from pareto_monoped.study.choices import HEIGHTS_M, two_fronts
 from pareto_monoped.study.reader import read_study
 
 ROOT = Path(__file__).parents[2]
@@ -41,8 +43,8 @@ def job(tmp_path_factory):
 class TestMainJob:
     def test_it_names_the_files_and_they_exist(self, job):
         folder, done = job
-        named = [line.split()[0] for line in done.stdout.split("Made\n")[1].splitlines()[:4]]
-        assert len(named) == 4
+        named = [line.split()[0] for line in done.stdout.split("Made\n")[1].splitlines()[:5]]
+        assert len(named) == 5
         for name in named:
             assert (folder / name).exists(), name
         assert not list(folder.rglob("*.tmp"))
@@ -54,6 +56,46 @@ class TestMainJob:
         assert "15.36" in done.stdout
         assert all(len(line) <= 80 for line in done.stdout.splitlines())
         assert "Traceback" not in done.stderr
+
+    def test_the_second_front_is_the_same_study_by_the_energy_at_the_battery(self, job):
+        folder, _ = job
+        first, second = (read_study(folder / "studies" / f"quick{word}.db") for word in ("", "_battery"))
+        assert second.study.objectives.names == ("height_m", "electrical_energy_j")
+        assert two_fronts([first, second]) is not None
+        assert len(second.trials) == 160
+
+    def test_the_closing_table_is_what_both_fronts_offer(self, job):
+        folder, done = job
+        first, second = (read_study(folder / "studies" / f"quick{word}.db") for word in ("", "_battery"))
+        lines = [line.split() for line in done.stdout.splitlines()]
+        rows = [line[2:] for line in lines if len(line) > 2 and line[1] == "m" and line[0][:2] in ("0.", "1.")]
+        assert len(rows) == len(HEIGHTS_M)
+        for height, cells in zip(HEIGHTS_M, rows, strict=True):
+            fronts = ((first, "energy_j"), (second, "electrical_energy_j"))
+            expected, battery = [], []
+            for data, energy in fronts:
+                front = data.front()
+                able = front[front["height_m"] >= height]
+                if len(able) == 0:
+                    expected += ["not", "reached"]
+                    continue
+                best = able.loc[able[energy].idxmin()]
+                battery.append(best["electrical_energy_j"])
+                gears = [data.actuator_map.lookup(best[f"{side}_ratio"]).ratio for side in ("hip", "knee")]
+                expected += [f"{best[name]:.2f}" for name in ("energy_j", "electrical_energy_j")]
+                expected += [f"{ratio:.2f}" for ratio in gears]
+            expected += [f"{100 * (battery[0] / battery[1] - 1):+.1f}", "%"] if len(battery) == 2 else ["-"]
+            assert cells == expected
+
+    def test_the_report_shows_both_fronts_and_the_same_table(self, job):
+        folder, done = job
+        text = (folder / "reports" / "quick" / "report.html").read_text(encoding="utf-8")
+        for words in ("quick by mechanical energy", "quick by battery energy", "The two energies"):
+            assert words in text
+        table = text.split('id="energies"')[1].split("</table>")[0]
+        shares = re.findall(r"[+-][0-9.]+ %", done.stdout)
+        assert shares
+        assert re.findall(r"[+-][0-9.]+ %", table) == shares
 
     def test_the_map_is_complete(self, job):
         folder, _ = job
@@ -87,6 +129,7 @@ class TestMainJob:
         assert again.stdout == first.stdout
         after = {path: path.stat().st_mtime_ns for path in before}
         changed = {path.name for path in before if before[path] != after[path]}
+        assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 160
         assert changed <= {"actuators.csv"}
 
     def test_a_stale_export_of_the_knee_is_made_again(self, job):
@@ -96,9 +139,22 @@ class TestMainJob:
         (design / "design.json").write_text(text.replace('"kv_rpm_per_v": ', '"kv_rpm_per_v": 1'))
         again = pareto(folder)
         assert again.returncode == 0, again.stderr
-        (step,) = [line for line in again.stderr.splitlines() if line.startswith("[3/4]")]
+        (step,) = [line for line in again.stderr.splitlines() if line.startswith("[4/5]")]
         assert step.endswith(" --force")
         assert (design / "design.json").read_text() == text
+
+
+def test_a_study_of_other_objectives_has_one_front(tmp_path):
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "quick.toml").write_text(
+        'name = "quick"\nevaluations = 40\naudit = false\nobjectives = ["height_m", "mass_kg"]\n'
+    )
+    done = pareto(tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "[4/4]" in done.stderr
+    assert [path.name for path in (tmp_path / "studies").glob("*.db")] == ["quick.db"]
+    assert "costs" not in done.stdout
+    assert max(len(line) for line in done.stdout.splitlines()) <= 80
 
 
 def test_a_missing_study_is_one_line(tmp_path):

@@ -1,0 +1,184 @@
+"""The page of studies with other objectives: axes, words, colours, and two fronts in one chart."""
+
+from dataclasses import replace
+
+import pytest
+
+from pareto_monoped.measures import measure
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.comparison import least_second
+from pareto_monoped.report.front_figure import front_figure
+from pareto_monoped.report.page import page
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.report.summary import sentences
+from pareto_monoped.report.tables import comparison_tables, head
+from pareto_monoped.study.choices import choices
+from pareto_monoped.study.reader import read_study
+from tests.report.conftest import made
+
+THREE = ("height_m", "electrical_energy_j", "mass_kg")
+BATTERY = ("height_m", "electrical_energy_j")
+
+
+def source_of(db):
+    data = read_study(db)
+    return Source(data=data, resimulation=resimulate(data, most_jumps=2), models={})
+
+
+@pytest.fixture(scope="module")
+def three(folder):
+    return source_of(made(folder, name="three", objectives=list(THREE), evaluations=120, audit=False))
+
+
+@pytest.fixture(scope="module")
+def battery(folder):
+    """The study of the other tests, by the energy at the battery."""
+    return source_of(made(folder, objectives=list(BATTERY), evaluations=160, audit=False, algorithm={"name": "random"}))
+
+
+@pytest.fixture(scope="module")
+def two(source, battery):
+    """Both fronts; the search may differ as little as the audit, or the two are no pair."""
+    settings = {"algorithm": source.data.study.algorithm, "audit": True}
+    return [source, replace(battery, data=replace(battery.data, study=replace(battery.data.study, **settings)))]
+
+
+def written(folder, name, sources):
+    file = folder / name
+    file.write_text(page(build(sources)), encoding="utf-8")
+    return file
+
+
+def chart(tab, what):
+    return tab.page.evaluate(f"(() => {{ const gd = document.getElementById('front-chart'); return {what}; }})()")
+
+
+def test_the_page_has_every_objective_of_every_trial(three, two):
+    payload = build([three])
+    assert (tuple(payload.objectives), tuple(payload.goals)) == (THREE, THREE)
+    (card,) = payload.studies
+    for name in THREE:
+        assert len(card.trials.columns[name]) == len(card.trials.trial)
+    both = build(two)
+    assert both.goals == ("height_m", "energy_j", "electrical_energy_j")
+    assert [card.label for card in both.studies] == ["small by mechanical energy", "small by battery energy"]
+    assert both.title == "small"
+
+
+def test_its_words_name_the_objectives(three):
+    text = head(build([three]))
+    data = three.data
+    front = data.front()
+    (sentence,) = sentences(data, front, [])
+    for name in THREE:
+        entry = measure(name)
+        assert f"{entry.label} from {entry.text(front[name].min())} to {entry.text(front[name].max())}" in sentence
+    assert sentence in text
+    assert "m J kg from 0.55 m, 200 J, 10 kg" in text
+    reached = front[front["height_m"] >= 0.8]
+    assert f"0.80 m needs at least {reached['electrical_energy_j'].min():.2f} J" in sentence
+
+
+def test_three_objectives_have_a_chart_with_a_third_as_colour(three, folder, open_tab):
+    file = written(folder, "three_objectives.html", [three])
+    tab = open_tab(file)
+    front = three.data.front()
+    shown = chart(tab, "gd.data.filter((t) => t.name === 'front').map((t) => [t.x, t.y, t.marker.color, t.mode])")
+    ((x, y, tints, mode),) = shown
+    for values, name in ((x, "electrical_energy_j"), (y, "height_m"), (tints, "mass_kg")):
+        assert values == pytest.approx(front[name].tolist(), rel=1e-4)
+    assert mode == "markers"
+    titles = "[gd.layout.xaxis.title.text, gd.data.find((t) => t.name === 'front').marker.colorbar.title.text]"
+    assert chart(tab, titles) == ["energy from the battery, J", "mass, kg"]
+    tab.page.select_option("#across", "mass_kg")
+    assert chart(tab, titles) == ["mass, kg", "energy from the battery, J"]
+    swapped = chart(tab, "gd.data.find((t) => t.name === 'front').x")
+    assert swapped == pytest.approx(front["mass_kg"].tolist(), rel=1e-4)
+    assert not tab.page.is_visible("[data-show=published]")
+    tab.scroll_through()
+    tab.quiet(file)
+
+
+def test_the_form_asks_for_the_first_two_objectives(three, folder, open_tab):
+    tab = open_tab(written(folder, "three_objectives.html", [three]))
+    front = three.data.front()
+    tab.page.fill("#ask-height", "0.8")
+    best = front[front["height_m"] >= 0.8]
+    tab.expects("#ask-answer", f"trial {best.loc[best['electrical_energy_j'].idxmin(), 'trial']},")
+    allowed = round(float(front["electrical_energy_j"].median()), 1)
+    tab.page.fill("#ask-energy", str(allowed))
+    able = front[front["electrical_energy_j"] <= allowed]
+    tab.expects("#ask-answer", f"trial {able.loc[able['height_m'].idxmax(), 'trial']},")
+    assert tab.text("label[for='ask-energy']") == "or energy from the battery allowed"
+
+
+def test_two_fronts_lie_in_one_chart_by_either_energy(two, folder, open_tab):
+    file = written(folder, "two_fronts.html", two)
+    tab = open_tab(file)
+    modes = "gd.data.filter((t) => t.name === 'front').map((t) => t.mode)"
+    assert chart(tab, modes) == ["lines+markers", "markers"]
+    tab.page.select_option("#across", "electrical_energy_j")
+    assert chart(tab, modes) == ["markers", "lines+markers"]
+    assert chart(tab, "gd.data.filter((t) => t.name === 'published').length") == 0
+    for shown, here in zip(chart(tab, "gd.data.filter((t) => t.name === 'front').map((t) => t.x)"), two, strict=True):
+        assert shown == pytest.approx(here.data.front()["electrical_energy_j"].tolist(), rel=1e-4)
+    assert chart(tab, "gd.data.find((t) => t.name === 'floor') !== undefined")
+    tab.scroll_through()
+    tab.quiet(file)
+
+
+@pytest.mark.parametrize("width", [1280, 420])
+def test_no_page_is_wider_than_its_window(three, two, folder, open_tab, width):
+    for name, sources in (("three_objectives.html", [three]), ("two_fronts.html", two)):
+        tab = open_tab(written(folder, name, sources), width=width)
+        tab.scroll_through()
+        assert tab.page.evaluate("document.documentElement.scrollWidth") <= width
+        bar = tab.page.evaluate(
+            "(() => { const b = document.querySelector('#front-chart .infolayer .colorbar, #front-chart .cbbg');"
+            "return b ? b.getBoundingClientRect().right : 0; })()"
+        )
+        assert bar <= width
+
+
+def test_the_steps_of_the_front_can_be_reached(source, folder, open_tab):
+    """Between two designs the chart shows the height of the lower one: the next is reached at its own energy only."""
+    tab = open_tab(written(folder, "steps.html", [source]))
+    assert chart(tab, "gd.data.find((t) => t.name === 'front').line.shape") == "hv"
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    assert front_figure(build([source]), figure)
+    (line,) = [line for line in figure.axes[0].lines if line.get_label() == "small"]
+    assert line.get_drawstyle() == "steps-post"
+
+
+def test_the_table_of_both_energies_says_what_the_first_costs(two):
+    text = comparison_tables(build(two)).split('id="energies"')[1]
+    for row in choices(*(source.data for source in two)):
+        assert f"{row.height_m:.1f} m" in text
+        if row.cost is not None:
+            assert f"{100 * row.cost:+.1f} %" in text
+    assert "%" in text
+    assert 'id="energies"' not in comparison_tables(build([two[0], two[0]]))
+
+
+def test_a_surface_of_two_minimised_objectives_counts_downward():
+    import numpy as np
+
+    from pareto_monoped.pareto.objectives import Objectives
+
+    objectives = Objectives(names=("mass_kg", "electrical_energy_j"))
+    front = np.array([[3.0, 50.0], [4.0, 20.0]])
+    found = least_second(front, np.array([2.5, 3.0, 3.9, 4.0]), objectives)
+    assert found.tolist() == [np.inf, 50.0, 50.0, 20.0]
+
+
+def test_figures_for_print_have_the_objectives_as_axes(three):
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    assert front_figure(build([three]), figure)
+    assert figure.axes[0].get_xlabel() == "energy from the battery (J)"
+    assert figure.axes[0].get_ylabel() == "height (m)"
+    assert figure.axes[1].get_ylabel() == "mass (kg)"
