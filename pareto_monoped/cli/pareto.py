@@ -67,7 +67,8 @@ def pareto(
     steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources))
 
     click.echo("\nMade")
-    fronts = [(path, f"every jump by {_by(data)}; opens in Optuna") for path, data in zip(dbs, studies, strict=True)]
+    made = [f"jumps by {_by(data)}; opens in Optuna" for data in studies]
+    fronts = zip(dbs, made if other else ["every jump; resumable, opens in Optuna"], strict=True)
     for path, what in (
         (table, "the lightest actuator of every ratio"),
         *fronts,

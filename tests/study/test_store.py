@@ -67,6 +67,19 @@ def test_optunas_front_is_ours(tmp_path):
     assert best == set(read_study(tmp_path / "s.db").front()["trial"]) == {0, 3, 4}
 
 
+@pytest.mark.parametrize("options", [{}, {"known_schemas": ()}], ids=["direct", "by Optuna's public call"])
+def test_optuna_has_the_objectives_of_the_study(tmp_path, options):
+    names = ["mass_kg", "height_m", "electrical_energy_j"]
+    _, generations = made_database(tmp_path / "s.db", study=made_study(objectives=names), **options)
+    loaded = load(tmp_path / "s.db")
+    assert [direction.name for direction in loaded.directions] == ["MINIMIZE", "MAXIMIZE", "MINIMIZE"]
+    assert loaded.metric_names == names
+    columns = [np.concatenate([getattr(g.evaluations, name) for g in generations]) for name in names]
+    for trial, values in zip(loaded.trials, np.column_stack(columns).tolist(), strict=True):
+        assert trial.values == (None if trial.state.name == "FAIL" else values)
+    assert {trial.number for trial in loaded.best_trials} == set(read_study(tmp_path / "s.db").front()["trial"])
+
+
 def test_optuna_can_go_on_with_it(tmp_path):
     made_database(tmp_path / "s.db")
     loaded = load(tmp_path / "s.db")
