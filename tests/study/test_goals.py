@@ -72,6 +72,14 @@ def test_both_ways_to_write_a_limit_are_one():
     assert digest(made(constraints=new)) == digest(made(constraints=old))
 
 
+def test_limits_are_judged_in_the_order_of_0_1_0():
+    """Violations are summed in it, to the last bit, and Optuna's tables have the constraints in it."""
+    limits = constraints_of(
+        {"foot_clearance_m": {"min": 0.02}, "drift_m": {"max": 0.1}, "mass_kg": {"max": 4.0}}
+    ).limits
+    assert [limit.key for limit in limits] == ["min_height_m", "max_mass_kg", "min_foot_clearance_m", "max_drift_m"]
+
+
 def test_every_measure_can_be_limited_on_either_side():
     for entry in MEASURES:
         limits = constraints_of({entry.name: {"min": 0.6, "max": 0.7}}).limits
