@@ -205,8 +205,14 @@ def test_gears_carry_grade_and_safety_in_their_notes():
         assert "ISO 1328-1 class 6; S_H " in note
         assert "wire-cut" not in note
     assert sum("18CrNiMo7-6" in note for note in notes) == 2
-    least = min(float(note.split("S_H ")[1].split(",")[0]) for note in notes)
-    assert least == pytest.approx(actuator.rating.flank_safety, abs=0.005)
+    teeth = {"sun": 22, "planet": 44, "ring": 110}
+    for gear, count in teeth.items():
+        (note,) = [note for note in notes if note.startswith(f"{count} teeth")]
+        flank, root = (
+            min(getattr(one, name) for one in actuator.rating.gears if one.gear == gear)
+            for name in ("flank_safety", "root_safety")
+        )
+        assert note.endswith(f"; S_H {flank:.2f}, S_F {root:.2f} (ISO 6336)")
 
 
 def test_every_rule_belongs_to_a_set_and_says_what_would_help():

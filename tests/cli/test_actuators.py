@@ -261,11 +261,38 @@ def test_rated_gear_set_prints_a_gear_calculation_sheet(capsys):
 
     gears = [mesh["pinion"], mesh["wheel"], ring["pinion"], ring["wheel"]]
     assert [gear["gear"] for gear in gears] == ["sun", "planet", "planet", "ring"]
-    assert cells("face load, flank")[-2:] == [f"{one['face_load_factor']:.3f}" for one in (mesh, ring)]
-    assert cells("contact stress")[-4:] == [f"{gear['contact_stress_mpa']:.0f}" for gear in gears]
-    assert cells("limit sigma_FG")[-4:] == [f"{gear['bending_limit_mpa']:.0f}" for gear in gears]
-    assert cells("S_H, at least 1.1")[-4:] == [f"{gear['flank_safety']:.2f}" for gear in gears]
-    assert cells("S_F, at least 1.4")[-4:] == [f"{gear['root_safety']:.2f}" for gear in gears]
+    for first, key, form in (
+        ("tangential force", "tangential_force_n", ".1f"),
+        ("pitch-line speed", "pitch_speed_m_per_s", ".2f"),
+        ("contact ratio epsilon", "contact_ratio", ".3f"),
+        ("application", "application_factor", ".3f"),
+        ("load sharing", "sharing_factor", ".3f"),
+        ("dynamic", "dynamic_factor", ".3f"),
+        ("face load, flank", "face_load_factor", ".3f"),
+        ("face load, root", "root_face_load_factor", ".3f"),
+        ("transverse load, flank", "transverse_load_factor", ".3f"),
+        ("transverse load, root", "root_transverse_load_factor", ".3f"),
+    ):
+        assert cells(first)[-2:] == [format(one[key], form) for one in (mesh, ring)]
+    for first, key, form in (
+        ("single contact", "single_contact_factor", ".3f"),
+        ("flank load cycles", "flank_cycles", ".2g"),
+        ("life Z_NT", "flank_life_factor", ".3f"),
+        ("contact stress", "contact_stress_mpa", ".0f"),
+        ("limit sigma_HG", "contact_limit_mpa", ".0f"),
+        ("S_H, at least 1.1", "flank_safety", ".2f"),
+        ("S_H at overload, at least 1", "overload_flank_safety", ".2f"),
+        ("form Y_F", "form_factor", ".3f"),
+        ("stress correction", "stress_correction", ".3f"),
+        ("rim Y_B", "rim_factor", ".3f"),
+        ("root load cycles", "root_cycles", ".2g"),
+        ("life Y_NT", "root_life_factor", ".3f"),
+        ("bending stress", "bending_stress_mpa", ".0f"),
+        ("limit sigma_FG", "bending_limit_mpa", ".0f"),
+        ("S_F, at least 1.4", "root_safety", ".2f"),
+        ("S_F at overload, at least 1.2", "overload_root_safety", ".2f"),
+    ):
+        assert cells(first)[-4:] == [format(gear[key], form) for gear in gears]
     for words in ("100000 jumps", "18CrNiMo7-6, case-hardened", "31CrMoV9, gas-nitrided", "class 6"):
         assert words in printed
 
