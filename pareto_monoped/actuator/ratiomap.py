@@ -122,10 +122,19 @@ class ActuatorMap:
             source: what the motor is called, the first words of the message.
 
         Raises:
-            MotorError: there is none; the message names the rules in the way and the motor's size.
+            MotorError: there is none; the message names the rules in the way and the motor's size, or its torque where
+                gear sets fit and are too weak.
         """
         if any(entry.actuator is not None for entry in self.entries):
             return
+        for entry in self.entries:
+            for weak in entry.forbidden_by.values():
+                if weak and set(weak) <= set(STRENGTH_RULES):
+                    raise MotorError(
+                        f"{source}: no gearbox is strong enough at any ratio from {RATIO_LOW} to {RATIO_HIGH}, in the "
+                        f"way is peak_torque_n_m = {self.motor.peak_torque_n_m:.4g} ({', '.join(weak)}); "
+                        f"choose a motor of less torque, or {either(cures(entry))}"
+                    )
         motor, reasons = self.motor, []
         bodies: tuple[tuple[Family, str], ...] = (("ISSPG", "frameless"), ("ESSPG", "framed"))
         for family, body in bodies:

@@ -95,6 +95,7 @@ def status(db: Path, as_json: bool) -> None:
         "study": facts["name"],
         "state": _state(facts),
         "motor, calibration": f"{facts['motor']}, {facts['calibration']}",
+        **({"gearbox rules": rules} if (rules := facts["settings"].get("rules")) else {}),
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
         "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
         "least height": f"{facts['settings']['constraints']['min_height_m']:g} m",

@@ -15,7 +15,7 @@ from pareto_monoped.actuator.search import build_map, map_for, map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
-from pareto_monoped.errors import DesignError
+from pareto_monoped.errors import DesignError, MotorError
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.robot.build import build_robot
 from tests.actuator.loop import allowed
@@ -195,6 +195,17 @@ def test_far_from_every_gearbox_nothing_stands_in():
     paper = map_for("VT8020")
     assert paper.interval_index([9.0, 8.85]).tolist() == [-1, -1]
     assert paper.stand_in(9.0) == ""
+
+
+def test_a_motor_too_strong_for_every_gear_set_is_refused_by_its_torque(vt8020):
+    strong = replace(vt8020, name="strong", peak_torque_n_m=40.0)
+    with pytest.raises(MotorError) as caught:
+        map_of(strong, "iso6336")
+    message = str(caught.value)
+    assert message.startswith("motor strong: no gearbox is strong enough at any ratio from 4 to 15")
+    for words in ("peak_torque_n_m = 40", "flank_strength", "a harder steel"):
+        assert words in message
+    assert "\n" not in message
 
 
 def test_gears_carry_grade_and_safety_in_their_notes():

@@ -141,6 +141,7 @@ FACTS = {
         ({}, ("state", "finished (the hypervolume has stopped growing)")),
         ({"state": "running", "process": 77}, ("state", "running (process 77)")),
         ({"state": "unfinished", "stop_reason": "interrupted"}, ("state", "unfinished")),
+        ({"settings": FACTS["settings"] | {"rules": "iso6336"}}, ("gearbox rules", "iso6336")),
         ({}, ("free variables", "2 of 7")),
         ({}, ("least height", "0.6 m")),
         ({}, ("evaluations", "30 of 40")),
