@@ -19,11 +19,14 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER
 from pareto_monoped.jump.audit import finer, perturbed
 from pareto_monoped.jump.calibration import Calibration, FadeGate, SpringContact, load_calibration
+from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.robot.population import robot_arrays
 
 Floats = NDArray[np.float64]
 MAP = map_for("VT8020")
 PERTURBATIONS = 5
+DEFAULT_DESIGN = PAPER_CASES["nominal"].design.as_array()
 
 
 def main(count: int) -> None:
@@ -32,7 +35,7 @@ def main(count: int) -> None:
     print(f"{count} random designs; median / 90th percentile / worst; inf: a jump was lost")
     print("| calibration | jump | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|")
-    for name in ("reference", "ideal", "paper"):
+    for name in ("reference", "reference-1", "ideal", "paper"):
         calibration = load_calibration(name)
         print(f"| {name} | {' | '.join(_conditioning(designs, calibration))} |")
 
@@ -47,7 +50,14 @@ def main(count: int) -> None:
         ("RK4", 1.0),
         ("RK4", 2.0),
     ):
-        simulation = replace(reference.simulation, integrator=integrator, timestep_s=step * 1e-3)  # type: ignore[arg-type]
+        # The control period is 1 ms, or a step where that is longer.
+        simulation = replace(
+            reference.simulation,
+            integrator=integrator,  # type: ignore[arg-type]
+            timestep_s=step * 1e-3,
+            control_period_s=max(step, 1.0) * 1e-3,
+            positions_read="state" if integrator == "RK4" else "half_step_back",
+        )
         calibration = replace(reference, simulation=simulation)
         _, *changes = _conditioning(designs, calibration)
         print(f"| {integrator} | {step:g} | {_speed(designs, calibration, reference):.2f} | {' | '.join(changes)} |")
@@ -103,7 +113,8 @@ def _choices(reference: Calibration) -> Iterator[tuple[str, Calibration]]:
     joints, drive, contact, gate = reference.joints, reference.drive, reference.contact, reference.gate
     assert isinstance(contact, SpringContact)
     assert isinstance(gate, FadeGate)
-    assert joints.knee_stop is not None
+    hip, knee = end_stops(robot_arrays(DEFAULT_DESIGN, MAP), joints)
+    assert knee is not None
     yield "`reference`", reference
     yield "`ideal` (no losses)", load_calibration("ideal")
     for scale in (0.0, 2.0, 20.0):
@@ -140,12 +151,23 @@ def _choices(reference: Calibration) -> Iterator[tuple[str, Calibration]]:
     yield "base on a vertical guide", replace(reference, simulation=replace(reference.simulation, base_slides=False))
     for scale in (0.5, 2.0):
         stop = replace(
-            joints.knee_stop,
-            stiffness_n_m_per_rad=joints.knee_stop.stiffness_n_m_per_rad * scale,
-            damping_n_m_s_per_rad=joints.knee_stop.damping_n_m_s_per_rad * scale,
+            knee,
+            stiffness_n_m_per_rad=knee.stiffness_n_m_per_rad * scale,
+            damping_n_m_s_per_rad=knee.damping_n_m_s_per_rad * scale,
         )
-        yield f"knee stop {scale:g} times as stiff", replace(reference, joints=replace(joints, knee_stop=stop))
-    yield "no end stops", replace(reference, joints=replace(joints, knee_stop=None, hip_stop=None))
+        given = replace(joints, stops="given", hip_stop=hip, knee_stop=stop)
+        yield f"knee stop {scale:g} times as stiff", replace(reference, joints=given)
+    yield "no end stops", replace(reference, joints=replace(joints, stops="given"))
+    yield "rotors as armature of their joints", replace(reference, joints=replace(joints, rotors="armature"))
+    yield (
+        "positions read as they are",
+        replace(reference, simulation=replace(reference.simulation, positions_read="state")),
+    )
+    yield (
+        "control period of 0.25 ms",
+        replace(reference, simulation=replace(reference.simulation, timestep_s=2.5e-4, control_period_s=2.5e-4)),
+    )
+    yield "`reference-1`", load_calibration("reference-1")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import CONTROL, LOWER, UPPER, columns
+from pareto_monoped.design import CONTROL, LOWER, PAPER_CONTROL, UPPER, columns
 from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
 from pareto_monoped.jump.model import mjcf
@@ -125,9 +125,9 @@ def _naive(document: str, design: Floats, robots: RobotArrays, i: int, calibrati
     """Compile the XML and jump in plain Python."""
     gate = calibration.gate
     assert isinstance(gate, FadeGate)
-    stiffness, damping, torsion = columns(design, CONTROL).tolist()
+    stiffness, damping, torsion = columns(design, PAPER_CONTROL).tolist()
     motors = motors_of(robots, i, calibration)
-    return jump(document, stiffness, damping, torsion, motors, fade=gate.length_m)
+    return jump(document, stiffness, damping, torsion, motors, fade=gate.length_m, read_back=True)
 
 
 def _ratio(these: list[float], those: list[float]) -> float:

@@ -424,6 +424,24 @@ AUDIT_MEASURES: tuple[Measure, ...] = (
         2,
         _PERCENT,
     ),
+    _measure(
+        "control_period_height_m",
+        "m",
+        "minimise",
+        "change of height with a quarter of the control period",
+        "height, control period quartered",
+        2,
+        _MM,
+    ),
+    _measure(
+        "control_period_energy",
+        "1",
+        "minimise",
+        "relative change of energy with a quarter of the control period",
+        "energy, control period quartered",
+        2,
+        _PERCENT,
+    ),
 )
 """Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
 

@@ -135,7 +135,7 @@ def _report(result: "JumpResult", motor: str, actuator_map: "ActuatorMap") -> di
 
 def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibration") -> dict[str, Any]:
     from pareto_monoped.jump.audit import audit
-    from pareto_monoped.jump.single import energy_balance
+    from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays
 
     values = design.as_array()[None, :]
@@ -149,7 +149,7 @@ def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibratio
     )
     return {
         **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
-        "energy": asdict(balance) | {"residual_j": balance.residual_j},
+        "energy": asdict(balance) | {"joint_work_j": balance.joint_work_j, "residual_j": balance.residual_j},
     }
 
 

@@ -57,14 +57,18 @@ def replay(folder: Path) -> tuple[float, float, float]:
     height, work, electrical = data.qpos[z], np.zeros(2), 0.0
     stood = touched = latched = off = False
     commands: list[tuple[float, np.ndarray]] = []
-    motor, quiet, step = np.zeros(2), 0, 0
+    motor, quiet, step, before = np.zeros(2), 0, 0, np.zeros(model.nv)
     while step <= jump["step_limit"]:
         speed = data.qvel[[hip, knee]].copy()
-        wanted, below = virtual_leg(jump, data.qpos[hip], data.qpos[knee], speed)
-        clearance = data.qpos[z] + below - jump["foot_radius_m"]
+        below = virtual_leg(jump, data.qpos[hip], data.qpos[knee], speed)[1]
         height = max(height, data.qpos[z])
-        touching = clearance <= jump["touch_m"]
+        touching = data.qpos[z] + below - jump["foot_radius_m"] <= jump["touch_m"]
         stood = stood or touching
+        # What the controller reads: positions at the time of the speeds, half a step back.
+        q = data.qpos - jump["read_back_s"] * (1.25 * data.qvel - 0.25 * before)
+        before = data.qvel.copy()
+        wanted, below = virtual_leg(jump, q[hip], q[knee], speed)
+        clearance = q[z] + below - jump["foot_radius_m"]
         tick = step % jump["period_steps"] == 0 and not latched
         if tick:
             if jump["fade_length_m"]:
@@ -84,7 +88,7 @@ def replay(folder: Path) -> tuple[float, float, float]:
             motor = np.zeros(2)
         elif tick:
             if jump["knee_release_rad"]:
-                before_stop = data.qpos[knee] - jump["lower_stop_rad"][1]
+                before_stop = q[knee] - jump["lower_stop_rad"][1]
                 wanted[1] *= np.clip(before_stop / jump["knee_release_rad"], 0.0, 1.0)
             commands.append((gate, wanted))
             motor = np.zeros(2)

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
-from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.balance import energy_balance
+from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.jump.single import energy_balance
 from pareto_monoped.measures import measure
 from pareto_monoped.robot.population import robot_arrays
 
@@ -83,7 +83,7 @@ class Audits:
         status: of the jump, as in ``Evaluations``, shape (n,).
         height_m, energy_j: as evaluated, shape (n,).
         energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump;
-            infinity where a jump is lost by a finer step or a perturbation.
+            infinity where a jump is lost by a finer step, a perturbation or a shorter control period.
         reason: why the jump is not well-conditioned; empty where it is.
     """
 
@@ -99,6 +99,8 @@ class Audits:
     spread_energy: Floats
     worst_height_m: Floats
     worst_energy: Floats
+    control_period_height_m: Floats
+    control_period_energy: Floats
     reason: tuple[str, ...] = field(default=())
 
     @property
@@ -136,9 +138,16 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
 
 
 def finer(calibration: Calibration, parts: int) -> Calibration:
-    """The calibration with its step divided by ``parts``."""
+    """The calibration with its step divided by ``parts``.
+
+    The control period stays if the calibration names one, or if the controller could not keep the commands of a longer
+    delay. Otherwise each step is a period, and both become shorter.
+    """
     simulation = calibration.simulation
-    return replace(calibration, simulation=replace(simulation, timestep_s=simulation.timestep_s / parts))
+    step_s, period_s = simulation.timestep_s / parts, simulation.control_period_s
+    if period_s is None and simulation.delay_s > MOST_DELAY * step_s * (1.0 + 1e-9):
+        period_s = simulation.timestep_s
+    return replace(calibration, simulation=replace(simulation, timestep_s=step_s, control_period_s=period_s))
 
 
 def audit(
@@ -165,6 +174,7 @@ def audit(
     base = Evaluator(actuator_map, calibration, workers)(values)
     half = Evaluator(actuator_map, finer(calibration, 2), workers)(values)
     quarter = Evaluator(actuator_map, finer(calibration, 4), workers)(values)
+    held, prompt = _with_two_periods(values, actuator_map, calibration, workers, quarter)
     rng = np.random.default_rng(seed)
     spread = Evaluator(actuator_map, calibration, workers)(perturbed(values, perturbations, rng))
     height = np.abs(spread.height_m.reshape(n, perturbations) - base.height_m[:, None])
@@ -182,6 +192,7 @@ def audit(
         "spread_energy": _percentile(energy, ok, SPREAD_PERCENTILE),
         "worst_height_m": _percentile(height, ok, 100.0),
         "worst_energy": _percentile(energy, ok, 100.0),
+        **_changes("control_period", held, prompt),
     }
     reasons = tuple(
         "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
@@ -190,6 +201,27 @@ def audit(
         for i in range(n)
     )
     return Audits(status=base.status, height_m=base.height_m, energy_j=base.energy_j, **measured, reason=reasons)
+
+
+def _with_two_periods(
+    values: Floats, actuator_map: ActuatorMap, calibration: Calibration, workers: int, quarter: Evaluations
+) -> tuple[Evaluations, Evaluations]:
+    """Jumps with a quarter of the step: with the control period as it is, and with a quarter of it; without delay.
+
+    ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both if there is no delay anyway.
+    """
+    simulation = calibration.simulation
+    period_s, step_s = simulation.period_s, simulation.timestep_s / 4
+    of_quarter = step_s if simulation.control_period_s is None else period_s
+    known = of_quarter if simulation.delay_s == 0.0 else None
+
+    def jumps(control_period_s: float) -> Evaluations:
+        if control_period_s == known:
+            return quarter
+        timed = replace(simulation, timestep_s=step_s, control_period_s=control_period_s, delay_s=0.0)
+        return Evaluator(actuator_map, replace(calibration, simulation=timed), workers)(values)
+
+    return jumps(period_s), jumps(period_s / 4)
 
 
 def _changes(prefix: str, base: Evaluations, other: Evaluations) -> dict[str, Floats]:

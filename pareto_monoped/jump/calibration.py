@@ -5,6 +5,7 @@ literally and fitted to its Table I; ``ideal``, which is ``reference`` without l
 """
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from importlib import resources
@@ -70,6 +71,8 @@ class Joints:
         rotors: how the parts that turn with the knee actuator are booked: as ``armature`` of the joint alone, or with
             their ``absolute`` speeds, which the thigh's rotation is part of.
         motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft; acts on the joint times the ratio squared.
+        stops: where the end stops come from: ``given`` here as ``hip_stop`` and ``knee_stop``, or ``parts`` of the leg
+            (``leg.stops``).
         hip_stop, knee_stop: end stops; None for a joint that turns freely.
     """
 
@@ -79,8 +82,14 @@ class Joints:
     friction_n_m: NotNegative
     motor_damping_n_m_s_per_rad: NotNegative = 0.0
     rotors: Literal["armature", "absolute"] = "armature"
+    stops: Literal["given", "parts"] = "given"
     hip_stop: EndStop | None = None
     knee_stop: EndStop | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse end stops beside those of the parts."""
+        if self.stops == "parts" and (self.hip_stop or self.knee_stop):
+            raise ValueError("stops = 'parts' goes without hip_stop and knee_stop; leave one of them out")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,6 +222,9 @@ class Simulation:
         base_slides: whether the base may move in x; otherwise a vertical guide holds it.
         work_speed: speed used for the work of a step. ``mean`` of both ends is what MuJoCo's step turns into kinetic
             energy; ``start`` is how the paper's sum is written.
+        positions_read: which positions the controller reads: those of MuJoCo's ``state``, or those half a step earlier.
+            A semi-implicit step moves the positions with the new speeds, so that they belong to a time half a step
+            later than the speeds. ``half_step_back`` reads positions and speeds of one time.
     """
 
     __pydantic_config__ = _STRICT
@@ -224,9 +236,14 @@ class Simulation:
     control_period_s: Positive | None = None
     delay_s: NotNegative = 0.0
     work_speed: Literal["mean", "start"] = "mean"
+    positions_read: Literal["state", "half_step_back"] = "state"
 
     def __post_init__(self) -> None:
-        """Refuse a period that is no whole number of steps, and a delay that is no whole number of periods."""
+        """Refuse periods of no whole number of steps, delays of no whole number of periods, and reading RK4 back."""
+        if self.integrator == "RK4" and self.positions_read != "state":
+            raise ValueError(
+                f"positions_read {self.positions_read!r} is for semi-implicit integrators; RK4 needs 'state'"
+            )
         if not _whole(self.period_s / self.timestep_s) or self.period_steps < 1:
             raise ValueError(f"control_period_s {self.period_s:g} must be a whole multiple of timestep_s")
         if not _whole(self.delay_s / self.period_s) or self.delay_s > MOST_DELAY * self.period_s * (1.0 + 1e-9):
@@ -245,7 +262,7 @@ class Simulation:
 
 def _whole(number: float) -> bool:
     """Whether a number is whole but for rounding."""
-    return abs(number - round(number)) < 1e-6
+    return math.isfinite(number) and abs(number - round(number)) < 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -272,9 +289,9 @@ class Calibration:
 
 
 _LATER = {
-    "joints": ("rotors",),
+    "joints": ("rotors", "stops"),
     "drive": ("regeneration_share", "standby_power_w"),
-    "simulation": ("control_period_s", "delay_s"),
+    "simulation": ("control_period_s", "delay_s", "positions_read"),
 }
 """Fields that calibrations did not always have, by table."""
 
@@ -325,8 +342,16 @@ def calibration_names() -> tuple[str, ...]:
     return (DEFAULT, *(name for name in names if name != DEFAULT))
 
 
+def earlier_calibrations() -> tuple[str, ...]:
+    """Labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
+    folder = resources.files("pareto_monoped") / "data" / "calibrations" / "earlier"
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir()))
+
+
 def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
+
+    A name means the present version; the label of an earlier version (``reference-1``) means that one.
 
     Raises:
         CalibrationError: unknown name, unreadable file, or a field missing, unknown or out of range.
@@ -335,10 +360,14 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
         path = Path(name_or_path)
     elif name_or_path in calibration_names():
         path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name_or_path}.toml"))
+    elif name_or_path in earlier_calibrations():
+        path = Path(
+            str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
+        )
     else:
+        known = (*calibration_names(), *earlier_calibrations())
         raise CalibrationError(
-            f"calibration {name_or_path!r}: must be one of {', '.join(calibration_names())}, or a TOML file; "
-            "correct the name"
+            f"calibration {name_or_path!r}: must be one of {', '.join(known)}, or a TOML file; correct the name"
         )
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
     return calibration_of(values, source=f"calibration file {path.name}")

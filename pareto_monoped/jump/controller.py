@@ -32,6 +32,7 @@ RECORD = np.dtype(
         # Settings, the same for all jumps under one calibration. Flags are 0 or 1.
         ("rest_length_m", _ONE),
         ("timestep_s", _ONE),
+        ("read_back_s", _ONE),  # by which positions belong to a later time than speeds; the controller looks back
         ("period_steps", _ONE),  # steps of one control period, in which the motors' torques are held
         ("delay_periods", _ONE),
         ("step_limit", _ONE),
@@ -198,20 +199,21 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     nv = v.shape[0]
     z, hip, knee = q[nv - 3], q[nv - 2], q[nv - 1]
     speed = (v[nv - 2], v[nv - 1])
-
-    # Vectors from hip to foot (r) and from knee to foot (shank).
     thigh_turned, shank_turned = _direction(hip), _direction(hip + knee)
-    shank_x = -jump.shank_length_m * shank_turned[0]
-    shank_z = -jump.shank_length_m * shank_turned[1]
-    rx = -jump.thigh_length_m * thigh_turned[0] + shank_x
-    rz = -jump.thigh_length_m * thigh_turned[1] + shank_z
-    clearance = z + rz - jump.foot_radius_m
+    foot, shank = _foot(thigh_turned, shank_turned, jump)
+    clearance = z + foot[1] - jump.foot_radius_m
+
+    tick = jump.steps % jump.period_steps == 0.0
+    read_clearance = clearance
+    if tick and jump.read_back_s > 0.0:
+        read_z, hip, knee = _read_back(q, v, jump)
+        foot, shank = _foot(_direction(hip), _direction(hip + knee), jump)
+        read_clearance = read_z + foot[1] - jump.foot_radius_m
 
     if jump.steps > 0:
         _loads(v, jump)
         _book(jump, speed)
     _note_state(q, v, thigh_turned, shank_turned, jump)
-    tick = jump.steps % jump.period_steps == 0.0
     jump.steps += 1
     jump.height_m = max(jump.height_m, z)
     jump.clearance_m = clearance
@@ -219,7 +221,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     if touching:
         jump.stood = 1.0
         jump.lift_off_step = jump.steps
-    gate = _gate(clearance, touching, jump) if tick else 0.0
+    gate = _gate(read_clearance, touching, jump) if tick else 0.0
     _end(q, v, jump)
     if jump.status != RUNNING:
         return
@@ -234,7 +236,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             jump.quiet_periods += 1
         wanted = (0.0, 0.0)
         if gate > 0.0:
-            wanted = _virtual_leg((rx, rz), (shank_x, shank_z), speed, jump)
+            wanted = _virtual_leg(foot, shank, speed, jump)
             wanted = (wanted[HIP], wanted[KNEE] * _release(knee, jump))
         _command(wanted, gate, speed, jump)
     for joint in range(2):
@@ -247,6 +249,26 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 def _direction(angle: float) -> tuple[float, float]:
     """Sine and cosine."""
     return math.sin(angle), math.cos(angle)
+
+
+@compiled
+def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
+    """Positions z, hip, knee at the time of the speeds, half a step back, with the acceleration of the last step."""
+    nv, back = v.shape[0], jump.read_back_s
+    return (
+        q[nv - 3] - back * (1.25 * v[nv - 3] - 0.25 * jump.velocity[1]),
+        q[nv - 2] - back * (1.25 * v[nv - 2] - 0.25 * jump.velocity[2]),
+        q[nv - 1] - back * (1.25 * v[nv - 1] - 0.25 * jump.velocity[3]),
+    )
+
+
+@compiled
+def _foot(
+    thigh: tuple[float, float], shank: tuple[float, float], jump: Any
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Vectors (x, z) from hip to foot and from knee to foot; the links have these sines and cosines."""
+    x, z = -jump.shank_length_m * shank[0], -jump.shank_length_m * shank[1]
+    return (-jump.thigh_length_m * thigh[0] + x, -jump.thigh_length_m * thigh[1] + z), (x, z)
 
 
 @compiled

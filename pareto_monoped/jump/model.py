@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import GRAVITY_M_PER_S2
-from pareto_monoped.jump.calibration import Calibration, EndStop, Joints, SpringContact
+from pareto_monoped.jump.calibration import Calibration, Joints, SpringContact
+from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.pose import LEAST_IMPEDANCE, StartPose, start_pose
 from pareto_monoped.robot.population import RobotArrays
 
@@ -38,16 +39,19 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
     pose = start_pose(robots, calibration)
     start = start_qpos(calibration, robots.start_height_m, pose)[index]
     # Springs in N/m need inverse masses that only MuJoCo's compiler computes, so compile a draft without them first.
-    draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, None, comment))
-    springs = spring_fields(calibration, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
-    return _document(fields, start, calibration, {name: values[0] for name, values in springs.items()}, comment)
+    stops = end_stops(robots, calibration.joints)
+    draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, stops, None, comment))
+    springs = spring_fields(calibration, stops, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
+    values = {name: values[0] for name, values in springs.items()}
+    return _document(fields, start, calibration, stops, values, comment)
 
 
-def template_mjcf(calibration: Calibration, user_data: int) -> str:
+def template_mjcf(calibration: Calibration, stops: EndStops, user_data: int) -> str:
     """The MJCF document of a robot with round numbers; a batch overwrites the fields of each robot.
 
     Args:
         calibration: the jump model.
+        stops: of hip and knee.
         user_data: length of the user data of every simulation.
     """
     fields = {
@@ -65,7 +69,7 @@ def template_mjcf(calibration: Calibration, user_data: int) -> str:
     }
     start = np.zeros(4 if calibration.simulation.base_slides else 3)
     size = f'<size nuserdata="{user_data}"/>'
-    return _document(fields, start, calibration, None, "").replace("<worldbody>", f"{size}\n  <worldbody>", 1)
+    return _document(fields, start, calibration, stops, None, "").replace("<worldbody>", f"{size}\n  <worldbody>", 1)
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
@@ -118,7 +122,9 @@ def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
 
 
-def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweight0: Floats) -> dict[str, Floats]:
+def spring_fields(
+    calibration: Calibration, stops: EndStops, body_invweight0: Floats, dof_invweight0: Floats
+) -> dict[str, Floats]:
     """MuJoCo's parameters for springs and dampers given in SI units.
 
     MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a), with impedance d (D at full compression),
@@ -127,7 +133,8 @@ def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweig
     and a damping c in N s/m needs solref[1] = -c A (1 - D).
 
     Args:
-        calibration: contact and end stops.
+        calibration: the contact.
+        stops: of hip and knee.
         body_invweight0: MuJoCo's inverse masses of the bodies, shape (n, 4, 2).
         dof_invweight0: MuJoCo's inverse masses of the joints, shape (n, nv).
 
@@ -140,10 +147,11 @@ def spring_fields(calibration: Calibration, body_invweight0: Floats, dof_invweig
     if isinstance(contact, SpringContact):
         scale = body_invweight0[:, SHANK, 0] * (1.0 - contact.impedance)
         result["geom_solref"] = -scale[:, None] * [contact.stiffness_n_per_m, contact.damping_n_s_per_m]
-    stops = [(k, s) for k, s in enumerate((calibration.joints.hip_stop, calibration.joints.knee_stop)) if s]
-    if stops:
+    if any(stops):
         joint = np.tile([0.02, 1.0], (len(dof_invweight0), 2, 1))
-        for k, stop in stops:
+        for k, stop in enumerate(stops):
+            if stop is None:
+                continue
             scale = dof_invweight0[:, -2 + k] * (1.0 - stop.impedance)
             joint[:, k] = -scale[:, None] * [stop.stiffness_n_m_per_rad, stop.damping_n_m_s_per_rad]
         result["jnt_solref"] = joint
@@ -159,7 +167,12 @@ def start_qpos(calibration: Calibration, height_m: Floats, pose: StartPose) -> F
 
 
 def _document(
-    fields: dict[str, Any], start: Floats, calibration: Calibration, springs: dict[str, Any] | None, comment: str
+    fields: dict[str, Any],
+    start: Floats,
+    calibration: Calibration,
+    stops: EndStops,
+    springs: dict[str, Any] | None,
+    comment: str,
 ) -> str:
     """The XML text of one robot; reading its numbers gives the same bits."""
     simulation, joints = calibration.simulation, calibration.joints
@@ -174,8 +187,8 @@ def _document(
         solimp = (contact.impedance_min, contact.impedance_max, contact.impedance_width_m, *_SIGMOID)
         slip_ratio, cone = 1.0, "pyramidal"
 
-    def hinge(k: int, name: str, stop: EndStop | None) -> str:
-        limit = ""
+    def hinge(k: int, name: str) -> str:
+        limit, stop = "", stops[k]
         if stop is not None:
             solref = springs["jnt_solref"][k] if springs else (-1.0, -1.0)
             solimp = (LEAST_IMPEDANCE, stop.impedance, stop.width_rad, *_LINEAR)
@@ -220,10 +233,10 @@ impratio="{_n(slip_ratio)}" gravity="0 0 {_n(-GRAVITY_M_PER_S2)}" solver="Newton
       <joint name="slide_z" type="slide" axis="0 0 1"/>
       {inertial(BASE)}
       <body name="thigh">
-        {hinge(0, "hip", joints.hip_stop)}
+        {hinge(0, "hip")}
         {inertial(THIGH)}
         <body name="shank" pos="{_n(*fields["body_pos"][SHANK])}">
-          {hinge(1, "knee", joints.knee_stop)}
+          {hinge(1, "knee")}
           {inertial(SHANK)}
           <geom name="foot" type="sphere" size="{_n(fields["geom_size"][FOOT_GEOM][0])}" pos="{foot}" priority="1" \
 friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solimp="{_n(*solimp)}"/>

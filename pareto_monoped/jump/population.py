@@ -11,6 +11,7 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
+from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.pose import StartPose
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
@@ -92,12 +93,13 @@ def prepare(
 
     from pareto_monoped.jump.controller import RECORD
 
-    batch = Batch(_template(calibration), len(robots), nthread=threads)
+    stops = end_stops(robots, calibration.joints)
+    batch = Batch(_template(calibration, stops), len(robots), nthread=threads)
     for name, values in model.model_fields(robots, calibration).items():
         batch.expand(name)[:] = values
     inverse_body_mass, inverse_joint_mass = batch.expand("body_invweight0"), batch.expand("dof_invweight0")
     batch.set_const()
-    springs = model.spring_fields(calibration, inverse_body_mass, inverse_joint_mass)
+    springs = model.spring_fields(calibration, stops, inverse_body_mass, inverse_joint_mass)
     if "geom_solref" in springs:
         batch.expand("geom_solref")[:, model.FOOT_GEOM] = springs["geom_solref"]
     if "jnt_solref" in springs:
@@ -123,13 +125,13 @@ def _component(batch: Any, component: Any) -> Floats:
 
 
 @functools.lru_cache(maxsize=16)
-def _template(calibration: Calibration) -> Any:
+def _template(calibration: Calibration, stops: EndStops) -> Any:
     """A model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
     import mujoco
 
     from pareto_monoped.jump.controller import RECORD_NUMBERS
 
-    return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, RECORD_NUMBERS))
+    return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, stops, RECORD_NUMBERS))
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:
@@ -148,6 +150,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     records["height_m"] = robots.start_height_m
 
     records["timestep_s"] = simulation.timestep_s
+    records["read_back_s"] = 0.5 * simulation.timestep_s if simulation.positions_read == "half_step_back" else 0.0
     records["period_steps"] = simulation.period_steps
     records["delay_periods"] = round(simulation.delay_s / simulation.period_s)
     records["step_limit"] = round(simulation.time_limit_s / simulation.timestep_s)
@@ -204,7 +207,7 @@ def _set_load_constants(records: Records, robots: RobotArrays, calibration: Cali
     records["rotor_kg_m2"] = robots.rotor_inertia_kg_m2 * robots.ratio
     records["ratio"] = robots.ratio
     records["joint_damping_n_m_s_per_rad"] = model.joint_damping(robots, joints)
-    for k, stop in enumerate((joints.hip_stop, joints.knee_stop)):
+    for k, stop in enumerate(end_stops(robots, joints)):
         records["lower_stop_rad"][:, k] = -np.inf if stop is None else stop.lower_rad
         records["upper_stop_rad"][:, k] = np.inf if stop is None else stop.upper_rad
     records["sprocket_radius_m"] = robots.sprocket_radius_m

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.jump.calibration import Calibration, SpringContact
+from pareto_monoped.jump.end_stops import end_stops
+from pareto_monoped.robot.frames import JOINTS
 from pareto_monoped.robot.population import RobotArrays
 
 LEAST_IMPEDANCE = 0.0001
@@ -59,7 +61,7 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
             reason[i] = f"the stretched leg of {thigh[i] + shank[i]:.3f} m is shorter than the {need}"
         else:
             reason[i] = f"links of {thigh[i]:.3f} m and {shank[i]:.3f} m cannot fold to the {need}"
-    for name, angle, stop in (("hip", hip, calibration.joints.hip_stop), ("knee", knee, calibration.joints.knee_stop)):
+    for name, angle, stop in zip(JOINTS, (hip, knee), end_stops(robots, calibration.joints), strict=True):
         if stop is None:
             continue
         with np.errstate(invalid="ignore"):

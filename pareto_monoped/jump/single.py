@@ -1,4 +1,4 @@
-"""One jump, step by step: the trace and the energy balance, which a batch does not record.
+"""One jump, step by step: the trace, which a batch does not record.
 
 The loop runs plain ``mj_step`` on the exported MJCF with the torques of the compiled controller. It makes the same jump
 as the batch, to the last bit.
@@ -51,38 +51,6 @@ class JumpResult:
     trace: dict[str, Floats]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EnergyBalance:
-    """Where the work of one jump went, in joules, from the start to the apex.
-
-    Attributes:
-        actuator_work_j: work of the torques that reach the joints.
-        kinetic_j, potential_j: change of the robot's energy.
-        damping_j, friction_j: lost to viscous and Coulomb friction of the joints.
-        stops_j: absorbed by the end stops, including what they still store.
-        contact_j: lost at the foot, in its rubber and by slip.
-    """
-
-    actuator_work_j: float
-    kinetic_j: float
-    potential_j: float
-    damping_j: float
-    friction_j: float
-    stops_j: float
-    contact_j: float
-
-    @property
-    def residual_j(self) -> float:
-        """The actuator work that the other terms do not explain."""
-        spent = self.kinetic_j + self.potential_j + self.damping_j + self.friction_j + self.stops_j + self.contact_j
-        return self.actuator_work_j - spent
-
-    @property
-    def error(self) -> float:
-        """The residual as a share of the actuator work."""
-        return abs(self.residual_j) / max(abs(self.actuator_work_j), 1e-12)
-
-
 def simulate(design: Design, actuator_map: ActuatorMap, calibration: Calibration, *, trace: bool = False) -> JumpResult:
     """Jump once.
 
@@ -116,7 +84,7 @@ def result_of(
 
 
 @dataclass(slots=True, kw_only=True)
-class _Moment:
+class Moment:
     """One state of the loop and the step that starts there.
 
     Attributes:
@@ -125,6 +93,7 @@ class _Moment:
         after: MuJoCo's data after the step.
         qpos, qvel: the state.
         record: the controller's record at that state.
+        scratch: data of the same model for whatever else is to be computed.
         last: whether the jump ends here, without a step.
     """
 
@@ -134,10 +103,11 @@ class _Moment:
     qpos: Floats
     qvel: Floats
     record: Any
+    scratch: Any
     last: bool
 
 
-def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[_Moment]:
+def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[Moment]:
     """Step the first robot to the end of its jump.
 
     MuJoCo computes the derived quantities of a state at the start of the step, and most integrators leave them in its
@@ -154,6 +124,7 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     mujoco.mj_resetDataKeyframe(model, data, 0)
     record = first_records(robots, control, calibration)[0]
     derived = data if record["stages"] == 1.0 else mujoco.MjData(model)
+    scratch = mujoco.MjData(model)
     # This loop calls the controller once per step, whatever the integrator.
     record["stages"] = 1.0
     while True:
@@ -166,7 +137,16 @@ def _moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
             mujoco.mj_forward(model, derived)
         if running:
             mujoco.mj_step(model, data)
-        yield _Moment(model=model, data=derived, after=data, qpos=qpos, qvel=qvel, record=record, last=not running)
+        yield Moment(
+            model=model,
+            data=derived,
+            after=data,
+            qpos=qpos,
+            qvel=qvel,
+            record=record,
+            scratch=scratch,
+            last=not running,
+        )
         if not running:
             return
 
@@ -178,11 +158,11 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     rows = []
     weight_n = float(robots.body_mass_kg[0].sum()) * GRAVITY_M_PER_S2
     radius = float(robots.foot_radius_m[0])
-    for index, moment in enumerate(_moments(robots, control, calibration)):
+    for index, moment in enumerate(moments(robots, control, calibration)):
         data, q, v = moment.data, moment.qpos, moment.qvel
         slides = len(q) == 4
         foot = data.site_xpos[0]
-        force = _contact_force(data)
+        force = contact_force(data)
         matrix = np.zeros((len(v), len(v)))
         mujoco.mj_fullM(moment.model, data, matrix)
         torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl)
@@ -210,64 +190,17 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     return dict(zip(TRACE_COLUMNS, np.array(rows).T, strict=True))
 
 
-def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
-    """Where the work of the first robot's jump went.
-
-    The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
-    inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
-    Runge-Kutta step only the actuators' force is constant; the others count with the mean of their values at both ends.
-    """
-    import mujoco
-
-    step = calibration.simulation.timestep_s
-    work = dict.fromkeys(("actuator", "damping", "friction", "stops", "contact"), 0.0)
-    energies: list[Floats] = []
-    by_stages, moved = calibration.simulation.integrator == "RK4", 0.0
-    for moment in _moments(robots, control, calibration):
-        model, data = moment.model, moment.data
-        if moment.last or not energies:
-            ends = mujoco.MjData(model)
-            ends.qpos[:], ends.qvel[:] = moment.qpos, moment.qvel
-            mujoco.mj_forward(model, ends)
-            mujoco.mj_energyPos(model, ends)
-            mujoco.mj_energyVel(model, ends)
-            energies.append(ends.energy.copy())
-        if moment.last:
-            break
-        before, after = moved, moment.after.qvel
-        moved = moment.after.qpos - moment.qpos if by_stages else 0.5 * (moment.qvel + after) * step
-        work["actuator"] += float(data.qfrc_actuator @ moved)
-        mean = 0.5 * (before + moved) if by_stages else moved
-        # MuJoCo's Euler step evaluates joint damping at the speed after the step.
-        damped = {"Euler": after, "RK4": moment.qvel}.get(
-            calibration.simulation.integrator, 0.5 * (moment.qvel + after)
-        )
-        work["damping"] += float((model.dof_damping * damped) @ mean)
-        work["friction"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF,)) @ mean)
-        work["stops"] -= float(_force(data, (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT,)) @ mean)
-        work["contact"] -= float(_contact_force(data) @ mean)
-    potential, kinetic = energies[-1] - energies[0]
-    return EnergyBalance(
-        actuator_work_j=work["actuator"],
-        kinetic_j=float(kinetic),
-        potential_j=float(potential),
-        damping_j=work["damping"],
-        friction_j=work["friction"],
-        stops_j=work["stops"],
-        contact_j=work["contact"],
-    )
-
-
-def _contact_force(data: Any) -> Floats:
+def contact_force(data: Any) -> Floats:
     """The generalised force of all contacts, shape (nv,); its slide entries are the floor's force on the foot."""
+    return constraint_forces(data)[2]
+
+
+def constraint_forces(data: Any) -> tuple[Floats, Floats, Floats]:
+    """The generalised forces of joint friction, end stops and contacts, each of shape (nv,)."""
     import mujoco
 
-    kinds = mujoco.mjtConstraint
-    return _force(data, (kinds.mjCNSTR_CONTACT_PYRAMIDAL, kinds.mjCNSTR_CONTACT_ELLIPTIC))
-
-
-def _force(data: Any, kinds: tuple[Any, ...]) -> Floats:
-    """The generalised force of all constraints of the given kinds, shape (nv,)."""
-    chosen = np.isin(data.efc_type, [int(kind) for kind in kinds])
-    jacobian = data.efc_J.reshape(-1, len(data.qvel))
-    return np.asarray(jacobian[chosen].T @ data.efc_force[chosen], dtype=np.float64)
+    kinds, kind = mujoco.mjtConstraint, data.efc_type
+    pulls = data.efc_force[:, None] * data.efc_J.reshape(len(kind), len(data.qvel))
+    friction, stops = kind == int(kinds.mjCNSTR_FRICTION_DOF), kind == int(kinds.mjCNSTR_LIMIT_JOINT)
+    touching = (kind == int(kinds.mjCNSTR_CONTACT_PYRAMIDAL)) | (kind == int(kinds.mjCNSTR_CONTACT_ELLIPTIC))
+    return pulls[friction].sum(axis=0), pulls[stops].sum(axis=0), pulls[touching].sum(axis=0)

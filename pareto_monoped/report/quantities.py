@@ -28,7 +28,15 @@ _VARIABLES = (
 _OBJECTIVES = ("height_m", "energy_j")
 _FIRST = ("mass_kg", "efficiency")  # of the other measures: what readers look for before the rest
 
-AUDIT = ("energy_balance_error", "spread_height_m", "spread_energy", "half_step_height_m", "half_step_energy")
+AUDIT = (
+    "energy_balance_error",
+    "spread_height_m",
+    "spread_energy",
+    "half_step_height_m",
+    "half_step_energy",
+    "control_period_height_m",
+    "control_period_energy",
+)
 """Measures that the page shows of an audit."""
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")

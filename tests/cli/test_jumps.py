@@ -23,7 +23,7 @@ def test_simulate_json_has_what_others_rely_on(capsys):
     assert (code, err) == (0, "")
     report = json.loads(out)
     assert report["status"] == "ok"
-    assert report["calibration"] == "reference-1"
+    assert report["calibration"] == "reference-2"
     assert report["design"] == PAPER_CASES["C"].design.as_dict()
     for name in ("height_m", "energy_j", "foot_clearance_m", "mass_kg"):
         assert report[name] > 0.0
@@ -118,8 +118,11 @@ def test_audit_says_whether_to_trust_the_jump(capsys):
     assert audit["well_conditioned"]
     assert audit["energy_balance_error"] < 0.01
     energy = audit["energy"]
-    parts = sum(value for name, value in energy.items() if name != "actuator_work_j")
-    assert parts == pytest.approx(energy["actuator_work_j"])
+    parts = sum(value for name, value in energy.items() if name not in ("motor_work_j", "joint_work_j"))
+    assert parts == pytest.approx(energy["motor_work_j"])
+    assert energy["joint_work_j"] == pytest.approx(
+        energy["motor_work_j"] - energy["mesh_loss_j"] - energy["chain_loss_j"]
+    )
 
 
 def test_table1_json_has_the_three_results_of_each_case(capsys):
@@ -152,8 +155,8 @@ def test_the_named_motor_and_calibration_are_used(capsys):
         json.loads(run(capsys, "simulate", "--json", *more)[1])
         for more in ((), ("--motor", "U8", "--calibration", "ideal"))
     )
-    assert (default["motor"], default["calibration"]) == ("VT8020", "reference-1")
-    assert (other["motor"], other["calibration"]) == ("U8", "ideal-1")
+    assert (default["motor"], default["calibration"]) == ("VT8020", "reference-2")
+    assert (other["motor"], other["calibration"]) == ("U8", "ideal-2")
     assert other["height_m"] != default["height_m"]
 
 

@@ -49,6 +49,7 @@ def jump(
     time_limit: float = 3.0,
     mean_speed: bool = True,
     gravity: float = 1.0,
+    read_back: bool = False,
 ) -> Jump:
     """Paper, section II-B, on the MJCF's robot.
 
@@ -64,6 +65,8 @@ def jump(
         time_limit: in s.
         mean_speed: whether a step's work is booked with the mean of the speeds at its ends, or that at its start.
         gravity: factor on m g in F_z.
+        read_back: whether the controller reads the positions of half a step ago, extrapolated with the last change of
+            speed.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)
@@ -78,6 +81,7 @@ def jump(
     energy, height, lift_off = np.zeros(2), 0.0, 0.0
     off, stood, touched = False, False, None
     torques: list[np.ndarray] = []
+    seen, earlier = mujoco.MjData(model), np.zeros(model.nv)
     for k in range(round(time_limit / step) + 1):
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -86,9 +90,18 @@ def jump(
         clearance = data.site_xpos[foot, 2] - radius
         if clearance <= 1e-9:
             stood, lift_off = True, k * step
+        read = data
+        if read_back:
+            # Through q and the speeds at both of its neighbours: q - h/2 (v + (v - v_before) / 4).
+            seen.qpos[:] = data.qpos - 0.5 * step * (data.qvel + 0.25 * (data.qvel - earlier))
+            mujoco.mj_kinematics(model, seen)
+            mujoco.mj_comPos(model, seen)
+            read, earlier = seen, data.qvel.copy()
+            r = seen.site_xpos[foot] - seen.xpos[base]
         if fade is not None:
-            off = off or (stood and clearance >= fade)
-            u = np.clip(clearance / fade, 0.0, 1.0)
+            clearance_read = read.site_xpos[foot, 2] - radius
+            off = off or (stood and clearance_read >= fade)
+            u = np.clip(clearance_read / fade, 0.0, 1.0)
             share = 0.0 if off else 1.0 - (3.0 * u**2 - 2.0 * u**3)
         else:
             touches = clearance <= 1e-9
@@ -102,7 +115,7 @@ def jump(
         torque = np.zeros(2)
         if share > 0.0:
             position = np.zeros((3, model.nv))
-            mujoco.mj_jacSite(model, data, position, None, foot)
+            mujoco.mj_jacSite(model, read, position, None, foot)
             jacobian = position[[0, 2]][:, hinges]
             rx, rz = r[0], r[2]
             length = np.hypot(rx, rz)

@@ -15,6 +15,7 @@ from pareto_monoped.jump.audit import (
     _percentile,
     audit,
     exceeded,
+    finer,
     perturbed,
 )
 from pareto_monoped.jump.calibration import load_calibration
@@ -159,3 +160,49 @@ def test_an_optional_variable_in_use_is_perturbed_too():
     change = np.abs(columns(copies, used) / columns(design, used) - 1.0)
     assert np.all((change > 0.0) & (change <= 1e-6))
     assert np.all(columns(copies, ("start_height_m",)) == 0.5)
+
+
+def test_the_step_is_refined_alone_where_the_control_period_is_named():
+    for parts in (2, 4):
+        present = finer(load_calibration("reference"), parts).simulation
+        assert (present.timestep_s, present.period_s) == (1e-3 / parts, 1e-3)
+        # Where none is named, each step is a period.
+        first = finer(load_calibration("reference-1"), parts).simulation
+        assert (first.timestep_s, first.period_s) == (1e-3 / parts, 1e-3 / parts)
+
+
+def test_a_long_delay_keeps_the_period_of_a_calibration_that_names_none():
+    """Otherwise the controller would have to keep more commands than it can."""
+    first = load_calibration("reference-1")
+    late = replace(first, simulation=replace(first.simulation, delay_s=3e-3))
+    simulation = finer(late, 4).simulation
+    assert (simulation.timestep_s, simulation.period_s, simulation.delay_s) == (2.5e-4, 1e-3, 3e-3)
+
+
+@pytest.mark.parametrize("name", ["reference", "reference-1"])
+@pytest.mark.parametrize("delay_s", [0.0, 2e-3])
+def test_the_effect_of_the_control_period_is_that_of_a_quarter_of_it_at_one_step(name, delay_s):
+    """Four jumps by hand; what the audit reuses of its other jumps must not show, nor a delay."""
+    start, designs = load_calibration(name), np.array([PAPER_CASES[case].design.as_array() for case in ("A", "C")])
+    calibration = replace(start, simulation=replace(start.simulation, delay_s=delay_s))
+    found = audit(designs, MAP, calibration, perturbations=1)
+
+    def jumps(period_s):
+        timed = replace(start.simulation, timestep_s=2.5e-4, control_period_s=period_s)
+        return Evaluator(MAP, replace(start, simulation=timed))(designs)
+
+    held, prompt = jumps(1e-3), jumps(2.5e-4)
+    np.testing.assert_array_equal(found.control_period_height_m, np.abs(prompt.height_m - held.height_m))
+    np.testing.assert_array_equal(found.control_period_energy, np.abs(prompt.energy_j / held.energy_j - 1.0))
+    assert np.all(found.control_period_energy > 0.002)
+
+
+def test_the_control_period_is_no_condition():
+    """It is a property of the machine, not an error of the simulation."""
+    assert not any("control_period" in limit.name for limit in LIMITS)
+
+
+def test_half_a_step_changes_less_than_a_control_period():
+    """The reference's own error is far below the effect of the period, over random designs."""
+    found = audit(random_designs(12, seed=3), MAP, load_calibration(), perturbations=1)
+    assert np.median(found.half_step_energy) < 0.1 * np.median(found.control_period_energy)

@@ -3,7 +3,13 @@ from dataclasses import replace
 import pytest
 
 from pareto_monoped.errors import CalibrationError
-from pareto_monoped.jump.calibration import FadeGate, calibration_names, load_calibration
+from pareto_monoped.jump.calibration import (
+    FadeGate,
+    calibration_names,
+    calibration_values,
+    earlier_calibrations,
+    load_calibration,
+)
 
 
 def test_three_ship_and_the_default_is_the_well_posed_one():
@@ -60,7 +66,7 @@ def _text(name="reference"):
 
 def test_a_users_file_is_read_by_its_path(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 1", "version = 7"))
+    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 2", "version = 7"))
     assert load_calibration(str(path)).label == "mine-7"
 
 
@@ -69,7 +75,9 @@ def test_a_users_file_is_read_by_its_path(tmp_path):
     [
         ("timestep_s = 0.001", "timestep_s = -0.001", "simulation.timestep_s = -0.001"),
         ("timestep_s = 0.001", "timestep_s = nan", "simulation.timestep_s = nan"),
-        ("timestep_s = 0.001", "timestep_s = 1e-320", "must be at least 3e-06, a millionth of time_limit_s"),
+        ("timestep_s = 0.001", "timestep_s = 1e-9", "must be at least 3e-06, a millionth of time_limit_s"),
+        ("timestep_s = 0.001", "timestep_s = 1e-320", "must be a whole multiple of timestep_s"),
+        ('integrator = "Euler"', 'integrator = "RK4"', "RK4 needs 'state'"),
         ("[controller]", "[controller]\nrest_lenght_m = 9.0", "rest_lenght_m"),
         ('integrator = "Euler"', 'integrator = "Leapfrog"', "simulation.integrator = 'Leapfrog'"),
         ("friction = 1.0\n", "", "friction is missing"),
@@ -82,12 +90,28 @@ def test_a_users_file_is_read_by_its_path(tmp_path):
 )
 def test_a_wrong_field_is_named_in_one_line(tmp_path, old, new, said):
     path = tmp_path / "wrong.toml"
-    assert old in _text()
-    path.write_text(_text().replace(old, new))
+    text = next(text for text in (_text(), _text("earlier/reference-1")) if old in text)
+    path.write_text(text.replace(old, new))
     with pytest.raises(CalibrationError) as caught:
         load_calibration(str(path))
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_stops_are_given_or_those_of_the_parts(tmp_path):
+    path = tmp_path / "both.toml"
+    path.write_text(_text("earlier/reference-1").replace("[joints]", '[joints]\nstops = "parts"'))
+    with pytest.raises(CalibrationError, match="goes without hip_stop and knee_stop"):
+        load_calibration(str(path))
+
+
+@pytest.mark.parametrize("label", earlier_calibrations())
+def test_an_earlier_version_is_loaded_by_its_label_and_has_its_own_hash(label):
+    """The values are those that version 0.1.0 stored with its studies, without what came later."""
+    values = calibration_values(load_calibration(label))
+    assert f"{values['name']}-{values['version']}" == label
+    assert not {"rotors", "stops"} & set(values["joints"])
+    assert not {"control_period_s", "delay_s", "positions_read"} & set(values["simulation"])
 
 
 @pytest.mark.parametrize("name", ["refrence", "missing.toml", "no/such/file"])

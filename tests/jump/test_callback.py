@@ -75,7 +75,9 @@ def test_calibrations_on_several_threads_do_not_meet():
     calibrations = {
         "reference": reference,
         "paper": paper,
-        "by Runge-Kutta": replace(reference, simulation=replace(reference.simulation, integrator="RK4")),
+        "by Runge-Kutta": replace(
+            reference, simulation=replace(reference.simulation, integrator="RK4", positions_read="state")
+        ),
         "literal gate": replace(reference, gate=paper.gate),
     }
 

@@ -1,20 +1,27 @@
 """The control period and the integrator's step are two things; a delay shifts what the drivers do."""
 
+import importlib.util
+import json
 from dataclasses import asdict, replace
+from importlib import resources
 from itertools import pairwise
 
+import mujoco
 import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.cad.write.jump_record import jump_record
+from pareto_monoped.design import LOWER, PAPER_CASES, UPPER
 from pareto_monoped.errors import CalibrationError
 from pareto_monoped.jump import calibration, controller
 from pareto_monoped.jump.calibration import calibration_of, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.single import simulate
+from pareto_monoped.robot.population import robot_arrays
 
-REFERENCE = load_calibration("reference")
+REFERENCE = load_calibration("reference-1")
 CASES = np.array([case.design.as_array() for case in PAPER_CASES.values()])
 
 
@@ -95,3 +102,102 @@ def test_periods_that_do_not_fit_are_refused(changes, complaint):
 def test_a_calibration_allows_as_much_delay_as_the_controller_keeps_commands():
     """The limit stands in both files: importing the controller imports numba, and reading a calibration must not."""
     assert calibration.MOST_DELAY == controller.MOST_DELAY
+
+
+# From here on: positions and speeds of one time, as in `reference` from version 2 on.
+
+PRESENT = load_calibration("reference")
+
+
+def present(**changes):
+    return replace(PRESENT, simulation=replace(PRESENT.simulation, **changes))
+
+
+def converged(designs):
+    """The jumps with a step of 50 us by MuJoCo's Runge-Kutta integrator, and torques held for 1 ms."""
+    fine = present(integrator="RK4", positions_read="state", timestep_s=5e-5)
+    return Evaluator(map_for("VT8020"), fine)(designs)
+
+
+def test_held_torques_act_neither_early_nor_late():
+    """Energies scatter around the converged ones; read from the state as it is, they are 1 percent low."""
+    designs = np.vstack([CASES[:, :7], np.random.default_rng(3).uniform(LOWER, UPPER, (16, len(LOWER)))])
+    exact = converged(designs)
+    found = Evaluator(map_for("VT8020"), PRESENT)(designs)
+    energy = found.energy_j / exact.energy_j - 1.0
+    assert np.abs(energy).max() < 0.002
+    assert abs(np.median(energy)) < 5e-4
+    assert np.abs(found.electrical_energy_j / exact.electrical_energy_j - 1.0).max() < 0.0015
+    assert np.abs(found.height_m - exact.height_m).max() < 0.7e-3
+    as_it_is = Evaluator(map_for("VT8020"), present(positions_read="state"))(designs)
+    assert np.median(as_it_is.energy_j / exact.energy_j - 1.0) < -0.007
+
+
+def by_own_integrator(design):
+    """Height and energy by the classical Runge-Kutta method on MuJoCo's accelerations, with a step of 50 us.
+
+    Commands come from the exported numbers by the functions of the export's replay; nothing else of the package runs.
+    """
+    spec = importlib.util.spec_from_file_location("replay", resources.files("pareto_monoped") / "data" / "replay.py")
+    replay = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(replay)
+    arrays = robot_arrays(design.as_array(), map_for("VT8020"), PRESENT.mass)
+    numbers = json.loads(jump_record(arrays, design, PRESENT))
+    model = mujoco.MjModel.from_xml_string(mjcf(arrays, PRESENT))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    q, v, h = data.qpos.copy(), np.zeros(model.nv), 5e-5
+    energy, height, latched, motor = 0.0, 0.0, False, np.zeros(2)
+
+    def acceleration(q, v):
+        data.qpos[:], data.qvel[:] = q, v
+        mujoco.mj_forward(model, data)
+        return data.qacc.copy()
+
+    for step in range(60000):
+        if latched and v[1] <= 0.0:
+            break
+        if step % 20 == 0:
+            wanted, below = replay.virtual_leg(numbers, q[2], q[3], v[2:])
+            u = np.clip((q[1] + below - numbers["foot_radius_m"]) / numbers["fade_length_m"], 0.0, 1.0)
+            latched = latched or u >= 1.0
+            share = 0.0 if latched else 1.0 - u * u * (3.0 - 2.0 * u)
+            motor = share * replay.limited(numbers, wanted, v[2:])
+        data.ctrl[:] = replay.delivered(numbers, motor, v[2:])
+        a1 = acceleration(q, v)
+        a2 = acceleration(q + 0.5 * h * v, v2 := v + 0.5 * h * a1)
+        a3 = acceleration(q + 0.5 * h * v2, v3 := v + 0.5 * h * a2)
+        a4 = acceleration(q + h * v3, v4 := v + h * a3)
+        q, before, v = q + h * (v + 2 * v2 + 2 * v3 + v4) / 6, v, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6
+        energy += np.maximum(motor * 0.5 * (before + v)[2:], 0.0).sum() * h
+        height = max(height, q[1])
+    return height, energy
+
+
+@pytest.mark.parametrize("case", ["nominal", "C"])
+def test_an_own_integrator_agrees(case):
+    design = PAPER_CASES[case].design
+    height, energy = by_own_integrator(design)
+    found = Evaluator(map_for("VT8020"), PRESENT)(design.as_array()[None])
+    assert found.height_m[0] == pytest.approx(height, abs=0.6e-3)
+    assert found.energy_j[0] == pytest.approx(energy, rel=0.0015)
+
+
+def test_a_finer_step_hardly_changes_a_jump():
+    """Half the step moves the paper's designs by less than 0.3 mm and 0.1 percent: the control period stays."""
+    coarse, fine = jump(PRESENT), jump(present(timestep_s=5e-4))
+    assert np.abs(fine.height_m - coarse.height_m).max() < 0.3e-3
+    assert np.abs(fine.energy_j / coarse.energy_j - 1.0).max() < 1e-3
+
+
+def test_the_controller_reads_positions_at_the_time_of_the_speeds():
+    """In free fall: z of half a step ago is that of the parabola at the time of the speed, to rounding."""
+    step, jump_record_ = 1e-3, np.zeros(1, dtype=controller.RECORD)[0]
+    jump_record_["read_back_s"] = 0.5 * step
+    speed, position = 1.0, 0.0
+    before = speed + 9.81 * step
+    jump_record_["velocity"][1] = before
+    # q(t + h/2) of the parabola through z = 0 at the time t of the speed.
+    position = speed * 0.5 * step - 0.5 * 9.81 * (0.5 * step) ** 2
+    q, v = np.array([0.0, position, 0.0, 0.0]), np.array([0.0, speed, 0.0, 0.0])
+    assert controller._read_back(q, v, jump_record_)[0] == pytest.approx(0.0, abs=1e-15)

@@ -83,7 +83,7 @@ def test_a_simulation_that_blows_up_is_diverged_and_alone(tmp_path, monkeypatch,
     wild = replace(
         reference,
         contact=replace(reference.contact, stiffness_n_per_m=1e15, damping_n_s_per_m=1e9),
-        simulation=replace(reference.simulation, timestep_s=0.02),
+        simulation=replace(reference.simulation, timestep_s=0.02, control_period_s=None),
     )
     result = Evaluator(map_for("VT8020"), wild)(np.array([GOOD, GOOD]))
     assert list(result.status) == ["diverged"] * 2

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -10,13 +9,12 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, PAPER_CASES, UPPER, columns, complete
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.single import _contact_force, _force, _moments
+from pareto_monoped.jump.single import constraint_forces, moments
 from pareto_monoped.robot.population import robot_arrays
 
 REFERENCE = load_calibration("reference")
 SMOOTH = replace(REFERENCE, joints=replace(REFERENCE.joints, friction_n_m=0.0))
 STEP = REFERENCE.simulation.timestep_s
-LIMIT = (mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT,)
 
 
 @pytest.fixture(scope="module")
@@ -31,11 +29,11 @@ def loads_by_mujoco(robots, control, calibration):
     gear = np.zeros(2)
     rotor, ratio = robots.rotor_inertia_kg_m2[0], robots.ratio[0]
     absolute = calibration.joints.rotors == "absolute"
-    for moment in _moments(robots, control, calibration):
+    for moment in moments(robots, control, calibration):
         if moment.last:
             break
-        limits = _force(moment.data, LIMIT)[2:]
-        force = _contact_force(moment.data)
+        _, limits, force = constraint_forces(moment.data)
+        limits = limits[2:]
         change = (moment.after.qvel - moment.qvel) / STEP
         stop, foot = max(stop, np.abs(limits).max()), max(foot, np.hypot(force[0], force[1]))
         energy -= float(limits @ (0.5 * (moment.qvel[2:] + moment.after.qvel[2:]))) * STEP
@@ -81,7 +79,7 @@ def test_coulomb_friction_is_counted_with_the_stop(designs):
 
 
 def test_without_stops_nothing_ends_in_them(designs):
-    free = replace(REFERENCE, joints=replace(REFERENCE.joints, hip_stop=None, knee_stop=None))
+    free = replace(REFERENCE, joints=replace(REFERENCE.joints, stops="given"))
     evaluations = Evaluator(map_for("VT8020"), free)(designs)
     assert np.all(evaluations.peak_stop_torque_n_m[evaluations.ok] == 0.0)
     assert np.all(evaluations.stop_energy_j[evaluations.ok] == 0.0)

@@ -6,6 +6,7 @@ import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.controller import RECORD_NUMBERS
+from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.population import prepare
 from pareto_monoped.jump.pose import start_pose
@@ -80,8 +81,13 @@ def test_masses_and_armature_arrive(designs):
     robots = plausible_robots(designs)
     model = _compiled(designs, load_calibration())
     np.testing.assert_array_equal(model.body_mass[1:], robots.body_mass_kg[0])
-    np.testing.assert_array_equal(model.dof_armature[-2:], robots.armature_kg_m2[0])
-    np.testing.assert_array_equal(model.body_inertia[1:, 1], robots.body_inertia_kg_m2[0, :, 1, 1])
+    # The knee's turning parts are a tendon, whose own inertia leaves the thigh (tests/jump/test_rotors.py).
+    np.testing.assert_array_equal(model.dof_armature[-2:], [robots.armature_kg_m2[0, 0], 0.0])
+    inertia = robots.body_inertia_kg_m2[0, :, 1, 1] - [0.0, model.tendon_armature[0], 0.0]
+    np.testing.assert_allclose(model.body_inertia[1:, 1], inertia, rtol=1e-12)
+    joint_only = _compiled(designs, load_calibration("reference-1"))
+    np.testing.assert_array_equal(joint_only.dof_armature[-2:], robots.armature_kg_m2[0])
+    np.testing.assert_array_equal(joint_only.body_inertia[1:, 1], robots.body_inertia_kg_m2[0, :, 1, 1])
 
 
 @pytest.mark.parametrize("share", [0.3, 0.8, 1.5])
@@ -102,10 +108,12 @@ def test_foot_pushes_like_the_documented_spring(designs, share):
     assert force[kind][0] == pytest.approx(spring, rel=0.01)
 
 
+@pytest.mark.parametrize("name", ["reference", "reference-1"])
 @pytest.mark.parametrize("joint", ["hip", "knee"])
-def test_end_stops_push_like_the_documented_bumper(designs, joint):
-    calibration = load_calibration()
-    stop, model = getattr(calibration.joints, f"{joint}_stop"), _compiled(designs, calibration)
+def test_end_stops_push_like_the_documented_bumper(designs, joint, name):
+    calibration = load_calibration(name)
+    stops = end_stops(plausible_robots(designs), calibration.joints)
+    stop, model = stops[("hip", "knee").index(joint)], _compiled(designs, calibration)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     data.qpos[1] = 2.0  # in the air
@@ -149,7 +157,7 @@ def test_numbers_of_the_calibration_arrive(designs):
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     assert model.opt.gravity.tolist() == [0.0, 0.0, -9.81]
     for joint in ("hip", "knee"):
-        stop = getattr(start.joints, f"{joint}_stop")
+        stop = getattr(robots.stops, joint)
         assert model.joint(joint).range.tolist() == [stop.lower_rad, stop.upper_rad]
 
 

@@ -25,6 +25,7 @@ def test_plain_mj_step_on_the_exported_model_agrees():
             *design[4:],
             oracle.motors_of(robots, i, calibration),
             fade=calibration.gate.length_m,
+            read_back=True,
         )
         assert jump.ended
         assert found.height_m[i] == pytest.approx(jump.height, rel=1e-9)
@@ -62,8 +63,9 @@ def test_first_records_hold_what_robot_and_calibration_say():
         start,
         drive=replace(start.drive, chain_efficiency=0.9, peak_torque_scale=1.25, loss_speed_rad_per_s=0.7),
         controller=replace(start.controller, rest_length_m=9.0, gravity_feed_forward=0.5),
-        simulation=replace(start.simulation, integrator="RK4", time_limit_s=2.0, work_speed="start"),
+        simulation=replace(start.simulation, time_limit_s=2.0, work_speed="start"),
     )
+    by_stages = replace(start, simulation=replace(start.simulation, integrator="RK4", positions_read="state"))
     robots = plausible_robots(designs)
     records = first_records(robots, designs[:, 4:], calibration)
     hip, knee = robots.ratio[0]
@@ -73,7 +75,8 @@ def test_first_records_hold_what_robot_and_calibration_say():
         "timestep_s": 0.001,
         "period_steps": 1,
         "step_limit": 2000,
-        "stages": 4,
+        "stages": 1,
+        "read_back_s": 0.0005,
         "fade_length_m": 0.01,
         "latch": 1,
         "loss_speed_rad_per_s": 0.7,
@@ -97,18 +100,21 @@ def test_first_records_hold_what_robot_and_calibration_say():
         "thigh_com_m": robots.body_com_m[0, 1, [0, 2]],
         "shank_com_m": robots.body_com_m[0, 2, [0, 2]],
         "link_inertia_kg_m2": robots.body_inertia_kg_m2[0, 1:, 1, 1],
-        "armature_kg_m2": robots.armature_kg_m2[0],
+        "armature_kg_m2": [robots.armature_kg_m2[0, 0], robots.knee_reflected_kg_m2[0]],
+        "coupling_kg_m2": robots.knee_coupling_kg_m2[0],
         "rotor_kg_m2": [1e-4 * hip, 1e-4 * knee],
         "ratio": [hip, knee],
         "joint_damping_n_m_s_per_rad": start.joints.damping_n_m_s_per_rad,
-        "lower_stop_rad": [start.joints.hip_stop.lower_rad, start.joints.knee_stop.lower_rad],
-        "upper_stop_rad": [start.joints.hip_stop.upper_rad, start.joints.knee_stop.upper_rad],
+        "lower_stop_rad": [robots.stops.hip.lower_rad, robots.stops.knee.lower_rad],
+        "upper_stop_rad": [robots.stops.hip.upper_rad, robots.stops.knee.upper_rad],
         "sprocket_radius_m": 0.026,
     }
     for name, value in expected.items():
         np.testing.assert_allclose(records[0][name], value, rtol=1e-12, err_msg=name)
     zero = set(records.dtype.names) - set(expected)
     assert all(np.all(records[name] == 0.0) for name in zero)
+    runge_kutta = first_records(robots, designs[:, 4:], by_stages)
+    assert (runge_kutta["stages"][0], runge_kutta["read_back_s"][0]) == (4, 0)
     ideal = first_records(robots, designs[:, 4:], load_calibration("ideal"))
     assert np.all(ideal["loss"] == 0.0)
     paper = first_records(robots, designs[:, 4:], load_calibration("paper"))
@@ -156,11 +162,19 @@ def test_inputs_are_not_changed(many):
 def test_torque_is_held_during_a_step_whatever_the_integrator(integrator):
     """A Runge-Kutta step calls the callback four times; the oracle sets the torque once."""
     calibration, designs = load_calibration(), random_designs(8, seed=12)
-    calibration = replace(calibration, simulation=replace(calibration.simulation, integrator=integrator))
+    reads = "state" if integrator == "RK4" else "half_step_back"
+    simulation = replace(calibration.simulation, integrator=integrator, positions_read=reads)
+    calibration = replace(calibration, simulation=simulation)
     robots = plausible_robots(designs)
     found = evaluate_robots(robots, designs[:, 4:], calibration)
     for i, design in enumerate(designs):
         motors = oracle.motors_of(robots, i, calibration)
-        jump = oracle.jump(mjcf(robots, calibration, i), *design[4:], motors, fade=calibration.gate.length_m)
+        jump = oracle.jump(
+            mjcf(robots, calibration, i),
+            *design[4:],
+            motors,
+            fade=calibration.gate.length_m,
+            read_back=integrator != "RK4",
+        )
         assert found.height_m[i] == pytest.approx(jump.height, rel=1e-9)
         assert found.energy_j[i] == pytest.approx(jump.energy, rel=1e-9)

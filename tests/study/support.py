@@ -38,7 +38,7 @@ def made_meta(study):
     return StudyMeta(
         study=study.as_dict(),
         motor=study.motor,
-        calibration="reference-1",
+        calibration="reference-2",
         seed=study.seed,
         contents=CONTENTS,
         files={"motor": None, "calibration": None},

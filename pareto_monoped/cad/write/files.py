@@ -91,7 +91,7 @@ def write_models(
         write(folder, "model/jump.json", jump_record(arrays, design, calibration))
         write(folder, "model/replay.py", replay_script())
     if "urdf" in formats:
-        write(folder, "model/monoped.urdf", urdf.urdf(arrays, shown, solid))
+        write(folder, "model/monoped.urdf", urdf.urdf(arrays, calibration.joints, shown, solid))
 
 
 def pictures(product: Product) -> dict[str, Future[bytes]]:

@@ -16,6 +16,7 @@ _NUMBERS = (
     "timestep_s",
     "step_limit",
     "period_steps",
+    "read_back_s",
     "delay_periods",
     "fade_length_m",
     "latch",

@@ -82,6 +82,12 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
         "axis. Model frames stand at the joint axes."
     )
     yield ""
+    if "urdf" in formats:
+        yield (
+            "The URDF cannot hold the inertia of the parts that turn with a motor, nor its coupling with the thigh's "
+            "rotation. Comments at its joints give both; the MJCF has them."
+        )
+        yield ""
 
 
 def _making(product: Product) -> Iterator[str]:

@@ -6,19 +6,23 @@ from collections.abc import Sequence
 import numpy as np
 
 from pareto_monoped.cad.write.visuals import Collider, Visual, numbers
+from pareto_monoped.jump.calibration import Joints
+from pareto_monoped.jump.model import joint_damping
 from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.population import RobotArrays
 
 _NO_TURN = "0 0 0"
 
 
-def urdf(arrays: RobotArrays, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """The URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``.
+def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
+    """The URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``, frame ``foot``.
 
-    URDF has no element for the rotors' reflected inertia, so each joint has a comment with it.
+    URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
+    comment with them.
 
     Args:
         arrays: the robot as it is simulated.
+        joints: their friction.
         shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
         solid: primitives; the foot's sphere is added to them.
     """
@@ -39,7 +43,8 @@ def urdf(arrays: RobotArrays, shown: Sequence[Visual], solid: Sequence[Collider]
             _add_foot(link, arrays)
     places_m = {"hip": 0.0, "knee": -float(arrays.thigh_length_m[0])}
     for joint, name in enumerate(JOINTS):
-        _add_joint(root, arrays, joint, z_m=places_m[name])
+        _add_joint(root, arrays, joints, joint, z_m=places_m[name])
+    _add_foot_frame(root, arrays)
     ET.indent(root)
     return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
@@ -87,12 +92,32 @@ def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
     ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
 
 
-def _add_joint(root: ET.Element, arrays: RobotArrays, joint: int, *, z_m: float) -> None:
+def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
+    """A frame without mass at the centre of the foot's sphere, for planners and controllers."""
+    ET.SubElement(root, "link", name="foot")
+    element = ET.SubElement(root, "joint", name="foot", type="fixed")
+    ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
+    ET.SubElement(element, "parent", link="shank")
+    ET.SubElement(element, "child", link="foot")
+
+
+def _rotor_comment(arrays: RobotArrays, joints: Joints, joint: int) -> str:
+    """What a simulator must add for the parts that turn with the joint's motor."""
+    name, inertia_kg_m2 = JOINTS[joint], float(arrays.armature_kg_m2[0, joint])
+    if name == "hip" or joints.rotors == "armature":
+        return f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "
+    reflected, coupling = float(arrays.knee_reflected_kg_m2[0]), float(arrays.knee_coupling_kg_m2[0])
+    return (
+        f" {name}: reflected rotor inertia {reflected!r} kg m2, coupled with the thigh's rotation by {coupling!r} kg "
+        "m2; URDF can hold neither, the MJCF has both "
+    )
+
+
+def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int, *, z_m: float) -> None:
     """The joint between a body and the next one, with its axis along +y of the body frame."""
     name = JOINTS[joint]
     stop = (arrays.stops.hip, arrays.stops.knee)[joint]
-    inertia_kg_m2 = float(arrays.armature_kg_m2[0, joint])
-    root.append(ET.Comment(f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "))
+    root.append(ET.Comment(_rotor_comment(arrays, joints, joint)))
     element = ET.SubElement(root, "joint", name=name, type="revolute")
     ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, z_m), rpy=_NO_TURN)
     ET.SubElement(element, "parent", link=BODIES[joint])
@@ -106,3 +131,5 @@ def _add_joint(root: ET.Element, arrays: RobotArrays, joint: int, *, z_m: float)
         effort=numbers(arrays.peak_torque_n_m[0, joint]),
         velocity=numbers(arrays.no_load_speed_rad_per_s[0, joint]),
     )
+    damping = joint_damping(arrays, joints)[0, joint]
+    ET.SubElement(element, "dynamics", damping=numbers(damping), friction=numbers(joints.friction_n_m))

@@ -56,7 +56,28 @@ def test_joints_have_their_own_actuator_s_limits(urdf, robots, joint, name, pare
     assert float(limit.get("effort")) == robots.peak_torque_n_m[0, joint]
     assert float(limit.get("velocity")) == robots.no_load_speed_rad_per_s[0, joint]
     (comment,) = [e.text for e in urdf if e.tag is ET.Comment and e.text.startswith(f" {name}:")]
-    assert comment == f" {name}: reflected rotor inertia {float(robots.armature_kg_m2[0, joint])!r} kg m2 "
+    reflected = {"hip": robots.armature_kg_m2[0, 0], "knee": robots.knee_reflected_kg_m2[0]}[name]
+    assert comment.startswith(f" {name}: reflected rotor inertia {float(reflected)!r} kg m2")
+    coupling = (
+        f"coupled with the thigh's rotation by {float(robots.knee_coupling_kg_m2[0])!r} kg m2; URDF can hold neither"
+    )
+    assert (coupling in comment) == (name == "knee")
+
+
+@pytest.mark.parametrize("name", ["hip", "knee"])
+def test_joints_of_the_urdf_lose_what_those_of_the_mjcf_lose(exported, urdf, name):
+    model = mujoco.MjModel.from_xml_path(str(exported.folder / "model" / "monoped.xml"))
+    dynamics = urdf.find(f"joint[@name='{name}']/dynamics")
+    assert float(dynamics.get("damping")) == model.joint(name).damping[0] > 0.0
+    assert float(dynamics.get("friction")) == model.joint(name).frictionloss[0] > 0.0
+
+
+def test_the_foot_has_a_frame_at_the_centre_of_its_sphere(urdf, robots):
+    joint = urdf.find("joint[@name='foot']")
+    assert joint.get("type") == "fixed"
+    assert (joint.find("parent").get("link"), joint.find("child").get("link")) == ("shank", "foot")
+    assert numbers(joint.find("origin"), "xyz") == [0.0, 0.0, -robots.shank_length_m[0]]
+    assert len(urdf.find("link[@name='foot']")) == 0
 
 
 def test_hip_and_knee_differ_so_that_a_swap_would_show(robots):

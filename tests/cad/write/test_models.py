@@ -60,7 +60,7 @@ def test_urdf_loads_with_the_simulated_masses_and_inertias(exported, built, actu
         np.sort(np.linalg.eigvalsh(robots.body_inertia_kg_m2[0, 2])), rel=1e-6
     )
     root = ET.parse(path).getroot()
-    assert [link.get("name") for link in root.findall("link")] == ["base", "thigh", "shank"]
+    assert [link.get("name") for link in root.findall("link")] == ["base", "thigh", "shank", "foot"]
     knee = root.find("joint[@name='knee']")
     assert knee.find("axis").get("xyz") == "0 1 0"
     assert float(knee.find("origin").get("xyz").split()[2]) == -built.thigh_length_m

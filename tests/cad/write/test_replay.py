@@ -14,14 +14,13 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
 
-REFERENCE = load_calibration("reference")
+REFERENCE, FIRST = load_calibration("reference"), load_calibration("reference-1")
 MACHINE = replace(
     REFERENCE,
-    joints=replace(REFERENCE.joints, rotors="absolute"),
     drive=replace(REFERENCE.drive, regeneration_share=0.5, standby_power_w=8.0),
     simulation=replace(REFERENCE.simulation, timestep_s=5e-4, control_period_s=1e-3, delay_s=2e-3),
 )
-CALIBRATIONS = {"reference": REFERENCE, "paper": load_calibration("paper"), "machine": MACHINE}
+CALIBRATIONS = {"reference": REFERENCE, "reference-1": FIRST, "paper": load_calibration("paper"), "machine": MACHINE}
 DESIGNS = {
     "low and light": (0.3, 0.3, 4.05, 4.05, 30.0, 5.0, 10.0),
     "long thigh": (0.5, 0.31, 5.0, 6.0, 20.0, 2.0, 30.0),

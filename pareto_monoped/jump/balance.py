@@ -1,0 +1,190 @@
+"""Where the energy of one jump went: a balance of the motors' work, from the start to the apex."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
+from pareto_monoped.jump.single import Moment, constraint_forces, moments
+from pareto_monoped.robot.population import RobotArrays
+
+Floats = NDArray[np.float64]
+HIP, KNEE = -2, -1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnergyBalance:
+    """Where the work of the motors went, in joules.
+
+    Attributes:
+        motor_work_j: of both motors, less what they absorbed.
+        mesh_loss_j, chain_loss_j: lost in the gear meshes and in the chain.
+        bodies_kinetic_j: change of the kinetic energy of the bodies, each moving as one piece.
+        rotors_kinetic_j: change of what the turning parts have beyond that.
+        potential_j: change of the potential energy.
+        damping_j, friction_j: lost to viscous and Coulomb friction of the joints.
+        stops_absorbed_j: lost in the end stops.
+        stops_stored_j: what their bumpers still hold.
+        contact_j: lost at the foot, in its rubber and by slip.
+        integration_j: lost by the integrator, which takes Coriolis and centrifugal forces at the speeds before a step
+            and not at the mean speeds of the step.
+    """
+
+    motor_work_j: float
+    mesh_loss_j: float
+    chain_loss_j: float
+    bodies_kinetic_j: float
+    rotors_kinetic_j: float
+    potential_j: float
+    damping_j: float
+    friction_j: float
+    stops_absorbed_j: float
+    stops_stored_j: float
+    contact_j: float
+    integration_j: float
+
+    @property
+    def joint_work_j(self) -> float:
+        """Work of the torques that reach the joints."""
+        return self.motor_work_j - self.mesh_loss_j - self.chain_loss_j
+
+    @property
+    def residual_j(self) -> float:
+        """The joints' work that the other terms do not explain."""
+        moving = self.bodies_kinetic_j + self.rotors_kinetic_j + self.potential_j
+        stops = self.stops_absorbed_j + self.stops_stored_j
+        lost = self.damping_j + self.friction_j + self.contact_j + self.integration_j
+        return self.joint_work_j - moving - stops - lost
+
+    @property
+    def error(self) -> float:
+        """What physics leaves open, as a share of the joints' work: the residual with what the integrator loses."""
+        return abs(self.residual_j + self.integration_j) / max(abs(self.joint_work_j), 1e-12)
+
+
+def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
+    """Where the energy of the first robot's jump went.
+
+    The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
+    inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
+    Runge-Kutta step only the actuators' force is constant; the others count with the mean of their values at both ends.
+    """
+    work = dict.fromkeys(("motor", "joint", "damping", "friction", "stops", "contact", "integration"), 0.0)
+    mesh, chain = np.zeros(2), np.zeros(2)
+    mesh_share = _mesh_share(robots, calibration)
+    first: Moment | None = None
+    moved: Floats | float = 0.0
+    for moment in moments(robots, control, calibration):
+        first = first or moment
+        if moment.last:
+            break
+        before, moved = moved, _moved(moment, calibration)
+        motor = np.array(moment.record["motor_torque_n_m"]) * moved[HIP:]
+        lost = motor - moment.data.qfrc_actuator[HIP:] * moved[HIP:]
+        work["motor"] += float(motor.sum())
+        mesh += mesh_share * lost
+        chain += (1.0 - mesh_share) * lost
+        mean = 0.5 * (before + moved) if calibration.simulation.integrator == "RK4" else moved
+        friction, stops, contact = constraint_forces(moment.data)
+        work["damping"] += float((moment.model.dof_damping * _damped(moment, calibration)) @ mean)
+        work["friction"] -= float(friction @ mean)
+        work["stops"] -= float(stops @ mean)
+        work["contact"] -= float(contact @ mean)
+        work["integration"] += _integration_loss_j(moment, calibration, moved)
+    assert first is not None
+    start, end = (_energies(robots, calibration, each) for each in (first, moment))
+    bodies, rotors, potential, stored = end - start
+    return EnergyBalance(
+        motor_work_j=work["motor"],
+        mesh_loss_j=float(mesh.sum()),
+        chain_loss_j=float(chain.sum()),
+        bodies_kinetic_j=float(bodies),
+        rotors_kinetic_j=float(rotors),
+        potential_j=float(potential),
+        damping_j=work["damping"],
+        friction_j=work["friction"],
+        stops_absorbed_j=work["stops"] - float(stored),
+        stops_stored_j=float(stored),
+        contact_j=work["contact"],
+        integration_j=work["integration"],
+    )
+
+
+def _moved(moment: Moment, calibration: Calibration) -> Floats:
+    """How far the joints move in a step, as its work is booked, shape (nv,)."""
+    if calibration.simulation.integrator == "RK4":
+        return np.asarray(moment.after.qpos - moment.qpos)
+    return np.asarray(0.5 * (moment.qvel + moment.after.qvel) * calibration.simulation.timestep_s)
+
+
+def _damped(moment: Moment, calibration: Calibration) -> Floats:
+    """The speed at which the integrator evaluates joint damping: MuJoCo's Euler step takes that after the step."""
+    match calibration.simulation.integrator:
+        case "Euler":
+            return np.asarray(moment.after.qvel)
+        case "RK4":
+            return moment.qvel
+    return np.asarray(0.5 * (moment.qvel + moment.after.qvel))
+
+
+def _integration_loss_j(moment: Moment, calibration: Calibration, moved: Floats) -> float:
+    """Work of Coriolis and centrifugal forces at the speeds before a step, beyond that at the step's mean speeds."""
+    import mujoco
+
+    if calibration.simulation.integrator == "RK4":
+        return 0.0
+    model, data = moment.model, moment.scratch
+    forces = []
+    for speed in (moment.qvel, 0.5 * (moment.qvel + moment.after.qvel)):
+        data.qpos[:], data.qvel[:] = moment.qpos, speed
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        forces.append(data.qfrc_bias.copy())
+    return float((forces[0] - forces[1]) @ moved)
+
+
+def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """The share of each drive's loss that its gear meshes have; the chain, behind them, has the rest. Shape (2,)."""
+    mesh = robots.efficiency[0] if calibration.drive.mesh_losses else np.ones(2)
+    chain = np.array([1.0, calibration.drive.chain_efficiency])
+    lost = 1.0 - mesh * chain
+    return np.divide(1.0 - mesh, lost, out=np.zeros(2), where=lost > 0.0)
+
+
+def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> Floats:
+    """Kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
+    import mujoco
+
+    model, data = moment.model, moment.scratch
+    back_s = 0.5 * calibration.simulation.timestep_s if calibration.simulation.positions_read != "state" else 0.0
+    data.qpos[:], data.qvel[:] = moment.qpos - back_s * moment.qvel, moment.qvel
+    mujoco.mj_forward(model, data)
+    mujoco.mj_energyPos(model, data)
+    mujoco.mj_energyVel(model, data)
+    potential, kinetic = data.energy
+    rotors = _rotors_kinetic_j(robots, calibration, moment.qvel[HIP:])
+    return np.array([kinetic - rotors, rotors, potential, _stored_j(robots, calibration, data)])
+
+
+def _rotors_kinetic_j(robots: RobotArrays, calibration: Calibration, speed: Floats) -> float:
+    """What the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
+    hip, knee = speed
+    armature = robots.armature_kg_m2[0]
+    if calibration.joints.rotors == "armature":
+        return float(0.5 * armature @ np.square(speed))
+    reflected, coupling = robots.knee_reflected_kg_m2[0], robots.knee_coupling_kg_m2[0]
+    riding = 0.5 * (armature[0] + robots.rotor_excess_kg_m2[0]) * hip**2
+    return float(riding + coupling * hip * knee + 0.5 * reflected * knee**2)
+
+
+def _stored_j(robots: RobotArrays, calibration: Calibration, data: Any) -> float:
+    """Work of a slow relief of both end stops, by the trapezoidal rule."""
+    stored = 0.0
+    for stop, angle in zip(end_stops(robots, calibration.joints), data.qpos[HIP:], strict=True):
+        if stop is not None:
+            beyond = np.linspace(0.0, max(0.0, stop.lower_rad - angle, angle - stop.upper_rad), 1001)
+            stored += float(np.trapezoid(slow_torque_n_m(stop, beyond), beyond))
+    return stored

@@ -1,0 +1,100 @@
+"""End stops as the simulation has them: those that a calibration gives, or those of the leg's parts.
+
+An ``EndStop`` becomes a limit of MuJoCo (``model.spring_fields``). With u the compression over its full width w and D
+its impedance, it takes the torque k w u^3 (1 - D) / (1 - D u) slowly, damps with c u (1 - D) / (1 - D u), and adds the
+virtual inertia D u / (1 - D u) / A, where A is the joint's inverse inertia at the zero pose. Beyond w damping and
+virtual inertia stay as at w, and the torque rises in proportion.
+"""
+
+import functools
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.jump.calibration import EndStop, Joints
+from pareto_monoped.leg.stops import JointStop
+from pareto_monoped.robot.population import RobotArrays
+
+Floats = NDArray[np.float64]
+EndStops = tuple[EndStop | None, EndStop | None]
+"""Of hip and knee; None for a joint that turns freely."""
+
+IMPACT_M_PER_S = 2.0
+"""Speed at the bumper of the impact that gives back what the elastomer does; knees meet their stop with about that."""
+IMPACT_KG_M2 = 0.031
+"""Inertia of that impact: 1 / A of the knee, the median of 60 random designs (0.019 to 0.048)."""
+IMPEDANCE = 0.6
+"""D of the stops of parts. The slow torque fits that of the part about as well with any D from 0.1 to 0.6. By
+simulation, this one makes heights and energies depend little on the step (docs/model.md)."""
+
+
+def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
+    """The end stops of both joints."""
+    if joints.stops == "parts":
+        return simulated(robots.stops.hip), simulated(robots.stops.knee)
+    return joints.hip_stop, joints.knee_stop
+
+
+@functools.lru_cache(maxsize=16)
+def simulated(stop: JointStop) -> EndStop:
+    """The end stop that behaves like a part.
+
+    Over the travel of the bumper, its slow torque is as close to that of the part as can be, by least squares. Its
+    damping gives back the share of an impact's energy that the elastomer does (ISO 4662).
+    """
+    beyond = np.linspace(0.0, stop.travel_rad, 201)
+    soft = EndStop(
+        lower_rad=float(stop.lower_rad),
+        upper_rad=float(stop.upper_rad),
+        width_rad=stop.travel_rad,
+        stiffness_n_m_per_rad=1.0,
+        damping_n_m_s_per_rad=0.0,
+        impedance=IMPEDANCE,
+    )
+    shape = slow_torque_n_m(soft, beyond)
+    undamped = replace(soft, stiffness_n_m_per_rad=float(shape @ stop.torque_n_m(beyond) / (shape @ shape)))
+    speed = IMPACT_M_PER_S / (1e-3 * stop.lever_mm)
+    wanted = speed * math.sqrt(stop.bumper.elastomer.rebound_resilience)
+    low, high = 0.0, 4.0 * math.sqrt(undamped.stiffness_n_m_per_rad * IMPACT_KG_M2)
+    for _ in range(40):  # bisection: more damping, less rebound
+        middle = 0.5 * (low + high)
+        found = rebound_rad_per_s(replace(undamped, damping_n_m_s_per_rad=middle), speed, IMPACT_KG_M2)
+        low, high = (middle, high) if found > wanted else (low, middle)
+    return replace(undamped, damping_n_m_s_per_rad=0.5 * (low + high))
+
+
+def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:
+    """Torque with which an end stop pushes back slowly at angles beyond its end of the range."""
+    d = stop.impedance * np.clip(np.asarray(beyond_rad) / stop.width_rad, 0.0, 1.0)
+    share = np.square(d / stop.impedance) * (1.0 - stop.impedance) / (1.0 - d)
+    return np.asarray(stop.stiffness_n_m_per_rad * beyond_rad * share)
+
+
+def rebound_rad_per_s(stop: EndStop, speed_rad_per_s: float, inertia_kg_m2: float) -> float:
+    """Speed at which a free inertia leaves a stop that it met at a speed, by Runge and Kutta's method.
+
+    The stop pushes and never pulls.
+    """
+    full, width = stop.impedance, stop.width_rad
+
+    def deceleration(r: float, v: float) -> float:
+        u = min(max(r / width, 0.0), 1.0)
+        share = u * (1.0 - full) / (1.0 - full * u)
+        torque = share * (stop.stiffness_n_m_per_rad * u * r + stop.damping_n_m_s_per_rad * v)
+        return max(0.0, torque) * (1.0 - full * u) / inertia_kg_m2  # the virtual inertia adds d / (1 - d)
+
+    r, v = 0.0, speed_rad_per_s
+    h = 0.005 * width / speed_rad_per_s
+    while r >= 0.0:
+        a1 = deceleration(r, v)
+        v2 = v - 0.5 * h * a1
+        a2 = deceleration(r + 0.5 * h * v, v2)
+        v3 = v - 0.5 * h * a2
+        a3 = deceleration(r + 0.5 * h * v2, v3)
+        v4 = v - h * a3
+        a4 = deceleration(r + h * v3, v4)
+        r += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+        v -= h * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+    return -v

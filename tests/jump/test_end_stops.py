@@ -1,0 +1,109 @@
+"""The simulated end stops against the law of the parts, and against MuJoCo."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, Design
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.end_stops import IMPACT_KG_M2, IMPACT_M_PER_S, end_stops, simulated, slow_torque_n_m
+from pareto_monoped.jump.single import simulate
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.stops import hip_stop, knee_stop
+from tests.jump.robots import plausible_robots, random_designs
+
+MAP = map_for("VT8020")
+LEG = leg_dimensions(MAP)
+STOPS = {"hip": hip_stop(LEG), "knee": knee_stop(LEG)}
+both = pytest.mark.parametrize("part", STOPS.values(), ids=STOPS)
+
+
+def one_joint(stop, inertia_kg_m2, timestep_s=1e-5):
+    """A wheel with the end stop as its limit, written from MuJoCo's documentation."""
+    scale = (1.0 - stop.impedance) / inertia_kg_m2
+    stiffness, damping = -stop.stiffness_n_m_per_rad * scale, -stop.damping_n_m_s_per_rad * scale
+    return mujoco.MjModel.from_xml_string(
+        f'<mujoco><option gravity="0 0 0" timestep="{timestep_s}" tolerance="1e-14"/><compiler angle="radian"/>'
+        f'<worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="1 {inertia_kg_m2} 1"/>'
+        f'<joint type="hinge" axis="0 1 0" limited="true" range="{stop.lower_rad} {stop.upper_rad}"'
+        f' solreflimit="{stiffness} {damping}" solimplimit="0.0001 {stop.impedance} {stop.width_rad} 0.5 1"/>'
+        "</body></worldbody></mujoco>"
+    )
+
+
+@both
+def test_ends_are_those_of_the_part(part):
+    stop = simulated(part)
+    assert (stop.lower_rad, stop.upper_rad, stop.width_rad) == (part.lower_rad, part.upper_rad, part.travel_rad)
+
+
+@both
+def test_the_slow_torque_is_the_part_s_within_seven_percent_of_the_full_torque(part):
+    beyond = np.linspace(0.0, part.travel_rad, 501)
+    error = (slow_torque_n_m(simulated(part), beyond) - part.torque_n_m(beyond)) / part.torque_n_m(part.travel_rad)
+    assert np.abs(error).max() < 0.065
+    assert np.sqrt(np.square(error).mean()) < 0.042
+
+
+@both
+def test_no_other_stiffness_fits_better(part):
+    beyond = np.linspace(0.0, part.travel_rad, 501)
+    fitted, wanted = slow_torque_n_m(simulated(part), beyond), part.torque_n_m(beyond)
+    least = np.square(fitted - wanted).sum()
+    for factor in (0.99, 1.01):
+        assert np.square(factor * fitted - wanted).sum() > least
+
+
+@both
+@pytest.mark.parametrize("share", [0.2, 0.6, 1.0, 1.3])
+def test_mujoco_pushes_back_slowly_as_the_simulated_stop_says(part, share):
+    stop = simulated(part)
+    model = one_joint(stop, IMPACT_KG_M2)
+    data = mujoco.MjData(model)
+    data.qpos[0] = stop.upper_rad + share * stop.width_rad
+    mujoco.mj_forward(model, data)
+    torque = (data.efc_aref / data.efc_R)[0]
+    assert torque == pytest.approx(slow_torque_n_m(stop, np.array([share * stop.width_rad]))[0], rel=2e-3)
+
+
+@both
+def test_an_impact_gives_back_what_the_elastomer_does(part):
+    """By MuJoCo with a step of 10 us; the share is that of the energy (ISO 4662)."""
+    model = one_joint(simulated(part), IMPACT_KG_M2)
+    data = mujoco.MjData(model)
+    speed = IMPACT_M_PER_S / (1e-3 * part.lever_mm)
+    data.qpos[0], data.qvel[0] = part.lower_rad, -speed
+    for _ in range(20000):
+        mujoco.mj_step(model, data)
+        if data.qpos[0] > part.lower_rad:
+            break
+    share = (data.qvel[0] / speed) ** 2
+    assert share == pytest.approx(part.bumper.elastomer.rebound_resilience, abs=0.001)
+
+
+def test_stops_come_from_the_calibration_or_the_parts():
+    robots = plausible_robots(random_designs(1))
+    given = load_calibration("reference-1").joints
+    assert end_stops(robots, given) == (given.hip_stop, given.knee_stop)
+    assert end_stops(robots, load_calibration("paper").joints) == (None, None)
+    assert end_stops(robots, load_calibration().joints) == (simulated(robots.stops.hip), simulated(robots.stops.knee))
+
+
+def rebound(design):
+    """Speed with which the knee leaves its lower stop for the first time, over that with which it met it."""
+    trace = simulate(design, MAP, load_calibration(), trace=True).trace
+    inside = np.flatnonzero(trace["knee_rad"] < STOPS["knee"].lower_rad)
+    first = inside[0]
+    out = first + np.flatnonzero(trace["knee_rad"][first:] >= STOPS["knee"].lower_rad)
+    return trace["knee_rad_per_s"][out[0]] / -trace["knee_rad_per_s"][first - 1]
+
+
+def test_knees_bounce_as_the_documentation_says():
+    """Knees come back with 0.24 to 0.30 of their speed on the paper's designs; with 0.30 in the median elsewhere."""
+    designs = [case.design for case in PAPER_CASES.values()]
+    designs += [Design.from_array(v) for v in np.random.default_rng(9).uniform(LOWER, UPPER, (25, len(LOWER)))]
+    found = np.array([rebound(design) for design in designs])
+    assert found[:4] == pytest.approx([0.270, 0.299, 0.245, 0.243], abs=0.02)
+    assert np.median(found[4:]) == pytest.approx(0.295, abs=0.02)
+    assert (found.min(), found.max()) == pytest.approx((0.196, 0.359), abs=0.03)
