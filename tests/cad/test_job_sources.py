@@ -27,14 +27,14 @@ def data():
         front=lambda: trials.set_index("trial", drop=False).loc[[7, 2, 5, 4, 0]].reset_index(drop=True),
         motor=load_motor("U8"),
         calibration=load_calibration("ideal"),
-        study=SimpleNamespace(name="mine"),
+        study=SimpleNamespace(name="mine", rules="iso6336"),
     )
 
 
 def test_a_trial_is_exported_with_its_design_and_the_study_s_motor_and_calibration(data, tmp_path):
     job = trial_job(data, 4, folder=tmp_path, formats=["stl", "step"], force=True, hip_rad=0.1, knee_rad=0.2)
     assert job.design.as_array() == pytest.approx(data.trials.loc[4, list(NAMES)].to_numpy(float), abs=0.0)
-    assert (job.motor, job.calibration) == (data.motor, data.calibration)
+    assert (job.motor, job.calibration, job.rules) == (data.motor, data.calibration, "iso6336")
     assert job.source == {"study": "mine", "trial": 4}
     assert (job.folder, job.formats, job.force) == (tmp_path, ("step", "stl"), True)
     assert (job.hip_rad, job.knee_rad) == (0.1, 0.2)
@@ -50,7 +50,8 @@ def test_a_front_is_exported_in_its_order_each_n_th_from_the_first(data, tmp_pat
 def test_a_row_of_table_1_has_the_paper_s_motor_and_the_reference_calibration(tmp_path):
     job = case_job("B", folder=tmp_path, hip_rad=0.1, knee_rad=0.2)
     assert job.design == PAPER_CASES["B"].design
-    assert (job.motor.name, job.calibration.name) == ("VT8020", "reference")
+    assert (job.motor.name, job.calibration.name, job.rules) == ("VT8020", "reference", "paper")
+    assert case_job("B", folder=tmp_path, rules="iso6336").rules == "iso6336"
     assert (job.hip_rad, job.knee_rad, job.formats) == (0.1, 0.2, FORMATS)
     with pytest.raises(InputError, match="format 'dwg'"):
         case_job("B", folder=tmp_path, formats=["dwg"])
