@@ -1,7 +1,7 @@
 """Fit the calibration ``paper`` to Table I and write its file.
 
 Three numbers are fitted; everything else in the calibration is data or follows the paper's text. Errors are those of
-medians over perturbations of 1e-6, because single jumps of the literal model are decided by rounding.
+medians over perturbations of 1e-6, because rounding may decide a single jump of the literal model.
 
     python tools/fit_paper.py [--evaluations N] [--write]
 """
@@ -28,16 +28,16 @@ Floats = NDArray[np.float64]
 
 FITTED: dict[str, tuple[float, float, int]] = {
     # key in the TOML file: lower bound, upper bound, digits kept
-    "motor_damping_n_m_s_per_rad": (0.0, 0.14, 5),
-    "time_constant_s": (0.004, 0.06, 5),
-    "foot_mass_kg": (0.02, 0.6, 3),
+    "motor_damping_n_m_s_per_rad": (0.0, 0.06, 5),
+    "link_mass_scale": (0.6, 2.2, 3),
+    "foot_mass_kg": (0.01, 0.6, 3),
 }
 PUBLISHED: Floats = np.array([[case.height_m, case.energy_j] for case in PAPER_CASES.values()])
 _PARTS = ("mass", "joints", "drive", "controller", "contact")
 """Parts of a calibration that may hold a fitted number."""
-FIT_PERTURBATIONS = 15
+FIT_PERTURBATIONS = 9
 """Copies per case during the fit: fewer than ``table1.PERTURBATIONS``, and drawn with another seed."""
-LINK_SCALES = (0.99, 1.0, 1.01)
+LINK_SCALES = (0.975, 0.99, 1.0, 1.01, 1.025)
 """Factors on the mass of the links; a fit counts with the worst of them."""
 
 
@@ -62,8 +62,8 @@ def objective(start: Calibration) -> Callable[[Floats], float]:
     """What the fit minimises, as a function of the fitted numbers.
 
     It is the worst of the eight errors, plus a fifth of their mean so that the other errors matter too, plus the share
-    of copies that do not jump. The worst over ``LINK_SCALES`` counts: the literal model has islands a gram wide where a
-    chattering foot never leaves the floor, and a fit must not lie on or beside one.
+    of copies that do not jump. The worst over ``LINK_SCALES`` counts: the foot of the literal model chatters, and how
+    it does can change within a few grams; a fit must not lie on or beside such a place.
     """
     actuators = map_for(PAPER_MOTOR)
 

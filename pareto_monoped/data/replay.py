@@ -88,8 +88,10 @@ def replay(folder: Path) -> tuple[float, float, float]:
             motor = np.zeros(2)
         elif tick:
             if jump["knee_release_rad"]:
-                before_stop = q[knee] - jump["lower_stop_rad"][1]
-                wanted[1] *= np.clip(before_stop / jump["knee_release_rad"], 0.0, 1.0)
+                wanted[1] *= np.clip((q[knee] - jump["lower_stop_rad"][1]) / jump["knee_release_rad"], 0.0, 1.0)
+            stiffness, damping = jump["flight_stiffness_n_m_per_rad"], jump["flight_damping_n_m_s_per_rad"]
+            if not gate and stiffness:  # pull the leg back to its start pose
+                gate, wanted = 1.0, stiffness * (jump["start_rad"] - q[[hip, knee]]) - damping * speed
             commands.append((gate, wanted))
             motor = np.zeros(2)
             if len(commands) > jump["delay_periods"]:

@@ -102,6 +102,7 @@ class Drive:
         loss_speed_rad_per_s: joint speed over which the load-dependent losses change sign; smooths the change.
         voltage_limit: whether the torque limit falls along the voltage-speed line to zero at the no-load speed.
         peak_torque_scale: factor on the motors' peak torque.
+        knee_torque_scale: further factor on the knee's peak torque; its speed and inertia stay as they are.
         regeneration_share: of the electrical power that flows back, what the battery takes.
         standby_power_w: of the electronics, as long as the jump lasts.
     """
@@ -113,6 +114,7 @@ class Drive:
     loss_speed_rad_per_s: Positive = 0.5
     voltage_limit: bool = True
     peak_torque_scale: Positive = 1.0
+    knee_torque_scale: Positive = 1.0
     regeneration_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
     standby_power_w: NotNegative = 0.0
 
@@ -194,18 +196,35 @@ class FadeGate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Flight:
+    """Springs and dampers that the motors imitate at both joints while the foot is off the floor.
+
+    They pull the leg back to its start pose, within the motors' peak torque.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    stiffness_n_m_per_rad: Positive
+    damping_n_m_s_per_rad: NotNegative
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Controller:
-    """Numbers of the virtual controller that the paper's final text leaves open (section II-B).
+    """What the paper's final text leaves open about the virtual controller (section II-B).
 
     Attributes:
         rest_length_m: l0, rest length of the virtual spring; 10 m in a passage missing from the final text.
-        gravity_feed_forward: factor on the term m g of F_z, with m the simulated robot's mass; 1 in the paper.
+        gravity_feed_forward: factor on the term m g of F_z; 1 in the paper.
+        weight: whose mass m is, that of the whole ``robot`` or of its ``base``.
+        flight: what the motors do while the foot is off the floor; None: nothing.
     """
 
     __pydantic_config__ = _STRICT
 
     rest_length_m: Positive = 10.0
     gravity_feed_forward: NotNegative = 1.0
+    weight: Literal["robot", "base"] = "robot"
+    flight: Flight | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -282,6 +301,11 @@ class Calibration:
     controller: Controller
     simulation: Simulation
 
+    def __post_init__(self) -> None:
+        """Refuse torques in flight with a gate that ends them."""
+        if self.controller.flight is not None and not isinstance(self.gate, ContactGate):
+            raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set")
+
     @property
     def label(self) -> str:
         """Name and version, as quoted in results."""
@@ -290,7 +314,8 @@ class Calibration:
 
 _LATER = {
     "joints": ("rotors", "stops"),
-    "drive": ("regeneration_share", "standby_power_w"),
+    "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w"),
+    "controller": ("weight", "flight"),
     "simulation": ("control_period_s", "delay_s", "positions_read"),
 }
 """Fields that calibrations did not always have, by table."""

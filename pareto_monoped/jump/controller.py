@@ -58,6 +58,10 @@ RECORD = np.dtype(
         ("loss", _BOTH),  # share of the torque lost in gears and chain
         ("heat_w_per_n2_m2", _BOTH),  # Joule heat per squared joint torque
         ("knee_release_rad", _ONE),  # 0: the knee's torque does not fade before its stop
+        # A second controller, which holds the start pose while the foot is off the floor; 0: no torque there.
+        ("flight_stiffness_n_m_per_rad", _ONE),
+        ("flight_damping_n_m_s_per_rad", _ONE),
+        ("start_rad", _BOTH),
         # What the loads are computed from, see ``_loads``.
         ("body_mass_kg", (np.float64, (3,))),
         ("thigh_com_m", _BOTH),  # x, z
@@ -234,11 +238,13 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
                 return
             # The driver still works off the commands that are under way.
             jump.quiet_periods += 1
-        wanted = (0.0, 0.0)
+        wanted, share = (0.0, 0.0), gate
         if gate > 0.0:
             wanted = _virtual_leg(foot, shank, speed, jump)
             wanted = (wanted[HIP], wanted[KNEE] * _release(knee, jump))
-        _command(wanted, gate, speed, jump)
+        elif jump.flight_stiffness_n_m_per_rad > 0.0:
+            wanted, share = _held_pose((hip, knee), speed, jump), 1.0
+        _command(wanted, share, speed, jump)
     for joint in range(2):
         jump.speed_rad_per_s[joint] = speed[joint]
         delivered = _delivered(jump.motor_torque_n_m[joint], speed[joint], jump, joint)
@@ -362,6 +368,16 @@ def _virtual_leg(
     fz = -axial * cos + across * sin - jump.weight_n
     fx = -axial * sin - across * cos
     return rz * fx - rx * fz, shank_z * fx - shank_x * fz
+
+
+@compiled
+def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any) -> tuple[float, float]:
+    """Torques of hip and knee that pull the leg back to its start pose in flight."""
+    stiffness, damping = jump.flight_stiffness_n_m_per_rad, jump.flight_damping_n_m_s_per_rad
+    return (
+        stiffness * (jump.start_rad[HIP] - angle[HIP]) - damping * speed[HIP],
+        stiffness * (jump.start_rad[KNEE] - angle[KNEE]) - damping * speed[KNEE],
+    )
 
 
 @compiled

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import GRAVITY_M_PER_S2
-from pareto_monoped.jump.calibration import Calibration, Joints, SpringContact
+from pareto_monoped.jump.calibration import Calibration, Drive, Joints, SpringContact
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.pose import LEAST_IMPEDANCE, StartPose, start_pose
 from pareto_monoped.robot.population import RobotArrays
@@ -99,7 +99,7 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
     joints = calibration.joints
     damping = np.zeros_like(armature)
     damping[:, -2:] = joint_damping(robots, joints)
-    limit = calibration.drive.peak_torque_scale * robots.peak_torque_n_m
+    limit = torque_limit(robots, calibration.drive)
     return {
         "body_mass": mass,
         "body_ipos": com,
@@ -120,6 +120,11 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
 def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     """Viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
     return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
+
+
+def torque_limit(robots: RobotArrays, drive: Drive) -> Floats:
+    """Peak torque of hip and knee, N m at the joint, shape (n, 2)."""
+    return drive.peak_torque_scale * robots.peak_torque_n_m * [1.0, drive.knee_torque_scale]
 
 
 def spring_fields(

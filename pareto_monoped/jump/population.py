@@ -12,7 +12,7 @@ from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.end_stops import EndStops, end_stops
-from pareto_monoped.jump.pose import StartPose
+from pareto_monoped.jump.pose import StartPose, start_pose
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
 
@@ -174,9 +174,15 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     # A design that leaves the rest length at its default takes that of its calibration.
     free = given["rest_length_m"] != REST_LENGTH_M
     records["rest_length_m"] = np.where(free, given["rest_length_m"], calibration.controller.rest_length_m)
-    weight_n = robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
-    records["weight_n"] = calibration.controller.gravity_feed_forward * weight_n
-    limit = drive.peak_torque_scale * robots.peak_torque_n_m
+    whole = calibration.controller.weight == "robot"
+    mass_kg = robots.body_mass_kg.sum(axis=1) if whole else robots.body_mass_kg[:, BODIES.index("base")]
+    records["weight_n"] = calibration.controller.gravity_feed_forward * (mass_kg * GRAVITY_M_PER_S2)
+    if (flight := calibration.controller.flight) is not None:
+        pose = start_pose(robots, calibration)
+        records["flight_stiffness_n_m_per_rad"] = flight.stiffness_n_m_per_rad
+        records["flight_damping_n_m_s_per_rad"] = flight.damping_n_m_s_per_rad
+        records["start_rad"] = np.stack([pose.hip_rad, pose.knee_rad], axis=1)
+    limit = model.torque_limit(robots, drive)
     records["torque_limit_n_m"] = limit
     records["no_load_speed_rad_per_s"] = robots.no_load_speed_rad_per_s
     # The voltage-speed line R i + k_t w = k_t w_0 meets the peak current at the corner speed.

@@ -27,7 +27,7 @@ class Result:
 class Spread(Result):
     """Medians over perturbed copies of a design, with the 5th and 95th percentiles, over the copies that jump.
 
-    Single jumps of the literal model are decided by rounding, so only their distribution means anything.
+    Rounding may decide a single jump of the literal model, so only their distribution means anything.
 
     Attributes:
         height_m, energy_j: medians; NaN if no copy jumps, as the percentiles.

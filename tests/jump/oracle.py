@@ -50,6 +50,8 @@ def jump(
     mean_speed: bool = True,
     gravity: float = 1.0,
     read_back: bool = False,
+    weight_of: str = "robot",
+    flight: tuple[float, float] | None = None,
 ) -> Jump:
     """Paper, section II-B, on the MJCF's robot.
 
@@ -67,6 +69,9 @@ def jump(
         gravity: factor on m g in F_z.
         read_back: whether the controller reads the positions of half a step ago, extrapolated with the last change of
             speed.
+        weight_of: whose mass m is: the whole ``robot``'s, or that of one body.
+        flight: spring and damper at both joints that pull the leg back to its start pose while the foot is off the
+            floor; None: no torque there.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)
@@ -75,7 +80,9 @@ def jump(
     radius = model.geom("foot").size[0]
     hinges = [model.joint(name).dofadr[0] for name in ("hip", "knee")]
     limits = model.actuator_ctrlrange[[model.actuator(name).id for name in ("hip", "knee")], 1]
-    weight = gravity * model.body_mass.sum() * 9.81
+    mass = model.body_mass.sum() if weight_of == "robot" else model.body(weight_of).mass[0]
+    weight = gravity * mass * 9.81
+    start = data.qpos[hinges].copy()
     lift = model.joint("slide_z").dofadr[0]
     step = model.opt.timestep
     energy, height, lift_off = np.zeros(2), 0.0, 0.0
@@ -133,6 +140,8 @@ def jump(
                     up = np.clip((motor.no_load_speed - speeds[j]) / span, 0.0, 1.0)
                     down = np.clip((motor.no_load_speed + speeds[j]) / span, 0.0, 1.0)
                 torque[j] = share * np.clip(torque[j], -limits[j] * down, limits[j] * up)
+        elif flight is not None:
+            torque = np.clip(flight[0] * (start - data.qpos[hinges]) - flight[1] * speeds, -limits, limits)
         for j, motor in enumerate(motors):
             lost = motor.loss * abs(torque[j]) * np.tanh(speeds[j] / loss_speed)
             data.ctrl[j] = np.clip(torque[j] - lost, -limits[j], limits[j])

@@ -6,6 +6,7 @@ from pareto_monoped.errors import CalibrationError
 from pareto_monoped.jump.calibration import (
     FadeGate,
     calibration_names,
+    calibration_of,
     calibration_values,
     earlier_calibrations,
     load_calibration,
@@ -31,7 +32,7 @@ def test_paper_is_literal():
     assert paper.simulation.timestep_s == 0.002
     assert not paper.drive.voltage_limit
     assert paper.controller.gravity_feed_forward == 1.0
-    assert paper.mass.link_mass_scale == 1.0
+    assert paper.mass.rotor_inertia_kg_m2 == 0.0
     assert paper.drive.chain_efficiency == paper.drive.peak_torque_scale == 1.0
     assert paper.joints.hip_stop is paper.joints.knee_stop is None
 
@@ -118,3 +119,23 @@ def test_an_earlier_version_is_loaded_by_its_label_and_has_its_own_hash(label):
 def test_an_unknown_name_or_file_is_an_input_error(name):
     with pytest.raises(CalibrationError, match=name):
         load_calibration(name)
+
+
+def test_readings_that_came_later_are_not_stored_at_their_defaults():
+    """Studies stored before these fields existed keep their hash; a calibration that sets them is read back whole."""
+    later = {"drive": "knee_torque_scale", "controller": "weight"}
+    stored = calibration_values(load_calibration())
+    assert all(name not in stored[table] for table, name in later.items())
+    assert "flight" not in stored["controller"]
+    paper = load_calibration("paper")
+    stored = calibration_values(paper)
+    assert all(name in stored[table] for table, name in later.items())
+    assert calibration_of(stored, source="test") == paper
+
+
+def test_torque_in_flight_needs_a_gate_that_does_not_end_it(tmp_path):
+    path = tmp_path / "wrong.toml"
+    flight = "[controller.flight]\nstiffness_n_m_per_rad = 100.0\ndamping_n_m_s_per_rad = 10.0\n\n[simulation]"
+    path.write_text(_text().replace("[simulation]", flight))
+    with pytest.raises(CalibrationError, match=r"gate\.rule 'fade' must be 'contact'"):
+        load_calibration(str(path))

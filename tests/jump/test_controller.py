@@ -142,6 +142,22 @@ def test_literal_gate_is_all_or_nothing():
     assert clear[1] == 0.0
 
 
+def test_in_flight_springs_and_dampers_pull_the_leg_to_its_start_pose():
+    pose = {"flight_stiffness_n_m_per_rad": 100.0, "flight_damping_n_m_s_per_rad": 10.0, "start_rad": (-0.7, 1.5)}
+    speeds = (0.5, -2.0)
+    clear, status, _ = torques(
+        -0.6, 1.2, clearance=1e-6, fade=0.0, speeds=speeds, latch=False, voltage_limit=False, **pose
+    )
+    assert clear[:2] == pytest.approx([100.0 * -0.1 - 10.0 * 0.5, 100.0 * 0.3 + 10.0 * 2.0])
+    assert status == controller.RUNNING
+    weak, _, _ = torques(-0.6, 1.2, clearance=1e-6, fade=0.0, speeds=speeds, peak=7.0, voltage_limit=False, **pose)
+    assert weak[:2] == pytest.approx([-7.0, 7.0])
+    # On the floor the virtual leg acts alone.
+    held, _, _ = torques(-0.6, 1.2, clearance=-1e-6, fade=0.0, speeds=speeds, **pose)
+    free, _, _ = torques(-0.6, 1.2, clearance=-1e-6, fade=0.0, speeds=speeds)
+    assert held == pytest.approx(free)
+
+
 def test_losses_take_from_driving_and_add_to_braking():
     driving, _, _ = torques(-0.6, 1.2, speeds=(0.0, -20.0), loss=0.1)
     braking, _, _ = torques(-0.6, 1.2, speeds=(0.0, 20.0), loss=0.1)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -49,12 +50,30 @@ def test_literal_jump_agrees_where_rounding_does_not_decide():
             lags=calibration.gate.lags,
             mean_speed=False,
             gravity=calibration.controller.gravity_feed_forward,
+            weight_of=calibration.controller.weight,
+            flight=(
+                calibration.controller.flight.stiffness_n_m_per_rad,
+                calibration.controller.flight.damping_n_m_s_per_rad,
+            ),
         )
         agreed += bool(
             found.height_m[i] == pytest.approx(jump.height, rel=1e-6)
             and found.energy_j[i] == pytest.approx(jump.energy, rel=1e-6)
         )
     assert agreed >= 12
+
+
+def test_weight_limits_and_pose_of_the_later_readings():
+    """The base's weight alone, a knee that is geared down once more, and the pose that the motors hold in flight."""
+    paper, designs = load_calibration("paper"), random_designs(3, seed=2)
+    robots = plausible_robots(designs)
+    records = first_records(robots, designs[:, 4:], paper)
+    np.testing.assert_allclose(records["weight_n"], 9.81 * robots.body_mass_kg[:, 0], rtol=1e-12)
+    scale = paper.drive.knee_torque_scale
+    np.testing.assert_allclose(records["torque_limit_n_m"], robots.peak_torque_n_m * [1.0, scale], rtol=1e-12)
+    model = mujoco.MjModel.from_xml_string(mjcf(robots, paper, 1))
+    np.testing.assert_allclose(records["start_rad"][1], model.key_qpos[0][-2:], rtol=1e-12)
+    np.testing.assert_allclose(records["torque_limit_n_m"][1], model.actuator_ctrlrange[:, 1], rtol=1e-12)
 
 
 def test_first_records_hold_what_robot_and_calibration_say():

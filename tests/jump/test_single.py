@@ -7,6 +7,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.balance import energy_balance
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.model import torque_limit
 from pareto_monoped.jump.single import TRACE_COLUMNS, simulate
 from pareto_monoped.robot.population import robot_arrays
 
@@ -83,13 +84,14 @@ def test_joule_heat_is_that_of_the_motors_currents(jump):
 
 def test_saturation_is_the_share_of_controlled_steps_at_the_limit():
     """Without a voltage limit a saturated motor has its peak torque."""
-    calibration = load_calibration("paper")
-    design = PAPER_CASES["B"].design.replace({"stiffness_n_per_m": 8.0})
+    paper = load_calibration("paper")
+    calibration = replace(paper, controller=replace(paper.controller, flight=None))
+    design = PAPER_CASES["B"].design.replace({"stiffness_n_per_m": 14.0})
     robot = robot_arrays(design.as_array(), MAP, calibration.mass)
     result = simulate(design, MAP, calibration, trace=True)
     torque = np.abs([result.trace[f"{joint}_motor_torque_n_m"] for joint in ("hip", "knee")])
     controlled = torque.max(axis=0) > 0.0
-    share = (torque == robot.peak_torque_n_m.T).sum(axis=1) / controlled.sum()
+    share = (torque == torque_limit(robot, calibration.drive).T).sum(axis=1) / controlled.sum()
     assert [result.measures[f"saturation_{joint}"] for joint in ("hip", "knee")] == pytest.approx(share.tolist())
     assert 0.0 == share[0] < share[1] < 0.9
 

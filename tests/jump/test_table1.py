@@ -17,10 +17,10 @@ def rows():
 
 
 @pytest.mark.parametrize("case", PAPER_CASES)
-def test_paper_is_within_ten_percent_of_table_1(rows, case):
+def test_paper_is_within_five_percent_of_table_1(rows, case):
     row = rows[case]
-    assert row.paper.height_m == pytest.approx(row.published.height_m, rel=0.10)
-    assert row.paper.energy_j == pytest.approx(row.published.energy_j, rel=0.10)
+    assert row.paper.height_m == pytest.approx(row.published.height_m, rel=0.05)
+    assert row.paper.energy_j == pytest.approx(row.published.energy_j, rel=0.05)
     assert row.paper.height_p05_m <= row.paper.height_m <= row.paper.height_p95_m
     assert row.paper.energy_p05_j <= row.paper.energy_j <= row.paper.energy_p95_j
     # Medians over the few copies that happen to jump would say nothing.
@@ -64,8 +64,8 @@ def test_medians_of_an_even_and_of_an_odd_number_of_copies(count):
         assert spread.energy_j == pytest.approx((energies[k, low] + energies[k, high]) / 2.0, rel=1e-12)
         assert spread.height_p05_m == pytest.approx(np.percentile(heights[k], 5.0), rel=1e-12)
         assert spread.energy_p95_j == pytest.approx(np.percentile(energies[k], 95.0), rel=1e-12)
-    if count == 4:  # the two in the middle of case A are far apart
-        assert heights[1, high] - heights[1, low] > 1e-2
+    if count == 4:  # the two in the middle differ by more than the tolerance
+        assert np.all(heights[:, high] - heights[:, low] > 1e-10)
 
 
 def test_copies_that_do_not_jump_are_left_out_and_counted():

@@ -35,6 +35,9 @@ _NUMBERS = (
     "loss",
     "heat_w_per_n2_m2",
     "lower_stop_rad",
+    "flight_stiffness_n_m_per_rad",
+    "flight_damping_n_m_s_per_rad",
+    "start_rad",
 )
 """Fields of the controller's record that the replay reads; the start height stands in the MJCF's keyframe."""
 _EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
