@@ -76,14 +76,14 @@ class DutyData:
 
     Attributes:
         jumps: how many the gears shall last.
-        torque_shares: torque over the motor's peak torque, one value per level.
+        torque_shares: torque over the motor's peak torque, one value per level; above 1 where a stop is struck.
         output_angles_rad: angle through which the output turns at that torque in each jump, one value per level.
     """
 
     __pydantic_config__ = _STRICT
 
     jumps: Positive
-    torque_shares: tuple[Annotated[float, Field(gt=0.0, le=1.0)], ...]
+    torque_shares: tuple[Annotated[float, Field(gt=0.0, le=10.0)], ...]
     output_angles_rad: tuple[Positive, ...]
 
     def __post_init__(self) -> None:

@@ -18,7 +18,13 @@ from pareto_monoped.actuator.rating.geometry import (
     single_contact_factors,
     tooth_form,
 )
-from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, equivalent_cycles, passes_per_rad
+from pareto_monoped.actuator.rating.life import (
+    FLANK_CURVES,
+    ROOT_CURVES,
+    equivalent_cycles,
+    highest_share,
+    passes_per_rad,
+)
 from pareto_monoped.actuator.rating.root import root_limit_mpa, root_load_n_per_mm, static_root_limit_mpa
 from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -174,8 +180,11 @@ def _member(
     flank_cycles = equivalent_cycles(passes, duty, flank_curve.exponent, flank=True)
     root_cycles = equivalent_cycles(passes, duty, root_curve.exponent, flank=False)
     flank_life, root_life = flank_curve.factor(flank_cycles), root_curve.factor(root_cycles)
-    flank = flank_limit_mpa(steel, mate, flank_life, data.flank_finish_factor)
+    # Stresses are those at the peak torque. A duty that goes beyond it leaves so much less for them.
+    highest = highest_share(duty)
+    flank = flank_limit_mpa(steel, mate, flank_life, data.flank_finish_factor) / np.sqrt(highest)
     root = root_limit_mpa(steel, form, root_life, roughness_um=data.root_roughness_um, bending_factor=bending_factor)
+    root = root / highest
     over_flank = float(flank_limit_mpa(steel, mate, flank_curve.static_factor, 1.0))
     over_root = static_root_limit_mpa(steel, form, root_curve.static_factor)
 

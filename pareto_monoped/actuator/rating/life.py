@@ -55,12 +55,18 @@ ROOT_CURVES: Mapping[Treatment, LifeCurve] = {
 """Y_NT: ISO 6336-3, table 1."""
 
 
-def equivalent_cycles(passes_per_rad: Numbers, duty: DutyData, stress_exponent: float, *, flank: bool) -> Numbers:
-    """Load cycles at the peak torque that do the damage of the whole spectrum (Miner; ISO 6336-6, annex A).
+def highest_share(duty: DutyData) -> float:
+    """The torque share that equivalent cycles belong to: that of the peak torque, or of the highest level above it."""
+    return max(1.0, *duty.torque_shares)
 
-    A level of share s and n cycles counts as n s^p cycles at the peak torque. p is the slope of the S-N curve in terms
-    of torque, whose square root the contact stress grows with. The line goes on to any number of cycles, so that small
-    loads count too (elementary form of the rule). Within the sloping part this equals the standard's equivalent torque.
+
+def equivalent_cycles(passes_per_rad: Numbers, duty: DutyData, stress_exponent: float, *, flank: bool) -> Numbers:
+    """Load cycles at ``highest_share`` that do the damage of the whole spectrum (Miner; ISO 6336-6, annex A).
+
+    A level of share s of the highest torque and n cycles counts as n s^p cycles at that torque. p is the slope of the
+    S-N curve in terms of torque, whose square root the contact stress grows with. The line goes on to any number of
+    cycles, so that small loads count too (elementary form of the rule). Within the sloping part this equals the
+    standard's equivalent torque.
 
     Joints swing to and fro over the same few teeth. A tooth in the middle of the swing is loaded a whole number of
     times in each swing, so that passes are rounded up.
@@ -71,10 +77,10 @@ def equivalent_cycles(passes_per_rad: Numbers, duty: DutyData, stress_exponent: 
         stress_exponent: of the life curve.
         flank: whether contact stress is meant, or else bending stress.
     """
-    slope = (0.5 if flank else 1.0) / stress_exponent
+    slope, highest = (0.5 if flank else 1.0) / stress_exponent, highest_share(duty)
     cycles: Numbers = 0.0
     for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True):
-        cycles = cycles + np.ceil(np.round(passes_per_rad * angle, 9)) * share**slope
+        cycles = cycles + np.ceil(np.round(passes_per_rad * angle, 9)) * (share / highest) ** slope
     return duty.jumps * cycles
 
 

@@ -24,7 +24,8 @@ class GearRating:
         overload_flank_safety, overload_root_safety: against static failure under the overload.
         single_contact_factor: Z_B or Z_D.
         form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B.
-        flank_cycles, root_cycles: load cycles at the peak torque that do the damage of the whole duty.
+        flank_cycles, root_cycles: load cycles that do the damage of the whole duty, at the peak torque or at the
+            highest level of the duty, if that is higher.
         flank_life_factor, root_life_factor: Z_NT, Y_NT.
     """
 

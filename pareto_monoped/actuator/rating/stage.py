@@ -12,6 +12,7 @@ import numpy as np
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating import load
 from pareto_monoped.actuator.rating.geometry import ToothForm
+from pareto_monoped.actuator.rating.life import highest_share
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GearGrade
@@ -37,7 +38,7 @@ class Member:
         single_contact: Z_B or Z_D alone.
         form: of its tooth.
         rim_factor: Y_B.
-        flank_cycles, root_cycles: equivalent load cycles at the peak torque.
+        flank_cycles, root_cycles: equivalent load cycles at ``life.highest_share``.
         flank_life, root_life: Z_NT and Y_NT at these.
         flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG.
         overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure.
@@ -147,7 +148,8 @@ class Stage:
 
     def overloads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
         """Loads of both meshes under the overload: a single event, so that K_A and K_V do not apply."""
-        return self._loads(width_mm, self.settings.parts.rating.overload_factor, moving=False)
+        parts = self.settings.parts
+        return self._loads(width_mm, max(parts.rating.overload_factor, highest_share(parts.duty)), moving=False)
 
     def _loads(self, width_mm: Numbers, factor: float, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
         """Loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""

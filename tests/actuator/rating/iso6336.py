@@ -166,8 +166,8 @@ def life(treatment, kind, cycles):
     return float(np.exp(np.interp(log(cycles), [log(start), log(reference), log(1e10)], [log(factor), 0.0, log(0.85)])))
 
 
-def damage_cycles(passes, levels, treatment, kind, jumps):
-    """Cycles at full torque that use up as much life as the levels do: sums of n / N along the sloping line."""
+def damage_cycles(passes, levels, treatment, kind, jumps, highest):
+    """Cycles at the highest torque that use up as much life as the levels do: sums of n / N along the sloping line."""
     start, factor, reference = STATIC_LIFE[treatment, kind]
     slope = log(reference / start) / log(factor)
 
@@ -176,7 +176,7 @@ def damage_cycles(passes, levels, treatment, kind, jumps):
 
     total = 0.0
     for share, angle in levels:
-        stress = sqrt(share) if kind == "flank" else share
+        stress = sqrt(share / highest) if kind == "flank" else share / highest
         total += jumps * ceil(passes * angle - 1e-9) / allowed(stress)
     return total * allowed(1.0)
 
@@ -332,8 +332,9 @@ def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
     """sigma_HG, sigma_FG, and both against static failure."""
     levels = list(zip(duty.torque_shares, duty.output_angles_rad, strict=True))
     kind = steel.treatment
-    z_nt = life(kind, "flank", damage_cycles(passes, levels, kind, "flank", duty.jumps))
-    y_nt = life(kind, "root", damage_cycles(passes, levels, kind, "root", duty.jumps))
+    highest = max(1.0, max(duty.torque_shares))
+    z_nt = life(kind, "flank", damage_cycles(passes, levels, kind, "flank", duty.jumps, highest)) / sqrt(highest)
+    y_nt = life(kind, "root", damage_cycles(passes, levels, kind, "root", duty.jumps, highest)) / highest
     soft = kind == "through_hardened" and mate.treatment != "through_hardened"
     z_w = 1.2 - (steel.hardness_hv - 130.0) / 1700.0 if soft else 1.0
     support = (1.0 + sqrt(steel.slip_layer_mm * 0.2 * (1.0 + 2.0 * notch))) / (

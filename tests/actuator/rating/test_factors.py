@@ -1,13 +1,16 @@
 """Single factors: points of the standard's own curves, closed forms and limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.rating import load
-from pareto_monoped.actuator.rating.build import load_sharing
+from pareto_monoped.actuator.rating.build import build_stage, load_sharing
 from pareto_monoped.actuator.rating.flank import elasticity_factor, work_hardening_factor
 from pareto_monoped.actuator.rating.geometry import (
     external_rim_factor,
@@ -16,7 +19,13 @@ from pareto_monoped.actuator.rating.geometry import (
     tooth_form,
     zone_factor,
 )
-from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, equivalent_cycles, passes_per_rad
+from pareto_monoped.actuator.rating.life import (
+    FLANK_CURVES,
+    ROOT_CURVES,
+    equivalent_cycles,
+    highest_share,
+    passes_per_rad,
+)
 from pareto_monoped.actuator.rating.root import roughness_factor
 from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -83,6 +92,27 @@ def test_equivalent_cycles_by_hand():
     expected = 1e4 * (1.0 + 2.0 * 0.5**8.738)
     found = equivalent_cycles(0.6, duty, ROOT_CURVES["case_hardened"].exponent, flank=False)
     assert found == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_stop_struck_in_each_jump_is_the_level_that_counts():
+    """At twice the peak torque: its own cycles count whole, those of the push-off 0.5^6.61 each."""
+    duty = DutyData(jumps=1e4, torque_shares=(1.0, 2.0), output_angles_rad=(1.0, 0.1))
+    found = equivalent_cycles(0.6, duty, FLANK_CURVES["case_hardened"].exponent, flank=True)
+    assert found == pytest.approx(1e4 * (1.0 + 0.5**6.6107), rel=1e-4)
+    assert highest_share(duty) == 2.0
+
+
+def test_struck_stops_leave_less_safety_the_harder_they_are():
+    one = GearSet(sun_teeth=22, planet_teeth=44, ring_teeth=110, module_mm=0.6, planets=3)
+    settings = ActuatorSettings(rules="iso6336")
+    roots = []
+    for share in (0.5, 1.0, 1.5, 2.5):
+        duty = DutyData(jumps=1e5, torque_shares=(1.0, share), output_angles_rad=(1.0, 0.1))
+        chosen = replace(settings, parts=replace(settings.parts, duty=duty))
+        roots.append(build_stage(one, load_motor("VT8020"), "ESSPG", chosen).safeties(8.0).root)
+    assert (np.diff(roots) < 0.0).all()
+    # Far above the push-off, only the stop counts: with one pass each, its safety falls with its torque.
+    assert roots[3] / roots[2] == pytest.approx(1.5 / 2.5, rel=0.02)
 
 
 def test_passes_by_counting_meshes():
