@@ -115,6 +115,19 @@ def test_struck_stops_leave_less_safety_the_harder_they_are():
     assert roots[3] / roots[2] == pytest.approx(1.5 / 2.5, rel=0.02)
 
 
+def test_a_duty_beyond_the_overload_is_the_overload():
+    one = GearSet(sun_teeth=22, planet_teeth=44, ring_teeth=110, module_mm=0.6, planets=3)
+    settings = ActuatorSettings(rules="iso6336")
+    duty = DutyData(jumps=1e5, torque_shares=(1.0, 4.0), output_angles_rad=(1.0, 0.1))
+    struck = replace(settings.parts, duty=duty)
+    stated = replace(settings.parts, rating=replace(settings.parts.rating, overload_factor=4.0))
+    found, expected = (
+        build_stage(one, load_motor("VT8020"), "ESSPG", replace(settings, parts=parts)).safeties(8.0)
+        for parts in (struck, stated)
+    )
+    assert found[2:] == expected[2:]
+
+
 def test_passes_by_counting_meshes():
     """18/36/90 with three planets, carrier held: over one turn of the output the sun turns 5 times against it."""
     one = GearSet(sun_teeth=18, planet_teeth=36, ring_teeth=90, module_mm=0.5, planets=3)
