@@ -1,0 +1,221 @@
+"""A simulator of the jump without MuJoCo, written from docs/model.md alone.
+
+Rigid bodies in the plane, integrated by Runge and Kutta's method of fourth order.
+
+Coordinates are x and z of the base, hip and knee; SI units. ``tests/jump/test_independent_simulator.py`` holds the
+package's simulation against it.
+"""
+
+from collections import namedtuple
+
+import numba
+import numpy as np
+
+GRAVITY = 9.81
+SUBSTEPS = 20
+"""Steps per control period of 1 ms."""
+LEAST = 1e-4
+
+Machine = namedtuple(
+    "Machine",
+    "thigh shank radius mass centres inertia reflected coupling lower upper stop peak no_load corner loss heat gains"
+    " rest release damping friction loss_speed foot mu slip fade inverse start delay",
+)
+"""One robot with its drives, stops, contact and controller.
+
+mass (3,): of base, thigh and shank. centres: x and z of those of thigh and shank. inertia (2,): of thigh and shank.
+reflected (2,): C of hip and knee. coupling: B of the knee. lower, upper, peak, no_load, corner, loss, heat (2,): of hip
+and knee. stop: K, C, w and D of hip and knee. foot: K, C, w and D. gains: K, C and T. inverse (3,): A of hip, knee and
+foot, filled in by ``with_inverse_masses``. delay: in control periods.
+"""
+
+
+@numba.njit(cache=True)
+def turned(angle, x, z):
+    """A vector turned about +y."""
+    return np.array([np.cos(angle) * x + np.sin(angle) * z, np.cos(angle) * z - np.sin(angle) * x])
+
+
+@numba.njit(cache=True)
+def jacobian(upper, lower):
+    """Of the point hip + upper + lower, of which ``upper`` turns with the thigh and ``lower`` with the shank."""
+    arm = upper + lower
+    return np.array([[1.0, 0.0, arm[1], lower[1]], [0.0, 1.0, -arm[0], -lower[0]]])
+
+
+@numba.njit(cache=True)
+def bodies(q, m):
+    """Mass matrix, Jacobians of both centres, and the vectors hip to thigh's centre, hip to knee, knee to shank's."""
+    knee = turned(q[2], 0.0, -m.thigh)
+    first, second = turned(q[2], *m.centres[0]), turned(q[2] + q[3], *m.centres[1])
+    none = np.zeros(2)
+    thigh, shank = jacobian(first, none), jacobian(knee, second)
+    matrix = m.mass[1] * thigh.T @ thigh + m.mass[2] * shank.T @ shank
+    matrix[0, 0] += m.mass[0]
+    matrix[1, 1] += m.mass[0]
+    matrix[2, 2] += m.inertia[0] + m.inertia[1] + m.reflected[0]
+    matrix[2, 3] += m.inertia[1] + m.coupling
+    matrix[3, 2] += m.inertia[1] + m.coupling
+    matrix[3, 3] += m.inertia[1] + m.reflected[1]
+    return matrix, thigh, shank, first, knee, second
+
+
+@numba.njit(cache=True)
+def law(r, values, inverse):
+    """Virtual mass m, stiffness k' and damping b' at the violation r."""
+    stiffness, damping, width, full = values
+    d = LEAST + (full - LEAST) * min(r / width, 1.0)
+    return d / (1 - d) / inverse, stiffness * inverse * (1 - full) * d / full**2, damping * inverse * (1 - full) / full
+
+
+@numba.njit(cache=True)
+def acceleration(q, v, motor, m, mode):
+    """Of the coordinates.
+
+    Every force is linear in the accelerations as long as the contact sticks or slides in one direction, friction is
+    below its limit or at one end of it, and a stop pushes or not. ``mode`` holds that of the last call: floor (0 off, 1
+    sticks, 2 and 3 slides), friction of hip and knee (-1, 0, 1), stops of hip and knee. If it does not lead to itself,
+    all are tried; the solution is unique.
+    """
+    matrix, thigh, shank, first, knee, second = bodies(q, m)
+    w1, w2 = v[2] ** 2, (v[2] + v[3]) ** 2
+    down = np.array([0.0, GRAVITY])
+    force = -m.mass[1] * thigh.T @ (down - first * w1) - m.mass[2] * shank.T @ (down - knee * w1 - second * w2)
+    force[1] -= m.mass[0] * GRAVITY
+    beyond, side, virtual, push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
+    for j in range(2):
+        torque = motor[j] - m.loss[j] * abs(motor[j]) * np.tanh(v[2 + j] / m.loss_speed)
+        force[2 + j] += min(max(torque, -m.peak[j]), m.peak[j]) - m.damping * v[2 + j]
+        beyond[j] = max(m.lower[j] - q[2 + j], q[2 + j] - m.upper[j])
+        side[j] = 1.0 if q[2 + j] < m.lower[j] else -1.0
+        if beyond[j] > 0:
+            virtual[j], k, b = law(beyond[j], m.stop[j], m.inverse[j])
+            push[j] = k * beyond[j] - b * side[j] * v[2 + j]
+    foot = turned(q[2] + q[3], 0.0, -m.shank)
+    depth = m.radius - (q[1] + knee[1] + foot[1])
+    point = jacobian(knee, foot + np.array([0.0, 0.5 * depth - m.radius]))
+    along, up = point[0], point[1]
+    stick = pull_n = pull_t = 0.0
+    if depth > 0:
+        stick, k, b = law(depth, m.foot, m.inverse[2])
+        pull_n, pull_t = k * depth - b * (up @ v), -b * (along @ v)
+    slide = stick / (1 + m.mu**2 / m.slip)
+
+    a, found = np.zeros(4), np.zeros(5, np.int64)
+    for attempt in range(154):
+        if attempt >= 10:
+            c = attempt - 10
+            mode[:] = np.array([c % 4, c // 4 % 3 - 1, c // 12 % 3 - 1, c // 36 % 2, c // 72])
+        left, right = matrix.copy(), force.copy()
+        if mode[0] == 1:
+            left += stick * (np.outer(up, up) + m.slip * np.outer(along, along))
+            right += stick * (pull_n * up + m.slip * pull_t * along)
+        elif mode[0] > 1:
+            signed = m.mu * (5 - 2 * mode[0])
+            both = up + signed * along
+            left += slide * np.outer(both, both)
+            right += slide * (pull_n + signed * pull_t) * both
+        for j in range(2):
+            i, creep = 2 + j, 9 / m.inverse[j]
+            if mode[1 + j] == 0:
+                left[i, i] += creep
+                right[i] -= creep * v[i] / 9.5e-3
+            right[i] += mode[1 + j] * m.friction
+            if mode[3 + j] == 1:
+                left[i, i] += virtual[j]
+                right[i] += virtual[j] * push[j] * side[j]
+        a = np.linalg.solve(left, right)
+        n, t = pull_n - up @ a, pull_t - along @ a
+        found[0] = 0
+        if depth > 0 and m.slip * abs(t) <= m.mu * n:
+            found[0] = 1
+        elif depth > 0 and n + m.mu * abs(t) > 0:
+            found[0] = 2 if t > 0 else 3
+        for j in range(2):
+            wanted = 9 / m.inverse[j] * (-a[2 + j] - v[2 + j] / 9.5e-3)
+            found[1 + j] = int(wanted > m.friction) - int(wanted < -m.friction)
+            found[3 + j] = int(beyond[j] > 0 and push[j] - side[j] * a[2 + j] > 0)
+        if np.all(found == mode):
+            return a
+        mode[:] = found
+    raise ValueError("no consistent set of forces")
+
+
+@numba.njit(cache=True)
+def wanted(q, v, m):
+    """The torques of section II-B, that of the knee released before its stop."""
+    knee, foot = turned(q[2], 0.0, -m.thigh), turned(q[2] + q[3], 0.0, -m.shank)
+    r, turn = knee + foot, jacobian(knee, foot)[:, 2:].copy()
+    length = np.hypot(r[0], r[1])
+    sine, cosine = -r[0] / length, -r[1] / length
+    axial = m.gains[0] * (m.rest - length) - m.gains[1] * (r @ (turn @ v[2:])) / length
+    twist = -m.gains[2] * np.arctan2(sine, cosine) / length
+    weight = m.mass.sum() * GRAVITY
+    torque = turn.T @ np.array([-axial * sine - twist * cosine, -axial * cosine + twist * sine - weight])
+    if m.release > 0:
+        torque[1] *= min(max((q[3] - m.lower[1]) / m.release, 0.0), 1.0)
+    return torque
+
+
+@numba.njit(cache=True)
+def limited(torque, v, m):
+    """Within the motors' peak torque, and within their voltage where they drive."""
+    most = m.peak.copy()
+    for j in range(2):
+        if torque[j] * v[2 + j] > 0:
+            most[j] *= min(max((m.no_load[j] - abs(v[2 + j])) / (m.no_load[j] - m.corner[j]), 0.0), 1.0)
+    return np.minimum(np.maximum(torque, -most), most)
+
+
+@numba.njit(cache=True)
+def jump(m, q):
+    """Height in m, mechanical energy and energy at the battery in J."""
+    q, v, mode = q.copy(), np.zeros(4), np.zeros(5, np.int64)
+    stood = off = False
+    height, energy, battery, h = q[1], 0.0, 0.0, 1e-3 / SUBSTEPS
+    torques, shares = np.zeros((3000, 2)), np.zeros(3000)
+    for period in range(3000):
+        clearance = q[1] - m.thigh * np.cos(q[2]) - m.shank * np.cos(q[2] + q[3]) - m.radius
+        stood |= clearance <= 0
+        off |= stood and clearance >= m.fade
+        if off and v[1] <= 0:
+            return height, energy, battery
+        u = min(max(clearance / m.fade, 0.0), 1.0)
+        torques[period], shares[period] = wanted(q, v, m), 0.0 if off else 1 - 3 * u**2 + 2 * u**3
+        due = period - m.delay
+        motor = shares[due] * limited(torques[due], v, m) if due >= 0 else np.zeros(2)
+        for _ in range(SUBSTEPS):
+            a1 = acceleration(q, v, motor, m, mode)
+            v2 = v + 0.5 * h * a1
+            a2 = acceleration(q + 0.5 * h * v, v2, motor, m, mode)
+            v3 = v + 0.5 * h * a2
+            a3 = acceleration(q + 0.5 * h * v2, v3, motor, m, mode)
+            v4 = v + h * a3
+            a4 = acceleration(q + h * v3, v4, motor, m, mode)
+            before = v
+            q, v = q + h * (v + 2 * v2 + 2 * v3 + v4) / 6, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6
+            power = motor * (before + v)[2:] / 2
+            energy += np.maximum(power, 0.0).sum() * h
+            battery += np.maximum(power + m.heat * motor**2, 0.0).sum() * h
+            height = max(height, q[1])
+    return np.nan, np.nan, np.nan
+
+
+def with_inverse_masses(m):
+    """With A of hip, knee and foot."""
+    matrix, _, shank, *_ = bodies(np.zeros(4), m)
+    inverse = np.linalg.inv(matrix)
+    return m._replace(inverse=np.array([inverse[2, 2], inverse[3, 3], np.trace(shank @ inverse @ shank.T) / 3]))
+
+
+def standing(m):
+    """Coordinates at the start: the foot below the base, compressed by the weight, the knee bent forwards."""
+    low, high = 0.0, m.foot[2]
+    for _ in range(60):
+        depth = 0.5 * (low + high)
+        mass, k, _ = law(depth, m.foot, m.inverse[2])
+        low, high = (depth, high) if mass * k * depth < m.mass.sum() * GRAVITY else (low, depth)
+    reach = m.start - m.radius + depth
+    knee = np.arccos((reach**2 - m.thigh**2 - m.shank**2) / (2 * m.thigh * m.shank))
+    hip = -np.arctan2(m.shank * np.sin(knee), m.thigh + m.shank * np.cos(knee))
+    return np.array([0.0, m.start, hip, knee])
