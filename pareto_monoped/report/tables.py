@@ -100,7 +100,7 @@ def cases_table(payload: Payload) -> str:
     names = ["height, m", "as published"]
     literal = bool(payload.literal)
     if literal:
-        names.append("paper-literal model, median (5 to 95 %)")
+        names.append("calibration paper, median (5 to 95 %)")
     names += [f"simulated here: {card.motor}, {card.calibration}" for card in cards]
     for quantity, unit, decimals in (("height", "m", 3), ("energy", "J", 2)):
         key = f"{quantity}_{unit.lower()}"
@@ -123,8 +123,9 @@ def cases_table(payload: Payload) -> str:
     )
     if literal:
         words += (
-            " The paper-literal model follows the paper word for word and was fitted to its table. It reacts to the "
-            "smallest changes of a design, so the table gives the median over many of them."
+            " The calibration paper follows the paper's simulation, with readings where the text leaves a choice, and "
+            "was fitted to its table. It may react to the smallest changes of a design, so the table gives the median "
+            "over many of them."
         )
     parts.append(f'<p class="small">{words}</p>')
     return "\n".join(parts)
