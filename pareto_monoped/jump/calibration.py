@@ -1,7 +1,8 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
 Three are shipped in ``data/calibrations``: ``reference``, well-posed and the default; ``paper``, the paper's
-simulation with readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may write their own.
+simulation with readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may
+write their own.
 """
 
 import json
