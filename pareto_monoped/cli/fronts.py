@@ -147,7 +147,7 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
     rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
     if chosen != data.study.objectives:
         unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
-        click.echo(f"note: {unaudited} of these {len(rows)} designs are not audited", err=True)
+        click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
     rows = rows[shown_columns(data.trials, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
@@ -167,7 +167,7 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
 
     if given is None:
         return data.study.objectives
-    chosen = objectives_of(given.split(","), source="--objectives")
+    chosen = objectives_of([name.strip() for name in given.split(",")], source="--objectives")
     for name in chosen.names:
         if len(data.trials) and data.trials[name].isna().all():
             raise SelectionError(f"--objectives: no trial of {str(data.db)!r} has a value of {name}; choose another")

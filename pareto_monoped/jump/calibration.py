@@ -60,7 +60,7 @@ class EndStop:
     def __post_init__(self) -> None:
         """Reject an empty range."""
         if not self.lower_rad < self.upper_rad:
-            raise ValueError(f"lower_rad {self.lower_rad} must be below upper_rad {self.upper_rad}")
+            raise ValueError(f"lower_rad {self.lower_rad} must be below upper_rad {self.upper_rad}; correct one")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -262,12 +262,19 @@ class Simulation:
         """Refuse periods of no whole number of steps, delays of no whole number of periods, and reading RK4 back."""
         if self.integrator == "RK4" and self.positions_read != "state":
             raise ValueError(
-                f"positions_read {self.positions_read!r} is for semi-implicit integrators; RK4 needs 'state'"
+                f"positions_read {self.positions_read!r} is for semi-implicit integrators; RK4 needs 'state'; "
+                "change one of both"
             )
         if not _whole(self.period_s / self.timestep_s) or self.period_steps < 1:
-            raise ValueError(f"control_period_s {self.period_s:g} must be a whole multiple of timestep_s")
+            raise ValueError(
+                f"control_period_s {self.period_s:g} must be a whole multiple of timestep_s {self.timestep_s:g}; "
+                "change one"
+            )
         if not _whole(self.delay_s / self.period_s) or self.delay_s > MOST_DELAY * self.period_s * (1.0 + 1e-9):
-            raise ValueError(f"delay_s {self.delay_s:g} must be 0 to {MOST_DELAY} whole control periods")
+            raise ValueError(
+                f"delay_s {self.delay_s:g} must be 0 to {MOST_DELAY} whole control periods of {self.period_s:g} s; "
+                "correct it"
+            )
 
     @property
     def period_s(self) -> float:
@@ -305,7 +312,7 @@ class Calibration:
     def __post_init__(self) -> None:
         """Refuse torques in flight with a gate that ends them."""
         if self.controller.flight is not None and not isinstance(self.gate, ContactGate):
-            raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set")
+            raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set; drop one")
 
     @property
     def label(self) -> str:

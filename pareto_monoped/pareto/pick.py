@@ -125,12 +125,15 @@ def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -
     more_is_better = limited.direction == "maximise"
     column = rows[asked.measure].to_numpy(dtype=np.float64)
     fits = np.flatnonzero(column >= asked.value if more_is_better else column <= asked.value)
-    wanted = f"{asked.value:g} {limited.unit}"
+    unit = "" if limited.unit == "1" else f" {limited.unit}"
+    wanted = f"{asked.value:g}{unit}"
+    if np.isnan(column).all():
+        raise SelectionError(f"{name} = {wanted}: no design on the front has a value of it; limit another measure")
     if len(fits) == 0:
         best = np.nanmax(column) if more_is_better else np.nanmin(column)
         side, what, cure = ("most", "highest", "ask for less") if more_is_better else ("least", "lowest", "allow more")
         raise SelectionError(
-            f"{name} = {wanted}: must be at {side} {best:.4f} {limited.unit}, the front's {what} {limited.label}; "
+            f"{name} = {wanted}: must be at {side} {best:.4f}{unit}, the front's {what} {_name(limited)}; "
             f"{cure}, or run the study longer"
         )
     values = rows[other.name].to_numpy(dtype=np.float64)[fits]
@@ -141,10 +144,15 @@ def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -
     )
 
 
+def _name(entry: Measure) -> str:
+    """Its label without the explanation behind a comma."""
+    return entry.label.split(",")[0]
+
+
 def _superlative(entry: Measure) -> str:
     if entry.name == "height_m":
         return "highest jump"
-    return f"{'most' if entry.direction == 'maximise' else 'least'} {entry.label}"
+    return f"{'most' if entry.direction == 'maximise' else 'least'} {_name(entry)}"
 
 
 def _condition(limited: Measure, wanted: str, more_is_better: bool) -> str:
@@ -152,7 +160,7 @@ def _condition(limited: Measure, wanted: str, more_is_better: bool) -> str:
         return f"reach {wanted}"
     if limited.name == "energy_j":
         return f"need at most {wanted}"
-    return f"have at {'least' if more_is_better else 'most'} {wanted} of {limited.label}"
+    return f"have at {'least' if more_is_better else 'most'} {wanted} of {_name(limited)}"
 
 
 def _knee(values: Floats, objectives: Objectives) -> tuple[int, str]:

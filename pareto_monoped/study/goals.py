@@ -75,13 +75,16 @@ def constraints_of(table: Mapping[str, Any], *, source: str = "constraints") -> 
     Raises:
         StudyError: an unknown measure or key, a limit given twice, or a value out of range.
     """
-    given: dict[tuple[Side, str], Any] = {}
+    given: set[tuple[Side, str]] = set()
+    chosen: dict[tuple[Side, str], float] = {}
     for key, value in table.items():
         for side, name, limit in _entries(key, value, source):
             if (side, name) in given:
                 raise StudyError(f"{source}: constraints.{name}: its {side} is given twice; drop one")
-            given[side, name] = limit
-    chosen = {place: _value(place, value, source) for place, value in given.items() if value is not None}
+            given.add((side, name))
+            if limit is not None:
+                typed = f"constraints.{key}.{side}" if key == name else f"constraints.{key}"
+                chosen[side, name] = _value((side, name), limit, f"{source}: {typed}")
     chosen.setdefault(("min", "height_m"), MIN_HEIGHT_M)
     for name in {name for _, name in chosen}:
         low, high = chosen.get(("min", name)), chosen.get(("max", name))
@@ -106,13 +109,14 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
     return [(side, key, value[side]) for side in ("min", "max") if side in value]
 
 
-def _value(place: tuple[Side, str], value: Any, source: str) -> float:
-    side, name = place
+def _value(place: tuple[Side, str], value: Any, typed: str) -> float:
+    """The value of a limit; ``typed`` is its key as in the file, for the message."""
     low, high = _ALLOWED.get(place, (0.0, math.inf))
     number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
     if not number or value <= 0.0 or not low <= value <= high:
-        allowed = "a number above 0" if high == math.inf else f"a number from {low:g} to {high:g}, above 0"
-        raise StudyError(f"{source}: {complaint(f'constraints.{side}_{name}', value, allowed, 'correct it')}")
+        allowed = "a number above 0" if high == math.inf else f"a number from {low:g} to {high:g}"
+        allowed += ", above 0" if low == 0.0 < high < math.inf else ""
+        raise StudyError(complaint(typed, value, allowed, "correct it"))
     return float(value)
 
 
@@ -142,16 +146,18 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
     names = tuple(sorted(given, key=_rank) if isinstance(given, Mapping) else given)
     for name in names:
         if name not in MEASURE_NAMES:
-            raise StudyError(f"{source}: objectives: {name!r} is not a measure; {_near(name)}")
+            raise StudyError(f"{source}: objective {name!r} is not a measure; {_near(name)}")
         direction = measure(name).direction
         if direction is None:
-            raise StudyError(f"{source}: objectives: {name!r} has no direction, neither way is better; take another")
+            raise StudyError(f"{source}: objective {name!r} has no direction, neither way is better; take another")
         if isinstance(given, Mapping) and given[name] != direction:
             raise StudyError(f"{source}: {complaint(f'objectives.{name}', given[name], repr(direction), 'correct it')}")
     if twice := [name for name in names if names.count(name) > 1]:
-        raise StudyError(f"{source}: objectives: {twice[0]!r} is named twice; drop one")
+        raise StudyError(f"{source}: objective {twice[0]!r} is named twice; drop one")
     if not FEWEST <= len(names) <= MOST:
-        raise StudyError(f"{source}: objectives: {len(names)} are named, must be two or three; correct the list")
+        raise StudyError(
+            f"{source}: {complaint('number of objectives', len(names), 'two or three', 'correct the list')}"
+        )
     return Objectives(names=names)
 
 

@@ -128,10 +128,10 @@ def test_all_keeps_designs_that_failed_their_audit(db, capsys, monkeypatch):
 
 def test_other_objectives_take_other_designs_of_the_stored_trials(db, capsys):
     names = ["height_m", "electrical_energy_j"]
-    assert cli(["front", db, "--objectives", ",".join(names), "--json"]) == 0
+    assert cli(["front", db, "--objectives", ", ".join(names), "--json"]) == 0
     said = capsys.readouterr()
     rows = json.loads(said.out)
-    assert f"{len(rows)} of these {len(rows)} designs are not audited" in said.err
+    assert f"note: designs without an audit: {len(rows)} of {len(rows)}\n" in said.err
     trials = read_study(Path(db)).trials
     able = trials[trials["state"] == "feasible"].to_dict(orient="records")
     expected = [
@@ -159,10 +159,10 @@ def test_three_objectives_fit_into_the_window(db, capsys):
 @pytest.mark.parametrize(
     ("given", "word"),
     [
-        ("height_m", "1 are named"),
-        ("height_m,watts", "'watts' is not a measure"),
+        ("height_m", "--objectives: number of objectives = 1: must be two or three"),
+        ("height_m,watts", "--objectives: objective 'watts' is not a measure"),
         ("height_m,apex_s", "no direction"),
-        ("height_m,energy_j,mass_kg,drift_m", "4 are named"),
+        ("height_m,energy_j,mass_kg,drift_m", "number of objectives = 4"),
     ],
 )
 def test_bad_objectives_get_one_line(db, capsys, given, word):

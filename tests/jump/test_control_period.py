@@ -86,9 +86,9 @@ def test_each_millisecond_of_delay_costs_no_more_than_it_may():
 @pytest.mark.parametrize(
     ("changes", "complaint"),
     [
-        ({"control_period_s": 1.5e-3}, "whole multiple"),
+        ({"control_period_s": 1.5e-3}, "0.0015 must be a whole multiple of timestep_s 0.001; change one"),
         ({"control_period_s": 5e-4}, "whole multiple"),
-        ({"delay_s": 1.5e-3}, "whole control periods"),
+        ({"delay_s": 1.5e-3}, "whole control periods of 0.001 s; correct it"),
         ({"delay_s": 9e-3}, "0 to 8"),
     ],
 )

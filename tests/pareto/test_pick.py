@@ -151,10 +151,20 @@ def test_the_knee_of_two_minimised_objectives_is_its_corner():
         (Weights(values=(1.0, 1.0)), THREE, ["three finite numbers", "1,1,1"]),
         (Weights(values=(1.0, 1.0, 1.0)), HEIGHT_AND_ENERGY, ["two finite numbers"]),
         (Within(measure="mass_kg", value=3.0), THREE, ["mass_kg = 3 kg", "at least 3.6000 kg", "allow more"]),
+        (
+            Within(measure="efficiency", value=0.9),
+            THREE,
+            ["efficiency = 0.9: must be at most 0.4000, the front's highest"],
+        ),
+        (
+            Within(measure="stop_energy_j", value=3.0),
+            THREE,
+            ["stop_energy_j = 3 J: no design on the front has a value"],
+        ),
     ],
 )
 def test_a_selector_that_does_not_suit_the_objectives_is_refused(selector, objectives, words):
-    front = OF_THREE.assign(energy_j=OF_THREE["electrical_energy_j"])
+    front = OF_THREE.assign(energy_j=OF_THREE["electrical_energy_j"], efficiency=0.4, stop_energy_j=np.nan)
     with pytest.raises(SelectionError) as caught:
         pick(front, selector, objectives)
     for word in words:
