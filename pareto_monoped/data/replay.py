@@ -30,8 +30,7 @@ def virtual_leg(jump: dict, hip: float, knee: float, speed: np.ndarray) -> tuple
 
 def limited(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
     """Within the motors' peak torque and, where they drive, within their voltage-speed line."""
-    limit, share = np.array(jump["torque_limit_n_m"]), np.ones(2)
-    against = np.ones(2)
+    limit, share, against = np.array(jump["torque_limit_n_m"]), np.ones(2), np.ones(2)
     if jump["voltage_limit"]:
         no_load, corner = np.array(jump["no_load_speed_rad_per_s"]), np.array(jump["corner_speed_rad_per_s"])
         share = np.clip((no_load - speed) / (no_load - corner), 0.0, 1.0)
@@ -56,7 +55,7 @@ def replay(folder: Path) -> tuple[float, float, float]:
     heat_per_torque2 = np.array(jump["heat_w_per_n2_m2"])
     height, work, electrical = data.qpos[z], np.zeros(2), 0.0
     stood = touched = latched = off = False
-    commands: list[tuple[float, np.ndarray]] = []
+    commands: list[tuple[np.ndarray, np.ndarray]] = []
     motor, quiet, step, before = np.zeros(2), 0, 0, np.zeros(model.nv)
     while step <= jump["step_limit"]:
         speed = data.qvel[[hip, knee]].copy()
@@ -87,16 +86,17 @@ def replay(folder: Path) -> tuple[float, float, float]:
         if latched:
             motor = np.zeros(2)
         elif tick:
+            shares = np.full(2, gate)
             if jump["knee_release_rad"]:
-                wanted[1] *= np.clip((q[knee] - jump["lower_stop_rad"][1]) / jump["knee_release_rad"], 0.0, 1.0)
+                shares[1] *= np.clip((q[knee] - jump["lower_stop_rad"][1]) / jump["knee_release_rad"], 0.0, 1.0)
             stiffness, damping = jump["flight_stiffness_n_m_per_rad"], jump["flight_damping_n_m_s_per_rad"]
             if not gate and stiffness:  # pull the leg back to its start pose
-                gate, wanted = 1.0, stiffness * (jump["start_rad"] - q[[hip, knee]]) - damping * speed
-            commands.append((gate, wanted))
+                shares, wanted = np.ones(2), stiffness * (jump["start_rad"] - q[[hip, knee]]) - damping * speed
+            commands.append((shares, wanted))
             motor = np.zeros(2)
             if len(commands) > jump["delay_periods"]:
-                share, torque = commands[-1 - int(jump["delay_periods"])]
-                motor = share * limited(jump, torque, speed) if share else motor
+                shares, torque = commands[-1 - int(jump["delay_periods"])]
+                motor = shares * limited(jump, torque, speed)
         data.ctrl[:] = delivered(jump, motor, speed)
         mujoco.mj_step(model, data)
         step += 1

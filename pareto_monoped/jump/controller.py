@@ -25,7 +25,7 @@ MOST_DELAY = 8
 """Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
 
 _ONE, _BOTH, _STATE = np.float64, (np.float64, (2,)), (np.float64, (4,))
-_COMMANDS = (np.float64, (MOST_DELAY + 1, 3))
+_COMMANDS = (np.float64, (MOST_DELAY + 1, 4))
 RECORD = np.dtype(
     [
         ("status", _ONE),  # one of RUNNING ... TIMEOUT
@@ -106,7 +106,7 @@ RECORD = np.dtype(
         ("joint_torque_n_m", _BOTH),  # the same after losses
         ("periods", _ONE),  # control periods so far
         ("quiet_periods", _ONE),  # control periods since the torque was switched off for good
-        ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of the gate
+        ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of each
         ("position", _STATE),  # x, z, hip, knee at the start of the current step
         ("velocity", _STATE),
         ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
@@ -238,12 +238,12 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
                 return
             # The driver still works off the commands that are under way.
             jump.quiet_periods += 1
-        wanted, share = (0.0, 0.0), gate
+        wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
             wanted = _virtual_leg(foot, shank, speed, jump)
-            wanted = (wanted[HIP], wanted[KNEE] * _release(knee, jump))
+            share = (gate, gate * _release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
-            wanted, share = _held_pose((hip, knee), speed, jump), 1.0
+            wanted, share = _held_pose((hip, knee), speed, jump), (1.0, 1.0)
         _command(wanted, share, speed, jump)
     for joint in range(2):
         jump.speed_rad_per_s[joint] = speed[joint]
@@ -320,23 +320,26 @@ def _release(knee: float, jump: Any) -> float:
 
 
 @compiled
-def _command(wanted: tuple[float, float], gate: float, speed: tuple[float, float], jump: Any) -> None:
+def _command(
+    wanted: tuple[float, float], share: tuple[float, float], speed: tuple[float, float], jump: Any
+) -> None:
     """Give the drivers the torques of this control period; they act on the command of ``delay_periods`` ago."""
     size = jump.commands.shape[0]
     late = jump.periods - jump.delay_periods
     slot = int(jump.periods) % size
-    jump.commands[slot, HIP], jump.commands[slot, KNEE], jump.commands[slot, 2] = wanted[HIP], wanted[KNEE], gate
+    for joint in range(2):
+        jump.commands[slot, joint], jump.commands[slot, 2 + joint] = wanted[joint], share[joint]
     jump.periods += 1.0
     for joint in range(2):
         jump.motor_torque_n_m[joint] = 0.0
     if late < 0.0:
         return
     slot = int(late) % size
-    share = jump.commands[slot, 2]
-    if share > 0.0:
+    if jump.commands[slot, 2 + HIP] > 0.0:
         jump.active_steps += 1
         for joint in range(2):
-            jump.motor_torque_n_m[joint] = share * _limited(jump.commands[slot, joint], speed[joint], jump, joint)
+            torque = _limited(jump.commands[slot, joint], speed[joint], jump, joint)
+            jump.motor_torque_n_m[joint] = jump.commands[slot, 2 + joint] * torque
 
 
 @compiled

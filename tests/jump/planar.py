@@ -143,7 +143,7 @@ def acceleration(q, v, motor, m, mode):
 
 @numba.njit(cache=True)
 def wanted(q, v, m):
-    """The torques of section II-B, that of the knee released before its stop."""
+    """The torques of section II-B."""
     knee, foot = turned(q[2], 0.0, -m.thigh), turned(q[2] + q[3], 0.0, -m.shank)
     r, turn = knee + foot, jacobian(knee, foot)[:, 2:].copy()
     length = np.hypot(r[0], r[1])
@@ -151,10 +151,7 @@ def wanted(q, v, m):
     axial = m.gains[0] * (m.rest - length) - m.gains[1] * (r @ (turn @ v[2:])) / length
     twist = -m.gains[2] * np.arctan2(sine, cosine) / length
     weight = m.mass.sum() * GRAVITY
-    torque = turn.T @ np.array([-axial * sine - twist * cosine, -axial * cosine + twist * sine - weight])
-    if m.release > 0:
-        torque[1] *= min(max((q[3] - m.lower[1]) / m.release, 0.0), 1.0)
-    return torque
+    return turn.T @ np.array([-axial * sine - twist * cosine, -axial * cosine + twist * sine - weight])
 
 
 @numba.njit(cache=True)
@@ -173,7 +170,7 @@ def jump(m, q):
     q, v, mode = q.copy(), np.zeros(4), np.zeros(5, np.int64)
     stood = off = False
     height, energy, battery, h = q[1], 0.0, 0.0, 1e-3 / SUBSTEPS
-    torques, shares = np.zeros((3000, 2)), np.zeros(3000)
+    torques, shares = np.zeros((3000, 2)), np.zeros((3000, 2))
     for period in range(3000):
         clearance = q[1] - m.thigh * np.cos(q[2]) - m.shank * np.cos(q[2] + q[3]) - m.radius
         stood |= clearance <= 0
@@ -182,6 +179,8 @@ def jump(m, q):
             return height, energy, battery
         u = min(max(clearance / m.fade, 0.0), 1.0)
         torques[period], shares[period] = wanted(q, v, m), 0.0 if off else 1 - 3 * u**2 + 2 * u**3
+        if m.release > 0:
+            shares[period, 1] *= min(max((q[3] - m.lower[1]) / m.release, 0.0), 1.0)
         due = period - m.delay
         motor = shares[due] * limited(torques[due], v, m) if due >= 0 else np.zeros(2)
         for _ in range(SUBSTEPS):

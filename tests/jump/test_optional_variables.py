@@ -34,7 +34,7 @@ def test_a_knee_release_saves_energy_at_the_stop():
 
 
 def test_the_release_is_a_ramp_down_to_the_stop():
-    """The knee's torque is the released share of what the controller wants, until the motor's own limits."""
+    """It ends at the stop, and it begins no earlier than it is asked to."""
     design = PAPER_CASES["C"].design.replace({"knee_release_rad": 0.5})
     trace = simulate(design, map_for("VT8020"), REFERENCE, trace=True).trace
     lower_rad = knee_stop(leg_dimensions(map_for("VT8020"))).lower_rad
@@ -47,6 +47,19 @@ def test_the_release_is_a_ramp_down_to_the_stop():
     first, torque = slice(0, 20), "knee_motor_torque_n_m"
     assert np.all(trace["knee_rad"][first] > lower_rad + 0.5)
     np.testing.assert_array_equal(trace[torque][first], plain[torque][first])
+
+
+def test_the_release_passes_a_share_of_what_the_motor_can_do():
+    """The nominal design asks for more than its motor's peak on the whole ramp; that must not hide the ramp."""
+    design = PAPER_CASES["nominal"].design.replace({"knee_release_rad": 0.5})
+    trace = simulate(design, map_for("VT8020"), REFERENCE, trace=True).trace
+    lower_rad = knee_stop(leg_dimensions(map_for("VT8020"))).lower_rad
+    read = trace["knee_rad"] - 0.5 * REFERENCE.simulation.timestep_s * trace["knee_rad_per_s"]
+    share = (read - lower_rad) / 0.5
+    ramp = (share < 1.0) & (trace["foot_clearance_m"] <= 0.0)
+    assert np.count_nonzero(ramp) > 5
+    peak_n_m = 5.5 * 6.0  # the motor's, times the ratio
+    np.testing.assert_allclose(-trace["knee_motor_torque_n_m"][ramp], share[ramp] * peak_n_m, rtol=1e-3)
 
 
 def test_a_rest_length_is_the_springs():
