@@ -149,6 +149,11 @@ class Path:
             return _boundary(self.pieces)
 
 
+def polygon(points: Sequence[tuple[Numbers, Numbers]]) -> Path:
+    """The polygon through points (x, y), anticlockwise."""
+    return Path(tuple(Line(*one, *other) for one, other in zip(points, (*points[1:], points[0]), strict=True)))
+
+
 def _boundary(pieces: tuple[Line | Arc, ...]) -> Moments:
     lines = [(p.x0_mm, p.y0_mm, p.x1_mm, p.y1_mm) for p in pieces if isinstance(p, Line)]
     arcs = [(p.x_mm, p.y_mm, p.radius_mm, p.start_rad, p.end_rad) for p in pieces if isinstance(p, Arc)]

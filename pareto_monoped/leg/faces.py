@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pareto_monoped.geometry.shapes import Line, Numbers, Path
+from pareto_monoped.geometry.shapes import Numbers, Path, polygon
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 
@@ -40,8 +40,7 @@ class Face:
 
     def polygon(self, *points: tuple[float, float]) -> Path:
         """The polygon through points given as (along, deep), anticlockwise."""
-        placed = [self.point(*point) for point in points]
-        return Path(tuple(Line(*one, *other) for one, other in zip(placed, (*placed[1:], placed[0]), strict=True)))
+        return polygon([self.point(*point) for point in points])
 
     def opposite(self, gap_mm: float) -> "Face":
         """The parallel face that looks at this one over a gap."""

@@ -12,7 +12,7 @@ of 60 mm. Wings: 5 kN on 2 x 2.5 mm x 18 mm of edge are 56 MPa. A foot bends ove
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, screw_part
-from pareto_monoped.geometry.shapes import Circle, Line, Numbers, Path
+from pareto_monoped.geometry.shapes import Circle, Numbers, Path, polygon
 from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.faces import (
@@ -179,11 +179,7 @@ def _striker_outline(d: LegDimensions) -> Path:
         flexion.point(HALF_FACE, _TOE),
         flexion.point(0.0, _BASE),
     )
-    return _closed(points)
-
-
-def _closed(points: tuple[tuple[Numbers, Numbers], ...]) -> Path:
-    return Path(tuple(Line(*one, *other) for one, other in zip(points, (*points[1:], points[0]), strict=True)))
+    return polygon(points)
 
 
 def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
