@@ -17,7 +17,11 @@ def elasticity_factor(material: ElasticMaterial) -> float:
 
 
 def work_hardening_factor(steel: GearGrade, mate: GearGrade) -> float:
-    """Z_W: a through-hardened flank gains by running against a hard and smooth one (ISO 6336-2, clause 14)."""
+    """Z_W: a through-hardened flank gains by running against a hard and smooth one (ISO 6336-2, clause 14).
+
+    The standard's Brinell hardness is taken as that of Vickers, which is some 5 percent more. Z_W is then about 0.01
+    less than the standard's, on the safe side.
+    """
     if steel.treatment != "through_hardened" or mate.treatment == "through_hardened":
         return 1.0
     return 1.2 - (min(max(steel.hardness_hv, 130.0), 470.0) - 130.0) / 1700.0
