@@ -43,6 +43,11 @@ class Measure:
     reference: float | None = None
     short: str = ""
 
+    @property
+    def words(self) -> str:
+        """The label without the formula that it may end in."""
+        return self.label.removesuffix(f", {self.meaning}")
+
     def text(self, value: float) -> str:
         """``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
         return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}"

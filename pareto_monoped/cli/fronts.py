@@ -135,7 +135,7 @@ def _limit(text: str) -> tuple[str, float]:
 @click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
 @click.option("--objectives", metavar="A,B", help="Two or three measures to judge by, instead of the study's.")
 def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, objectives: str | None) -> None:
-    """List the non-dominated designs, from the lowest jump to the highest.
+    """List the non-dominated designs by their first objective, from the least value to the greatest.
 
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
@@ -163,11 +163,11 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
     """The objectives that an option names, or the study's own."""
     from pareto_monoped.errors import SelectionError
-    from pareto_monoped.study.goals import objectives_of
+    from pareto_monoped.study.goals import names_of, objectives_of
 
     if given is None:
         return data.study.objectives
-    chosen = objectives_of([name.strip() for name in given.split(",")], source="--objectives")
+    chosen = objectives_of(names_of(given), source="--objectives")
     for name in chosen.names:
         if len(data.trials) and data.trials[name].isna().all():
             raise SelectionError(f"--objectives: no trial of {str(data.db)!r} has a value of {name}; choose another")

@@ -1,6 +1,7 @@
 """Commands that run studies: ``run``, ``resume`` and ``status``."""
 
 import json
+import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -55,9 +56,10 @@ def run(
     Every evaluated design is stored; the study can be stopped and run again at any time.
     """
     from pareto_monoped.study.definition import load_study
+    from pareto_monoped.study.goals import names_of
     from pareto_monoped.study.run import run as run_study
 
-    study = load_study(study_file, objectives=objectives.split(",") if objectives is not None else None)
+    study = load_study(study_file, objectives=None if objectives is None else names_of(objectives))
     target = db or study_file.with_suffix(".db")
     with progress_reports() as progress:
         summary = run_study(
@@ -99,6 +101,7 @@ def status(db: Path, as_json: bool) -> None:
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
         "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
         "least height": f"{facts['settings']['constraints']['min_height_m']:g} m",
+        **_other_limits(facts),
         "evaluations": f"{facts['evaluations']} of {facts['budget']}",
         "feasible": f"{facts['feasible']} ({facts['infeasible']} infeasible, {facts['failed']} failed)",
         "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",
@@ -119,6 +122,14 @@ def _state(facts: dict[str, Any]) -> str:
     if facts["process"]:
         state += f" (process {facts['process']})"
     return state
+
+
+def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
+    """The line on the limits besides the least height; none if there are no others."""
+    limits: dict[str, float | None] = facts["settings"]["constraints"]
+    shown = [f"{key} {value:g}" for key, value in limits.items() if value is not None and key != "min_height_m"]
+    wrapped = textwrap.wrap(", ".join(shown), width=57)
+    return {"other limits": ("\n" + " " * 23).join(wrapped)} if shown else {}
 
 
 def _corner(facts: dict[str, Any]) -> str:

@@ -50,9 +50,9 @@ class Objectives:
         """The values of one design in words, such as "0.800 m on 15.36 J" or "mass 3.812 kg, height 0.800 m"."""
         if self == HEIGHT_AND_ENERGY:
             return f"{values[0]:.3f} m on {values[1]:.2f} J"
-        return ", ".join(
-            f"{entry.label.split(',')[0]} {entry.text(value)}"
-            for entry, value in zip(self.measures, values, strict=True)
+        apart = "; " if any("," in entry.words for entry in self.measures) else ", "
+        return apart.join(
+            f"{entry.words} {entry.text(value)}" for entry, value in zip(self.measures, values, strict=True)
         )
 
     def other_than(self, name: str) -> Measure:

@@ -133,7 +133,7 @@ def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -
         best = np.nanmax(column) if more_is_better else np.nanmin(column)
         side, what, cure = ("most", "highest", "ask for less") if more_is_better else ("least", "lowest", "allow more")
         raise SelectionError(
-            f"{name} = {wanted}: must be at {side} {best:.4f}{unit}, the front's {what} {_name(limited)}; "
+            f"{name} = {wanted}: must be at {side} {best:.4f}{unit}, the front's {what} {limited.words}; "
             f"{cure}, or run the study longer"
         )
     values = rows[other.name].to_numpy(dtype=np.float64)[fits]
@@ -144,15 +144,10 @@ def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -
     )
 
 
-def _name(entry: Measure) -> str:
-    """Its label without the explanation behind a comma."""
-    return entry.label.split(",")[0]
-
-
 def _superlative(entry: Measure) -> str:
     if entry.name == "height_m":
         return "highest jump"
-    return f"{'most' if entry.direction == 'maximise' else 'least'} {_name(entry)}"
+    return f"{'most' if entry.direction == 'maximise' else 'least'} {entry.words}"
 
 
 def _condition(limited: Measure, wanted: str, more_is_better: bool) -> str:
@@ -160,7 +155,7 @@ def _condition(limited: Measure, wanted: str, more_is_better: bool) -> str:
         return f"reach {wanted}"
     if limited.name == "energy_j":
         return f"need at most {wanted}"
-    return f"have at {'least' if more_is_better else 'most'} {wanted} of {_name(limited)}"
+    return f"have at {'least' if more_is_better else 'most'} {wanted} of {limited.words}"
 
 
 def _knee(values: Floats, objectives: Objectives) -> tuple[int, str]:
@@ -204,7 +199,7 @@ def _weights(values: Floats, asked: Weights, objectives: Objectives) -> tuple[in
     value = -(_scaled(values) * objectives.signs) @ weights
     row = int(np.argmax(value))
     terms = "".join(
-        f"{' + ' if entry.direction == 'maximise' else ' - '}{weight:g} x {entry.label}"
+        f"{' + ' if entry.direction == 'maximise' else ' - '}{weight:g} x {entry.words}"
         for entry, weight in zip(objectives.measures, weights, strict=True)
     )
     return (

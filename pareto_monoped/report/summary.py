@@ -47,7 +47,7 @@ def _extent(front: pd.DataFrame, objectives: Objectives) -> str:
     """What a height costs, where the height is an objective, and how far the front reaches in every objective."""
     values = front[list(objectives.names)].to_numpy(dtype=float)
     ranges = [
-        f"{entry.label.split(',')[0]} from {entry.text(column.min())} to {entry.text(column.max())}"
+        f"{entry.words} from {entry.text(column.min())} to {entry.text(column.max())}"
         for entry, column in zip(objectives.measures, values.T, strict=True)
     ]
     text = f"the front of {len(front)} designs has {', '.join(ranges)}."

@@ -161,6 +161,11 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
     return Objectives(names=names)
 
 
+def names_of(text: str) -> list[str]:
+    """The measures that an option names, such as "height_m,energy_j"."""
+    return [name.strip() for name in text.split(",")]
+
+
 def stored_objectives(objectives: Objectives) -> dict[str, str] | list[str]:
     """The stored form of objectives: for the paper's the table that 0.1.0 stored, for others the list of names.
 

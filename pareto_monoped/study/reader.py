@@ -111,7 +111,7 @@ class StudyData:
         return self.study.reference_point
 
     def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
-        """The non-dominated feasible trials, by the first objective: from the lowest jump to the highest.
+        """The non-dominated feasible trials by the first objective, from its least value to its greatest.
 
         Args:
             objectives: other measures than the study's own, under which trials dominate each other.

@@ -41,6 +41,24 @@ def test_run_resume_and_status(study, capsys):
     assert max(map(len, text.splitlines())) <= 80
 
 
+def test_other_objectives_in_a_database_of_their_own(study, tmp_path, capsys):
+    db = tmp_path / "battery.db"
+    many = "[constraints]\n" + "".join(
+        f"{name} = {{ max = 1000.0 }}\n"
+        for name in ("mass_kg", "drift_m", "stop_energy_j", "peak_foot_force_n", "peak_gear_torque_knee_n_m")
+    )
+    study.write_text(STUDY.replace("[algorithm]", many + "[algorithm]"))
+    names = "height_m, electrical_energy_j"
+    assert cli(["run", str(study), "--objectives", names, "--db", str(db), "--evaluations", "20"]) == 0
+    capsys.readouterr()
+    assert cli(["status", str(db)]) == 0
+    text = capsys.readouterr().out
+    assert "objectives             height_m, electrical_energy_j\n" in text
+    assert "other limits           max_mass_kg 1000, " in text
+    assert "max_peak_gear_torque_knee_n_m 1000" in text
+    assert max(map(len, text.splitlines())) <= 80
+
+
 def test_another_database_and_seed(study, tmp_path, capsys):
     db = tmp_path / "other.db"
     assert cli(["run", str(study), "--seed", "7", "--db", str(db), "--evaluations", "20"]) == 0
@@ -144,6 +162,13 @@ FACTS = {
         ({"settings": FACTS["settings"] | {"rules": "iso6336"}}, ("gearbox rules", "iso6336")),
         ({}, ("free variables", "2 of 7")),
         ({}, ("least height", "0.6 m")),
+        (
+            {
+                "settings": FACTS["settings"]
+                | {"constraints": {"min_height_m": 0.6, "max_mass_kg": 4.5, "max_drift_m": None}}
+            },
+            ("other limits", "max_mass_kg 4.5"),
+        ),
         ({}, ("evaluations", "30 of 40")),
         ({}, ("feasible", "20 (7 infeasible, 3 failed)")),
         ({}, ("front", "9 designs (1 ill-conditioned left out)")),

@@ -18,6 +18,8 @@ def test_less_is_better_after_the_sign():
 def test_in_words_each_has_its_unit():
     assert HEIGHT_AND_ENERGY.text([0.8, 15.36]) == "0.800 m on 15.36 J"
     assert THREE.text([4.0, 1.0, 0.512]) == "mass 4.000 kg, height 1.000 m, efficiency 51.2 %"
+    hip_and_knee = Objectives(names=("peak_torque_hip_n_m", "peak_torque_knee_n_m"))
+    assert hip_and_knee.text([9.0, 30.0]) == "peak torque, hip 9.0 N m; peak torque, knee 30.0 N m"
     assert (THREE.volume_unit, HEIGHT_AND_ENERGY.volume_unit) == ("kg m", "m J")
 
 

@@ -154,7 +154,7 @@ def test_the_knee_of_two_minimised_objectives_is_its_corner():
         (
             Within(measure="efficiency", value=0.9),
             THREE,
-            ["efficiency = 0.9: must be at most 0.4000, the front's highest"],
+            ["efficiency = 0.9: must be at most 0.4000, the front's highest efficiency; ask"],
         ),
         (
             Within(measure="stop_energy_j", value=3.0),
