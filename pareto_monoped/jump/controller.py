@@ -320,9 +320,7 @@ def _release(knee: float, jump: Any) -> float:
 
 
 @compiled
-def _command(
-    wanted: tuple[float, float], share: tuple[float, float], speed: tuple[float, float], jump: Any
-) -> None:
+def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tuple[float, float], jump: Any) -> None:
     """Give the drivers the torques of this control period; they act on the command of ``delay_periods`` ago."""
     size = jump.commands.shape[0]
     late = jump.periods - jump.delay_periods
