@@ -74,8 +74,10 @@ def simulate(
     for note in filter(None, map(actuator_map.stand_in, sorted({design.hip_ratio, design.knee_ratio}))):
         click.echo(f"note: {note}", err=True)
     result = jump(design, actuator_map, calibration, trace=trace is not None)
-    if result.status in ("bad_input", "no_gearbox"):
+    if result.status == "bad_input":
         raise DesignError(result.reason)
+    if result.status == "no_gearbox":
+        raise DesignError(f"{result.reason}; choose another ratio")
     if result.status == "cannot_stand" and (trace or model):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
     report = _report(result, motor, actuator_map)
@@ -109,7 +111,8 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
     for variable in VARIABLES:
         value = getattr(design, variable.name)
         if not variable.lower <= value <= variable.upper:
-            bounds = f"{variable.lower:g} to {variable.upper:g} {variable.unit}"
+            unit = "" if variable.unit == "1" else f" {variable.unit}"
+            bounds = f"{variable.lower:g} to {variable.upper:g}{unit}"
             whose = "the paper's" if variable.default is None else "the usual"
             click.echo(f"note: {variable.name} = {value:g} is outside {whose} bounds, {bounds}", err=True)
     return design

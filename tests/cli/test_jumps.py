@@ -57,6 +57,16 @@ def test_set_changes_a_variable_and_notes_what_lies_outside_the_paper(capsys):
     assert err.splitlines() == ["note: thigh_length_m = 0.55 is outside the paper's bounds, 0.3 to 0.5 m"]
 
 
+def test_a_ratio_without_a_gearbox_is_refused_with_a_cure(capsys):
+    code, _, err = run(capsys, "simulate", "--set", "knee_ratio=99")
+    assert code == 2
+    assert err.splitlines() == [
+        "note: knee_ratio = 99 is outside the paper's bounds, 4 to 8.7",
+        "error: knee_ratio = 99: outside the map of VT8020, which covers 4 up to but not including 15; "
+        "choose another ratio",
+    ]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
