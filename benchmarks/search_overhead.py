@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
@@ -74,6 +74,7 @@ def optuna_loop(study: Study, simulator: Simulator, folder: Path, trials: int) -
             values["torsional_stiffness_n_m_per_rad"],
             motors_of(robots, 0, simulator.calibration),
             fade=fade_m,
+            read_back=simulator.calibration.simulation.positions_read == "half_step_back",
         )
         return result.height, result.energy
 
@@ -118,7 +119,7 @@ def main() -> None:
         few = 100
         loop_s, loop_cpu_s = timed(lambda: optuna_loop(study, simulator, folder, few))
         naive = optuna.load_study(study_name=None, storage=f"sqlite:///{folder}/optuna.db").trials
-        ours = simulator.evaluator(np.array([[t.params[n] for n in NAMES] for t in naive])).height_m
+        ours = simulator.evaluator(np.array([[t.params[n] for n in PAPER_NAMES] for t in naive])).height_m
         theirs = np.array([t.values[0] if t.values else np.nan for t in naive])
         agree = np.isclose(ours, theirs, rtol=0.0, atol=1e-9).mean()
         assert agree >= 0.95, f"only {agree:.0%} of the naive loop's heights agree"
