@@ -39,7 +39,7 @@ class EndStop:
     """The rubber bumpers at both ends of one joint's range.
 
     A bumper is a spring-damper that hardens with compression (see ``SpringContact``), so that force sets in smoothly.
-    Fully compressed bumpers leave the joint within the working range that the CAD keeps free (``leg.stops``).
+    A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
 
     Attributes:
         lower_rad, upper_rad: angles at which the joint meets the bumpers.

@@ -4,7 +4,7 @@ A bumper lies between the end lips of its seat and is bonded to its floor. Seats
 plates: their wings stand on the plates' edges, which carry the force, and their feet reach in between, where a bolt
 holds them.
 
-Forces, for the strength of what follows: a knee that arrives with 15 J squeezes the bumper with about 5 kN at a lever
+Forces, for the strength of what follows: a knee that arrives with 15 J squeezes the bumper with 5 kN at most at a lever
 of 60 mm. Wings: 5 kN on 2 x 2.5 mm x 18 mm of edge are 56 MPa. A foot bends over 24 mm between the plates by
 5 kN x 24 mm / 8 = 15 N m, on a section of 13 mm x 10 mm: 70 MPa. EN AW-6082 T6 yields at 250 MPa.
 """

@@ -18,7 +18,10 @@ _HIP_END = np.radians(100.0)  # to both sides of hanging straight down
 _HIP_LEVER_TO_ROD = 25.0  # mm: the thigh's striker passes 2 mm from the seat's boss around the rod
 
 MOST_COMPRESSION = 0.5
-"""Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here."""
+"""Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here.
+
+A limit of the design, which the highest jumps exceed in simulation (docs/model.md, "Contact, sliding, friction, stops").
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
