@@ -3,6 +3,7 @@
 import difflib
 import tomllib
 from collections.abc import Mapping
+from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -33,6 +34,12 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
         raise error(f"{what} {str(path)!r}: cannot be read ({problem.strerror}); give a readable TOML file") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
         raise error(f"{what} {str(path)!r}: not valid TOML ({problem}); correct that line") from None
+
+
+def read_shipped(name: str, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
+    """The tables of a TOML file in the package's ``data`` folder, with arguments as for ``read_toml``."""
+    with resources.as_file(resources.files("pareto_monoped") / "data" / name) as path:
+        return read_toml(path, what=what, error=error)
 
 
 def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> T:

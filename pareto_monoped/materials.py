@@ -3,13 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib import resources
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import checked, read_shipped
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -147,8 +146,7 @@ _GRADES = "gear_grades"
 
 @lru_cache(maxsize=1)
 def _file() -> dict[str, Any]:
-    with resources.as_file(resources.files("pareto_monoped") / "data" / "materials.toml") as path:
-        return read_toml(path, what="materials")
+    return read_shipped("materials.toml", what="materials")
 
 
 def _shipped() -> Materials:

@@ -4,7 +4,6 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields, replace
 from functools import lru_cache
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from pareto_monoped.actuator.motor import (
     mass_share,
 )
 from pareto_monoped.actuator.motor_checks import contradiction
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import checked, read_shipped, read_toml
 from pareto_monoped.errors import InputError, MotorError
 from pareto_monoped.materials import MATERIALS
 
@@ -41,8 +40,7 @@ __all__ = [
 
 @lru_cache(maxsize=1)
 def _shipped() -> dict[str, dict[str, Any]]:
-    with resources.as_file(resources.files("pareto_monoped") / "data" / "motors.toml") as path:
-        return read_toml(path, what="motor file", error=MotorError)
+    return read_shipped("motors.toml", what="motor file", error=MotorError)
 
 
 def motor_names() -> tuple[str, ...]:

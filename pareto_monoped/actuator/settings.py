@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from importlib import resources
 from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.materials import MATERIALS, Materials
@@ -149,9 +148,7 @@ class PartData:
 @lru_cache(maxsize=1)
 def default_parts() -> PartData:
     """The shipped part data."""
-    with resources.as_file(resources.files("pareto_monoped") / "data" / "actuator_parts.toml") as path:
-        values = read_toml(path, what="part data")
-    return checked(PartData, values, source="part data")
+    return checked(PartData, read_shipped("actuator_parts.toml", what="part data"), source="part data")
 
 
 _LEAST_PLANETS: dict[RuleSet, int] = {"paper": 2, "iso6336": 3}

@@ -1,6 +1,7 @@
 """Commands that read a front: ``front`` and ``pick``; also the options that select one design, shared by ``export``."""
 
 import functools
+import inspect
 import json
 import math
 from collections.abc import Callable
@@ -38,17 +39,9 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
     @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
     @functools.wraps(command)
-    def wrapper(
-        *arguments: Any,
-        min_height: float | None,
-        max_energy: float | None,
-        limit: str | None,
-        knee: bool,
-        weights: str | None,
-        trial: int | None,
-        **others: Any,
-    ) -> Any:
-        return command(*arguments, selector=_selector(min_height, max_energy, limit, knee, weights, trial), **others)
+    def wrapper(*arguments: Any, **given: Any) -> Any:
+        selector = _selector(**{name: given.pop(name) for name in inspect.signature(_selector).parameters})
+        return command(*arguments, selector=selector, **given)
 
     return wrapper
 

@@ -3,7 +3,9 @@
 from datetime import UTC, datetime
 
 import numpy as np
+import pytest
 
+from pareto_monoped.errors import StudyError
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study import provenance
@@ -14,7 +16,25 @@ from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.scoring import judge
 from pareto_monoped.study.store import Store, create_database
 
+MINIMAL = {"name": "s", "evaluations": 10}
+"""What a study file must have at least."""
 CONTENTS = {"motor": {"peak_torque_n_m": 5.5}, "calibration": {"name": "reference"}}
+
+
+def study_of(**more):
+    """A study from a file with the least it needs, and more."""
+    return study_from_dict(MINIMAL | more, source="study file 's.toml'")
+
+
+def assert_refused(change, words):
+    """A study file with ``change`` is refused in one line that has all ``words``."""
+    with pytest.raises(StudyError) as caught:
+        study_of(**change)
+    message = str(caught.value)
+    assert message.startswith("study file 's.toml'")
+    assert "\n" not in message
+    for word in words:
+        assert word in message
 
 
 def made_study(**more):

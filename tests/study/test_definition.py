@@ -9,13 +9,10 @@ from pareto_monoped.errors import StudyError
 from pareto_monoped.jump import calibration
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
+from tests.study.support import assert_refused
+from tests.study.support import study_of as made
 
 SHIPPED = sorted((Path(__file__).parents[2] / "studies").glob("*.toml"))
-MINIMAL = {"name": "s", "evaluations": 10}
-
-
-def made(**more):
-    return study_from_dict(MINIMAL | more, source="study file 's.toml'")
 
 
 def test_the_defaults_are_case_c_with_the_papers_bounds():
@@ -143,13 +140,7 @@ def test_plain_values_and_back(name):
     ],
 )
 def test_what_cannot_be_names_its_key_and_what_is_allowed(change, words):
-    with pytest.raises(StudyError) as caught:
-        made(**change)
-    message = str(caught.value)
-    assert message.startswith("study file 's.toml'")
-    assert "\n" not in message
-    for word in words:
-        assert word in message
+    assert_refused(change, words)
 
 
 def test_missing_keys_are_named():

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib import resources
 from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import checked, read_shipped
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
@@ -51,6 +50,4 @@ class ServiceData:
 @lru_cache(maxsize=1)
 def default_service() -> ServiceData:
     """The shipped service data."""
-    with resources.as_file(resources.files("pareto_monoped") / "data" / "service.toml") as path:
-        values = read_toml(path, what="service data")
-    return checked(ServiceData, values, source="service data")
+    return checked(ServiceData, read_shipped("service.toml", what="service data"), source="service data")
