@@ -263,7 +263,7 @@ class Simulation:
         if self.integrator == "RK4" and self.positions_read != "state":
             raise ValueError(
                 f"positions_read {self.positions_read!r} is for semi-implicit integrators; RK4 needs 'state'; "
-                "change one of both"
+                "change one of them"
             )
         if not _whole(self.period_s / self.timestep_s) or self.period_steps < 1:
             raise ValueError(

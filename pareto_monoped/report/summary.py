@@ -47,10 +47,10 @@ def _extent(front: pd.DataFrame, objectives: Objectives) -> str:
     """What a height costs, where the height is an objective, and how far the front reaches in every objective."""
     values = front[list(objectives.names)].to_numpy(dtype=float)
     ranges = [
-        f"{entry.words} from {entry.text(column.min())} to {entry.text(column.max())}"
+        f"{entry.words} ({entry.text(column.min())} to {entry.text(column.max())})"
         for entry, column in zip(objectives.measures, values.T, strict=True)
     ]
-    text = f"the front of {len(front)} designs has {', '.join(ranges)}."
+    text = f"the front of {len(front)} designs covers {', '.join(ranges[:-1])} and {ranges[-1]}."
     best = best_at_height(values, objectives)
     if best is None:
         return f"{text[0].upper()}{text[1:]}"

@@ -73,7 +73,7 @@ def test_its_words_name_the_objectives(three):
     (sentence,) = sentences(data, front, [])
     for name in THREE:
         entry = measure(name)
-        assert f"{entry.label} from {entry.text(front[name].min())} to {entry.text(front[name].max())}" in sentence
+        assert f"{entry.label} ({entry.text(front[name].min())} to {entry.text(front[name].max())})" in sentence
     assert sentence in text
     assert "m J kg from 0.55 m, 200 J, 10 kg" in text
     reached = front[front["height_m"] >= 0.8]
