@@ -1,8 +1,8 @@
 """End stops as the simulation has them: those that a calibration gives, or those of the leg's parts.
 
-An ``EndStop`` becomes a joint limit of MuJoCo (``model.spring_fields``). Let u be the compression over the full width w,
-D the impedance, and A the joint's inverse inertia at the zero pose. In a slow compression the stop pushes back with the
-torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia
+An ``EndStop`` becomes a joint limit of MuJoCo (``model.spring_fields``). Let u be the compression over the full width
+w, D the impedance, and A the joint's inverse inertia at the zero pose. In a slow compression the stop pushes back with
+the torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia
 D u / (1 - D u) / A. Beyond w, damping and virtual inertia stay as at w, and the torque grows in proportion.
 """
 
