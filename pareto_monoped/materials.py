@@ -77,6 +77,23 @@ class GearMaterial(ElasticMaterial):
     mesh_friction_coefficient: Positive
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alloy:
+    """An alloy in one condition, as it is ordered.
+
+    Attributes:
+        name: designation and condition, as they stand in parts lists and on drawings.
+        hardness: in words, with its scale.
+        yield_mpa: 0.2 % proof stress, the least that the standard of the semi-finished product allows.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    name: str
+    hardness: str
+    yield_mpa: Positive
+
+
 Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
 
 
@@ -105,6 +122,11 @@ class GearGrade:
     root_limit_mpa: Positive
     yield_mpa: Positive
     slip_layer_mm: Positive
+
+    @property
+    def hardness(self) -> str:
+        """In words, with its scale; a nitrided flank is hard in its layer only."""
+        return f"{self.hardness_hv:g} HV"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,8 +162,8 @@ class Materials:
     fluoroelastomer: Elastomer
 
 
-_GRADES = "gear_grades"
-"""The one table of the file whose own tables are no materials, but grades of gear steel."""
+_GRADES, _ALLOYS = "gear_grades", "alloys"
+"""The tables of the file whose own tables are no materials, but grades of gear steel and alloys."""
 
 
 @lru_cache(maxsize=1)
@@ -150,7 +172,9 @@ def _file() -> dict[str, Any]:
 
 
 def _shipped() -> Materials:
-    named = {key: {"name": key.replace("_", " ")} | table for key, table in _file().items() if key != _GRADES}
+    named = {
+        key: {"name": key.replace("_", " ")} | table for key, table in _file().items() if key not in (_GRADES, _ALLOYS)
+    }
     return checked(Materials, named, source="materials")
 
 
@@ -160,7 +184,15 @@ def _shipped_grades() -> Mapping[str, GearGrade]:
     return MappingProxyType(grades)
 
 
+def _shipped_alloys() -> Mapping[str, Alloy]:
+    tables = _file()[_ALLOYS]
+    alloys = {key: checked(Alloy, table, source=f"materials: {_ALLOYS}.{key}") for key, table in tables.items()}
+    return MappingProxyType(alloys)
+
+
 MATERIALS = _shipped()
 """The materials that ship with the package."""
+ALLOYS = _shipped_alloys()
+"""The alloys that ship with the package, by the names that the parts use."""
 GEAR_GRADES = _shipped_grades()
 """The steel grades that ship with the package, by the names that the settings use."""

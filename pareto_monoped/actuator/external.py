@@ -6,9 +6,10 @@ from pareto_monoped.actuator.external_housing import housing_parts
 from pareto_monoped.actuator.external_layout import ExternalLayout, external_layout
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
-    GEAR_NOTE,
     MOTOR_TAPPED_HOLE_MM,
-    gear_making,
+    gear_accuracy,
+    gear_grade,
+    gear_note,
     motor_holes,
     note_with,
     slab,
@@ -18,10 +19,12 @@ from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.materials import ALLOYS
 
 _MOTOR_THREAD_MM = 5.0
 """How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
@@ -71,8 +74,10 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
             process="machined",
             group=Group.ROTOR,
+            grade=gear_grade(settings, settings.gear_steels.sun),
+            accuracy_class=gear_accuracy(settings),
             note=note_with(
-                GEAR_NOTE + gear_making(settings, settings.gear_steels.sun),
+                gear_note(settings),
                 at.gears.sun_teeth,
                 at.gears.module_mm,
                 data.gears.backlash_mm,
@@ -87,7 +92,9 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             prisms=slab(shell.z_motor, -END_PLAY_MM, shaft),
             process="machined",
             group=Group.ROTOR,
-            note="hardened dowel",
+            grade=ALLOYS["dowel"],
+            fits=(Fit(diameter_mm=2.0 * shaft, zone="m6"),),
+            note="dowel",
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
         ),
         Part(
@@ -105,6 +112,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             ),
             process="machined",
             group=Group.ROTOR,
+            grade=ALLOYS["aw_6082_t6"],
             note="screwed to the motor's turning face",
         ),
     )

@@ -15,10 +15,12 @@ from pareto_monoped.actuator.features import (
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.materials import ALLOYS
 
 _BACK_BORE_MM = 8.0
 """Radius of the backplate's central hole, behind the motor's shaft; our own choice."""
@@ -62,8 +64,10 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             ),
             process="machined",
             group=Group.HOUSING,
-            note=note_with(
-                "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring", 2.0 * at.r_seat, 2.0 * at.r_ring
+            grade=ALLOYS["aw_6082_t6"],
+            fits=(
+                Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
+                Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
             ),
         ),
         Part(
@@ -103,7 +107,8 @@ def _casing_and_backplate(
             ),
             process="machined",
             group=Group.HOUSING,
-            note="EN AW-6082; bore and faces in one clamping",
+            grade=ALLOYS["aw_6082_t6"],
+            note="bore and faces in one clamping",
         ),
         Part(
             name="backplate",
@@ -123,7 +128,8 @@ def _casing_and_backplate(
             ),
             process="machined",
             group=Group.HOUSING,
-            note="EN AW-6082; step to fit the casing",
+            grade=ALLOYS["aw_6082_t6"],
+            note="step to fit the casing",
         ),
     )
 

@@ -12,7 +12,7 @@ from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.materials import GearGrade, Material
 
-GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm; "
+GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm"
 SPIGOT_MM = 1.5
 """Height of the backplate's step that centres it in the casing; our own choice."""
 RING_GROOVE_MM = 1.0
@@ -25,16 +25,19 @@ MOTOR_TAPPED_HOLE_MM = -0.8
 """Tapping hole less thread diameter for the motor's mounting pattern (ISO 2306: 4.2 mm for M5)."""
 
 
-def gear_making(settings: ActuatorSettings, grade: GearGrade) -> str:
-    """Steel and making of a gear, the end of its note.
+def gear_grade(settings: ActuatorSettings, grade: GearGrade) -> GearGrade | None:
+    """The steel of a gear under ``iso6336``; the rules of the paper name none."""
+    return None if settings.rules == "paper" else grade
 
-    Args:
-        settings: of stage 1.
-        grade: the gear's steel under ``iso6336``. Wire-cutting after hardening would take a hard case off.
-    """
-    if settings.rules == "paper":
-        return "hardened steel, wire-cut"
-    return f"{grade.name}, ISO 1328-1 class {settings.parts.rating.accuracy_class}"
+
+def gear_accuracy(settings: ActuatorSettings) -> int | None:
+    """Accuracy class of a gear's teeth under ``iso6336``; the rules of the paper name none."""
+    return None if settings.rules == "paper" else settings.parts.rating.accuracy_class
+
+
+def gear_note(settings: ActuatorSettings) -> str:
+    """Form of a gear's note. Wire-cutting after hardening would take a hard case off."""
+    return GEAR_NOTE + ("; hardened steel, wire-cut" if settings.rules == "paper" else "")
 
 
 def note_with(text: str, *numbers: Numbers) -> str:

@@ -3,10 +3,11 @@
 import numpy as np
 
 from pareto_monoped.actuator.features import (
-    GEAR_NOTE,
     RING_GROOVE_MM,
     bought_bearing,
-    gear_making,
+    gear_accuracy,
+    gear_grade,
+    gear_note,
     note_with,
     output_holes,
     slab,
@@ -15,10 +16,12 @@ from pareto_monoped.actuator.features import (
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.materials import ALLOYS
 
 _BUSH_PLAY_MM = 0.2
 """Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
@@ -75,8 +78,10 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=planet_prisms(at, settings),
             process="machined",
             group=Group.PLANET,
+            grade=gear_grade(settings, settings.gear_steels.planet),
+            accuracy_class=gear_accuracy(settings),
             note=note_with(
-                GEAR_NOTE + gear_making(settings, settings.gear_steels.planet),
+                gear_note(settings),
                 gears.planet_teeth,
                 gears.module_mm,
                 data.gears.backlash_mm,
@@ -110,7 +115,9 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group=Group.OUTPUT,
-            note="hardened dowel, M3 thread in the rear end",
+            grade=ALLOYS["dowel"],
+            fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="m6"),),
+            note="dowel, M3 thread in the rear end",
             joint=Joint(kind=JointKind.PRESSED, how="pressed into secondary_carrier and", partner="carrier"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -137,8 +144,10 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
             process="machined",
             group=Group.HOUSING,
+            grade=gear_grade(settings, settings.gear_steels.ring),
+            accuracy_class=gear_accuracy(settings),
             note=note_with(
-                GEAR_NOTE + gear_making(settings, settings.gear_steels.ring),
+                gear_note(settings),
                 gears.ring_teeth,
                 gears.module_mm,
                 data.gears.backlash_mm,
@@ -183,11 +192,11 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=body,
             process="machined",
             group=Group.OUTPUT,
-            note=note_with(
-                "EN AW-7075; seats {} h6 for the main bearing, {} J7 for the end bearing; bores {} H7 for the pins",
-                2.0 * at.r_bore,
-                2.0 * seat,
-                carrier.pin_diameter_mm,
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(
+                Fit(diameter_mm=2.0 * at.r_bore, zone="h6", seat=True),
+                Fit(diameter_mm=2.0 * seat, zone="J7", seat=True),
+                Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
             ),
         ),
         Part(
@@ -201,7 +210,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group=Group.OUTPUT,
-            note=note_with("EN AW-7075; bores {} H7 for the pins; countersink the back", carrier.pin_diameter_mm),
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
+            note="countersink the back",
         ),
         Part(
             name="retaining_ring",

@@ -4,11 +4,12 @@ import numpy as np
 
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
-    GEAR_NOTE,
     MOTOR_TAPPED_HOLE_MM,
     bought_bearing,
     casing_holes,
-    gear_making,
+    gear_accuracy,
+    gear_grade,
+    gear_note,
     motor_holes,
     note_with,
     slab,
@@ -21,10 +22,12 @@ from pareto_monoped.actuator.internal_layout import InternalLayout, frameless, i
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.materials import ALLOYS
 
 BACK_THREAD_MM = 6.0
 """Depth of the motor's own pattern in the backplate: M5 screws need more than the casing's M3."""
@@ -83,8 +86,10 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             ),
             process="machined",
             group=Group.ROTOR,
+            grade=gear_grade(settings, settings.gear_steels.sun),
+            accuracy_class=gear_accuracy(settings),
             note=note_with(
-                "one piece with its shaft; " + GEAR_NOTE + gear_making(settings, settings.gear_steels.sun),
+                "one piece with its shaft; " + gear_note(settings),
                 at.gears.sun_teeth,
                 at.gears.module_mm,
                 data.gears.backlash_mm,
@@ -102,6 +107,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             ),
             process="machined",
             group=Group.ROTOR,
+            grade=ALLOYS["aw_6082_t6"],
             note="screwed to the bell",
         ),
     )
@@ -139,7 +145,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             ),
             process="machined",
             group=Group.HOUSING,
-            note="EN AW-6082; bore and faces in one clamping",
+            grade=ALLOYS["aw_6082_t6"],
+            note="bore and faces in one clamping",
         ),
         Part(
             name="ring_housing",
@@ -160,12 +167,12 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             ),
             process="machined",
             group=Group.HOUSING,
-            note=note_with(
-                "EN AW-6082; seats {} J7 for the main bearing, {} H7 for the ring, {} for the stator",
-                2.0 * at.r_seat,
-                2.0 * at.r_ring,
-                2.0 * at.r_stator_in,
+            grade=ALLOYS["aw_6082_t6"],
+            fits=(
+                Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
+                Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
             ),
+            note=note_with("{} mm outside to fit the stator", 2.0 * at.r_stator_in),
         ),
     )
 
@@ -194,7 +201,9 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
         ),
         process="machined",
         group=Group.HOUSING,
-        note=note_with("EN AW-6082; seat {} J7 for the rear bearing, step to fit the casing", 2.0 * rear_seat),
+        grade=ALLOYS["aw_6082_t6"],
+        fits=(Fit(diameter_mm=2.0 * rear_seat, zone="J7", seat=True),),
+        note="step to fit the casing",
     )
 
 

@@ -13,9 +13,10 @@ from functools import lru_cache, reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
-from pareto_monoped.materials import Material
+from pareto_monoped.materials import Alloy, GearGrade, Material
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,7 +215,10 @@ class Part:
         places_mm: centres of the circles of instances, x, y, z from the unit's origin.
         group: what it moves with.
         catalogue_mass_kg: mass of one instance if it is bought and its solid is only an envelope; replaces the density.
-        note: what the maker should know (standard, fit, catalogue number).
+        note: what else the maker should know (standard, catalogue number).
+        grade: alloy or steel grade with its condition, where the maker must keep to one.
+        fits: tolerances of its round faces.
+        accuracy_class: of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters.
         joint: what holds it where its shape does not.
         visibility: where it is drawn.
         countersunk_mm: heights of the flush faces of countersunk heads, which are drawn as plain shanks.
@@ -233,6 +237,9 @@ class Part:
     group: Group = Group.FIXED
     catalogue_mass_kg: Numbers | None = None
     note: str = field(default="", compare=False)
+    grade: Alloy | GearGrade | None = field(default=None, compare=False)
+    fits: tuple[Fit, ...] = field(default=(), compare=False)
+    accuracy_class: int | None = field(default=None, compare=False)
     joint: Joint | None = None
     visibility: Visibility = Visibility.OUTSIDE
     countersunk_mm: tuple[Numbers, ...] = ()

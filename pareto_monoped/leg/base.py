@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, screw_part
@@ -11,7 +12,7 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.journal import far_cheek_z_mm
 from pareto_monoped.leg.sandwich import Place, holes_at
 from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the rods, mm. They stand above the hip, see ``LegDimensions.lower_rod_mm``.
 _ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
@@ -89,7 +90,8 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                     ),
                 ),
             ),
-            note=f"{d.cheek_mm:g} mm sheet EN AW-6082 T6; countersink the screw holes: the actuator's on the "
+            grade=ALLOYS["aw_6082_t6"],
+            note=f"{d.cheek_mm:g} mm sheet; countersink the screw holes: the actuator's on the "
             "thigh's side, those of the hip's seats on the actuator's",
         ),
         screw_part(
@@ -125,7 +127,9 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 Prism(outline=outline, z0_mm=z0_mm, z1_mm=seat_end, holes=(seat, *common)),
                 Prism(outline=outline, z0_mm=seat_end, z1_mm=z0_mm + d.far_cheek_mm, holes=(lip, *common)),
             ),
-            note=f"{d.far_cheek_mm:g} mm plate EN AW-6082 T6; seat 32 J7, {d.bearing_width_mm:g} mm deep",
+            grade=ALLOYS["aw_6082_t6"],
+            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
+            note=f"{d.far_cheek_mm:g} mm plate",
         ),
         bearing_part("base_bearing", d, z0_mm=z0_mm),
     )
@@ -144,6 +148,7 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             process="machined",
             prisms=(Prism(outline=Circle(radius_mm=d.rod_radius_mm), z0_mm=near_mm, z1_mm=far_mm, holes=(thread,)),),
             places_mm=places,
+            grade=ALLOYS["aw_6082_t6"],
             note=f"{2.0 * d.rod_radius_mm:g} mm tube, tapped M4 at both ends; "
             "the test stand's carriage clamps to the rods",
         ),

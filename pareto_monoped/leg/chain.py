@@ -8,7 +8,7 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm along the strand. From the straight leg to the end of the knee's stop each strand moves by 68 mm:
 # 0.2 m between the axes is the least at which no turnbuckle reaches a sprocket.
@@ -85,7 +85,8 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             prisms=_barrel(),
             places_mm=places,
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end"),
-            note=f"EN AW-7075, 7 mm square, tapped M4 right-hand and left-hand; {setting}, travel {travel}",
+            grade=ALLOYS["aw_7075_t6"],
+            note=f"7 mm square, tapped M4 right-hand and left-hand; {setting}, travel {travel}",
         ),
         Part(
             name="turnbuckle_end",
@@ -97,6 +98,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             pitch_radius_mm=0.5 * TURNBUCKLE,
             phase_rad=0.5 * math.pi,
             places_mm=places,
+            grade=ALLOYS["c45_qt"],
             note="fork with M4 stud and pin for the chain's inner link; one of each two with left-hand thread",
         ),
     )

@@ -8,7 +8,7 @@ from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.sprocket import sprocket_prisms
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the couplings, mm.
 _RADIUS = 15.0  # 3 mm outside the circle of their screws
@@ -47,6 +47,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             prisms=(
                 Prism(outline=Circle(radius_mm=_RADIUS), z0_mm=d.hip_mount_mm, z1_mm=-face, holes=_coupling_holes(d)),
             ),
+            grade=ALLOYS["aw_6082_t6"],
             note="between hip output and inner plate; friction joint, dry",
         ),
         screw_part(
@@ -95,6 +96,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             process="machined",
             prisms=sprocket_prisms(d),
             group=Group.KNEE_DRIVE,
+            grade=ALLOYS["c45_n"],
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
         Part(
@@ -111,6 +113,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
                 ),
             ),
             group=Group.KNEE_DRIVE,
+            grade=ALLOYS["aw_6082_t6"],
             note="between knee output and drive sprocket",
         ),
         screw_part(

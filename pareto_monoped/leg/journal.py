@@ -1,12 +1,13 @@
 """The journal on the knee actuator's back, by which the base's far cheek carries the actuator's free end."""
 
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import Screw, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
 _FLANGE = 4.0  # thickness, the grip of the screws
@@ -63,7 +64,9 @@ def journal_parts(
                     holes=(bore,),
                 ),
             ),
-            note="EN AW-7075; seat 20 h6; the bore takes the knee actuator's cables",
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
+            note="the bore takes the knee actuator's cables",
         ),
         screw_part(
             "journal_screw",

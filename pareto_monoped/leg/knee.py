@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, cylinder, screw_part
@@ -9,7 +10,7 @@ from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.sprocket import BORE_RADIUS, sprocket_prisms
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the cups, mm.
 _CUP_WALL = 5.0  # around the bearing
@@ -61,7 +62,9 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
                 ),
             ),
             places_mm=places,
-            note="seat 32 J7, threads M2.5; the plate's lip holds the bearing outwards",
+            grade=ALLOYS["aw_6082_t6"],
+            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
+            note="threads M2.5; the plate's lip holds the bearing outwards",
         ),
         *(
             screw_part(
@@ -118,7 +121,9 @@ def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
                 disc(SHOULDER_RADIUS, flange, shoulder),
                 disc(d.bearing_bore_radius_mm, shoulder, half_gap),
             ),
-            note="EN AW-7075; seat 20 h6; threads M3",
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
+            note="threads M3",
         ),
         Part(
             name="knee_axle_cap",
@@ -129,7 +134,8 @@ def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
                 disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
                 disc(SHOULDER_RADIUS, -shoulder, -half_tooth),
             ),
-            note="EN AW-7075; seat 20 h6",
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
         ),
         Part(
             name="knee_spacer",
@@ -145,6 +151,7 @@ def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
                 ),
             ),
             places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
+            grade=ALLOYS["aw_6082_t6"],
             note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
         ),
     )
@@ -170,6 +177,7 @@ def _sprocket(d: LegDimensions) -> tuple[Part, ...]:
             material=MATERIALS.steel,
             process="machined",
             prisms=sprocket_prisms(d),
+            grade=ALLOYS["c45_n"],
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
         ),
         screw_part(

@@ -18,7 +18,7 @@ from pareto_monoped.leg.sandwich import (
     windows_between,
 )
 from pareto_monoped.leg.stop_parts import shank_stop_bolts, shank_stop_parts
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the fork, mm below the knee axis.
 _FORK_WINDOW_TOP = 28.0  # below the round end of the plates
@@ -87,7 +87,8 @@ def _plate(flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Pla
             ),
         ),
         places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -half_gap - d.shank_plate_mm)),
-        note=f"{d.shank_plate_mm:g} mm sheet EN AW-6082 T6; countersink the bolt holes outside",
+        grade=ALLOYS["aw_6082_t6"],
+        note=f"{d.shank_plate_mm:g} mm sheet; countersink the bolt holes outside",
     )
 
 
@@ -134,6 +135,7 @@ def _foot_block(flat_mm: Numbers, foot_bolts: tuple[Place, ...], d: LegDimension
             ),
             _tongue(flat_mm),
         ),
+        grade=ALLOYS["aw_6082_t6"],
         note="holds the foot between the shank plates",
     )
 

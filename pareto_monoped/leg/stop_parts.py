@@ -25,7 +25,7 @@ from pareto_monoped.leg.faces import (
 )
 from pareto_monoped.leg.sandwich import Place, sleeve_bolt, sleeve_hole
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of all faces, mm: along the face, behind it, or along the joint's axis.
 HALF_FACE = 9.0  # half length of a face: a bumper of 20 mm squeezed to 15 mm touches 12 mm
@@ -97,7 +97,8 @@ def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: Joi
         process="machined",
         prisms=(Prism(outline=foot, z0_mm=-half_gap, z1_mm=half_gap, holes=(hole,)), *wings, *ends),
         places_mm=((placed.x_mm, placed.y_mm, 0.0),),
-        note="EN AW-6082 T6; stands on the edges of the thigh's plates",
+        grade=ALLOYS["aw_6082_t6"],
+        note="stands on the edges of the thigh's plates",
     )
 
 
@@ -155,7 +156,8 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
                     holes=tuple(Circle(radius_mm=hole, x_mm=x, y_mm=y) for x, y, _ in shank_stop_bolts(d)),
                 ),
             ),
-            note="EN AW-6082 T6; meets the bumpers of extension and flexion",
+            grade=ALLOYS["aw_6082_t6"],
+            note="meets the bumpers of extension and flexion",
         ),
         sleeve_bolt("knee_striker_bolt", M4, half_gap + d.shank_plate_mm, shank_stop_bolts(d)),
     )
@@ -247,7 +249,8 @@ def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: Join
                 for hole in (bores[1], thread)  # beside the lower rod the thigh passes
             ),
         ),
-        note="EN AW-6082 T6; slides onto two rods and stands on the near cheek",
+        grade=ALLOYS["aw_6082_t6"],
+        note="slides onto two rods and stands on the near cheek",
     )
 
 

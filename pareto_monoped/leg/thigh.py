@@ -14,7 +14,7 @@ from pareto_monoped.leg.knee import cup_holes, knee_bearings
 from pareto_monoped.leg.sandwich import BRIDGE, Place, bolts_at, holes_at, sleeve_bolt, sleeve_hole, windows_between
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
 from pareto_monoped.leg.thigh_outline import thigh_outline
-from pareto_monoped.materials import MATERIALS
+from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
 _KNEE_END = 32.0  # from the knee axis to the core above it, clear of the sprocket's teeth
@@ -77,7 +77,7 @@ def _plates(
         cup_holes(-length, M25.hole, d),
     )
 
-    note = f"{d.plate_mm:g} mm sheet EN AW-6082 T6; countersink the bolt holes outside"
+    note = f"{d.plate_mm:g} mm sheet; countersink the bolt holes outside"
     return (
         Part(
             name="thigh_plate_inner",
@@ -92,6 +92,7 @@ def _plates(
                     holes=(*common, *_inner_hip_holes(d)),
                 ),
             ),
+            grade=ALLOYS["aw_6082_t6"],
             note=note,
         ),
         Part(
@@ -107,6 +108,7 @@ def _plates(
                     holes=(*common, *_outer_hip_holes(d)),
                 ),
             ),
+            grade=ALLOYS["aw_6082_t6"],
             note=note.replace("; ", "; carries the knee actuator; "),
         ),
     )
@@ -175,5 +177,6 @@ def _standoff(places: tuple[Place, ...], d: LegDimensions) -> Part:
             ),
         ),
         places_mm=places,
+        grade=ALLOYS["aw_6082_t6"],
         note=f"tube, {2.0 * _STANDOFF_RADIUS:g} mm outside, bored {2.0 * hole:g} mm",
     )

@@ -110,20 +110,18 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
     notes = {part.name: part.note for unit in build_robot(design, actuator_map).units for part in unit.parts}
     for name, note in {
         "base_near_cheek": (
-            "6 mm sheet EN AW-6082 T6; countersink the screw holes: the actuator's on the thigh's side, those of the "
+            "6 mm sheet; countersink the screw holes: the actuator's on the thigh's side, those of the "
             "hip's seats on the actuator's"
         ),
         "knee_bumper_flexion": "FKM 75 Shore A, round bar 20 mm, cut to 28 mm",
         "knee_striker_bolt": (
             "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together"
         ),
-        "base_far_cheek": "8 mm plate EN AW-6082 T6; seat 32 J7, 7 mm deep",
+        "base_far_cheek": "8 mm plate",
         "base_bearing": "6804, 20 x 32 x 7 mm (ISO 15)",
         "base_rod": "10 mm tube, tapped M4 at both ends; the test stand's carriage clamps to the rods",
-        "thigh_plate_inner": "2.5 mm sheet EN AW-6082 T6; countersink the bolt holes outside",
-        "thigh_plate_outer": (
-            "2.5 mm sheet EN AW-6082 T6; carries the knee actuator; countersink the bolt holes outside"
-        ),
+        "thigh_plate_inner": "2.5 mm sheet; countersink the bolt holes outside",
+        "thigh_plate_outer": ("2.5 mm sheet; carries the knee actuator; countersink the bolt holes outside"),
         "thigh_standoff": "tube, 7 mm outside, bored 4.2 mm",
         "thigh_bolt": (
             "M3 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M3 x 20, flush, 29 mm together"
@@ -131,7 +129,7 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
         "drive_sprocket": "05B-1, 20 teeth (ISO 606)",
         "knee_bearing": "6804, 20 x 32 x 7 mm (ISO 15)",
         "journal_screw": "M5 x 12 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
-        "shank_plate": "3 mm sheet EN AW-6082 T6; countersink the bolt holes outside",
+        "shank_plate": "3 mm sheet; countersink the bolt holes outside",
         "knee_sprocket": "05B-1, 20 teeth (ISO 606); as drive_sprocket, screw holes countersunk",
         "knee_bolt": "M4 x 45 cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
     }.items():

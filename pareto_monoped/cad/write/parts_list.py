@@ -4,6 +4,7 @@ import csv
 import io
 
 from pareto_monoped.cad.product import Product, extent_mm
+from pareto_monoped.geometry.parts import Part
 
 _COLUMNS = (
     "part",
@@ -38,7 +39,23 @@ def parts_list(product: Product) -> str:
                 "bought" if part.process == "bought" else "made",
                 " x ".join(f"{size:.1f}" for size in extent_mm(unique.mesh)),
                 " ".join(unique.units),
-                "; ".join(filter(None, (part.note, part.joint.text if part.joint else ""))),
+                _note(part),
             )
         )
     return stream.getvalue()
+
+
+def _note(part: Part) -> str:
+    """What the maker must know: grade and accuracy, fits, note, joint."""
+    return "; ".join(
+        filter(
+            None,
+            (
+                part.grade.name if part.grade else "",
+                f"ISO 1328-1 class {part.accuracy_class}" if part.accuracy_class else "",
+                *(fit.text for fit in part.fits),
+                part.note,
+                part.joint.text if part.joint else "",
+            ),
+        )
+    )
