@@ -84,6 +84,12 @@ def _measure(
     )
 
 
+def _safety(name: str, of: str, label: str, short: str) -> Measure:
+    """The measure of a group of the strength check."""
+    meaning = f"least safety factor over the required one of {of}; holds from 1 up"
+    return _measure(name, "1", "maximise", meaning, label, 2, reference=0.0, short=short)
+
+
 _PERCENT = ("%", 100.0)
 _MM = ("mm", 1000.0)
 _EFFICIENCY = f"m g (H - {BASE_START_HEIGHT_M:g} m) / E"
@@ -347,6 +353,53 @@ MEASURES: tuple[Measure, ...] = (
         reference=0.5,
         short="drift",
     ),
+    _measure(
+        "peak_stop_torque_hip_n_m",
+        "N m",
+        "minimise",
+        "largest torque of the hip's end stops",
+        "peak torque of an end stop, hip",
+        1,
+        reference=500.0,
+        short="stop hip",
+    ),
+    _measure(
+        "peak_stop_torque_knee_n_m",
+        "N m",
+        "minimise",
+        "largest torque of the knee's end stops",
+        "peak torque of an end stop, knee",
+        1,
+        reference=500.0,
+        short="stop knee",
+    ),
+    _measure(
+        "stop_compression_hip",
+        "1",
+        "minimise",
+        "largest compression of the hip's bumpers, as a share of their travel",
+        "bumper compressed, hip",
+        0,
+        _PERCENT,
+        reference=2.0,
+        short="comp. hip",
+    ),
+    _measure(
+        "stop_compression_knee",
+        "1",
+        "minimise",
+        "largest compression of the knee's bumpers, as a share of their travel",
+        "bumper compressed, knee",
+        0,
+        _PERCENT,
+        reference=2.0,
+        short="comp. knee",
+    ),
+    _safety("gear_safety", "gears under the jump's largest torque", "strength of the gears", "gears ok"),
+    _safety("chain_safety", "the chain and its turnbuckles", "strength of the chain", "chain ok"),
+    _safety("stop_safety", "bumpers, seats and strikers of the end stops", "strength of the end stops", "stops ok"),
+    _safety("joint_safety", "screws, pins, fits and shafts", "strength of the joints", "joints ok"),
+    _safety("link_safety", "plates, cores and rods", "strength of the links", "links ok"),
 )
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)

@@ -17,6 +17,7 @@ LEVELS = [
     {"cli"},
     {"report", "cad", "study"},
     {"pareto", "jump"},
+    {"strength"},
     {"robot"},
     {"leg"},
     {"actuator"},

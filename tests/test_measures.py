@@ -48,6 +48,11 @@ def test_directions():
         "foot_clearance_m",
         "efficiency",
         "sustained_jumps_per_minute",
+        "gear_safety",
+        "chain_safety",
+        "stop_safety",
+        "joint_safety",
+        "link_safety",
     ]
     assert [name for name in better if better[name] is None] == ["lift_off_s", "apex_s"]
 

@@ -97,7 +97,8 @@ RECORD = np.dtype(
         ("saturated_steps", _BOTH),
         ("peak_gear_torque_n_m", _BOTH),
         ("peak_chain_tension_n", _ONE),
-        ("peak_stop_torque_n_m", _ONE),
+        ("peak_stop_torque_n_m", _BOTH),
+        ("peak_beyond_stop_rad", _BOTH),  # by which a joint goes beyond an end of its range
         ("stop_energy_j", _ONE),
         ("peak_foot_force_n", _ONE),
         ("drift_m", _ONE),
@@ -485,7 +486,9 @@ def _loads(v: Floats, jump: Any) -> None:
         angle, after = jump.position[2 + joint], v[nv - 2 + joint]
         if angle < jump.lower_stop_rad[joint] or angle > jump.upper_stop_rad[joint]:
             stop = needed[joint] - jump.joint_torque_n_m[joint] + jump.joint_damping_n_m_s_per_rad[joint] * after
-            jump.peak_stop_torque_n_m = max(jump.peak_stop_torque_n_m, abs(stop))
+            jump.peak_stop_torque_n_m[joint] = max(jump.peak_stop_torque_n_m[joint], abs(stop))
+            beyond = max(jump.lower_stop_rad[joint] - angle, angle - jump.upper_stop_rad[joint])
+            jump.peak_beyond_stop_rad[joint] = max(jump.peak_beyond_stop_rad[joint], beyond)
             jump.stop_energy_j -= stop * 0.5 * (jump.velocity[2 + joint] + after) * timestep
     tension = abs(jump.joint_torque_n_m[KNEE] - turning) / jump.sprocket_radius_m
     jump.peak_chain_tension_n = max(jump.peak_chain_tension_n, tension)

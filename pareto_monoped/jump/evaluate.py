@@ -14,6 +14,8 @@ from pareto_monoped.jump.rows import take
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.frames import JOINTS
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
+from pareto_monoped.strength.factors import safeties, strength_factors
+from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
 
 Floats = NDArray[np.float64]
 
@@ -25,7 +27,7 @@ _LEAST = np.array([_SHORTEST_LINK_M if name in LENGTHS else 0.0 for name in NAME
 # Beyond this value of any variable, numbers overflow.
 _MOST = 1e9
 # Measures that the controller's records hold under their own names.
-_LOADS = ("peak_chain_tension_n", "peak_stop_torque_n_m", "stop_energy_j", "peak_foot_force_n", "drift_m")
+_LOADS = ("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "drift_m")
 # Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
@@ -72,6 +74,15 @@ class Evaluations:
     stop_energy_j: Floats
     peak_foot_force_n: Floats
     drift_m: Floats
+    peak_stop_torque_hip_n_m: Floats
+    peak_stop_torque_knee_n_m: Floats
+    stop_compression_hip: Floats
+    stop_compression_knee: Floats
+    gear_safety: Floats
+    chain_safety: Floats
+    stop_safety: Floats
+    joint_safety: Floats
+    link_safety: Floats
 
     def __len__(self) -> int:
         return len(self.height_m)
@@ -118,6 +129,7 @@ class Evaluator:
         if len(sane):
             robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
             _jump(robots, columns(values[sane], CONTROL), self.calibration, self.workers, table, sane)
+            _add_safeties(values, self.actuator_map, table, sane)
         return table.evaluations()
 
 
@@ -129,10 +141,22 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
         control: of each, see ``design.complete_control``.
         calibration: the jump model.
         workers: threads.
+
+    Returns:
+        Without the measures of strength, which are NaN: robots alone do not say which gearboxes they have.
     """
     table = _Table(len(robots))
     _jump(robots, complete_control(control), calibration, workers, table, np.arange(len(robots)))
     return table.evaluations()
+
+
+def _add_safeties(values: Floats, actuator_map: ActuatorMap, table: "_Table", rows: NDArray[np.intp]) -> None:
+    """Fill the measures of strength of ``rows`` from the loads of their jumps."""
+    rows = rows[table.status[rows] == "ok"]
+    known = dict(zip(NAMES, values.T, strict=True)) | table.columns
+    loads = loads_of({name: known[name][rows] for name in LOAD_NAMES})
+    for name, safety in safeties(strength_factors(values[rows], actuator_map, loads)).items():
+        table.columns[name][rows] = safety
 
 
 def _nonsense(values: Floats) -> dict[int, str]:
@@ -222,9 +246,17 @@ def _collect(
         "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
         **_by_joint("peak_gear_torque_{}_n_m", records["peak_gear_torque_n_m"]),
         **{name: records[name] for name in _LOADS},
+        "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
+        **_by_joint("peak_stop_torque_{}_n_m", records["peak_stop_torque_n_m"]),
+        **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / _travels_rad(robots)),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]
+
+
+def _travels_rad(robots: RobotArrays) -> Floats:
+    """Angles beyond the ranges of hip and knee at which their bumpers are fully compressed."""
+    return np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])
 
 
 def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Floats:

@@ -25,8 +25,9 @@ def designs():
 
 def loads_by_mujoco(robots, control, calibration):
     """Stop torque, stop energy, foot force, gear torques and chain pull of one jump, from a plain loop."""
-    stop = foot = energy = pull = 0.0
-    gear = np.zeros(2)
+    foot = energy = pull = 0.0
+    stop, gear, beyond = np.zeros(2), np.zeros(2), np.zeros(2)
+    ends = [(stop.lower_rad, stop.upper_rad) for stop in (robots.stops.hip, robots.stops.knee)]
     rotor, ratio = robots.rotor_inertia_kg_m2[0], robots.ratio[0]
     absolute = calibration.joints.rotors == "absolute"
     for moment in moments(robots, control, calibration):
@@ -35,7 +36,9 @@ def loads_by_mujoco(robots, control, calibration):
         _, limits, force = constraint_forces(moment.data)
         limits = limits[2:]
         change = (moment.after.qvel - moment.qvel) / STEP
-        stop, foot = max(stop, np.abs(limits).max()), max(foot, np.hypot(force[0], force[1]))
+        stop, foot = np.maximum(stop, np.abs(limits)), max(foot, np.hypot(force[0], force[1]))
+        for k, (lower, upper) in enumerate(ends):
+            beyond[k] = max(beyond[k], lower - moment.qpos[2 + k], moment.qpos[2 + k] - upper)
         energy -= float(limits @ (0.5 * (moment.qvel[2:] + moment.after.qvel[2:]))) * STEP
         motor = np.array([change[2], change[3]]) * ratio + [0.0, change[2] if absolute else 0.0]
         torque = moment.record["motor_torque_n_m"]
@@ -46,7 +49,12 @@ def loads_by_mujoco(robots, control, calibration):
             before = robots.armature_kg_m2[0, 1] * change[3]
         pull = max(pull, abs(moment.data.ctrl[1] - before) / robots.sprocket_radius_m[0])
     return {
-        "peak_stop_torque_n_m": stop,
+        "peak_stop_torque_n_m": stop.max(),
+        "peak_stop_torque_hip_n_m": stop[0],
+        "peak_stop_torque_knee_n_m": stop[1],
+        # A bumper has given all it can when it is squeezed to half of its diameter.
+        "stop_compression_hip": beyond[0] * robots.stops.hip.lever_mm / (0.5 * robots.stops.hip.bumper.diameter_mm),
+        "stop_compression_knee": beyond[1] * robots.stops.knee.lever_mm / (0.5 * robots.stops.knee.bumper.diameter_mm),
         "stop_energy_j": energy,
         "peak_foot_force_n": foot,
         "peak_gear_torque_hip_n_m": gear[0],

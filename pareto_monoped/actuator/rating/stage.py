@@ -151,7 +151,7 @@ class Stage:
         parts = self.settings.parts
         return self._loads(width_mm, max(parts.rating.overload_factor, highest_share(parts.duty)), moving=False)
 
-    def _loads(self, width_mm: Numbers, factor: float, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
+    def _loads(self, width_mm: Numbers, factor: Numbers, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
         """Loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
         data, materials = self.settings.parts.rating, self.settings.materials
         meshes = (self.sun_mesh, self.ring_mesh)
@@ -213,6 +213,15 @@ class Stage:
             for carried, duty, over in zip(self.carried, self.loads(width_mm), self.overloads(width_mm), strict=True)
         ]
         return Safeties(*map(np.minimum, *both))
+
+    def static_safeties(self, width_mm: Numbers, share: Numbers) -> tuple[Numbers, Numbers]:
+        """The least static S_H and S_F under a single event of ``share`` times the peak torque."""
+        both = [
+            safeties_of(carried, acting(over, over))
+            for carried, over in zip(self.carried, self._loads(width_mm, share, moving=False), strict=True)
+        ]
+        least = Safeties(*map(np.minimum, *both))
+        return least.overload_flank, least.overload_root
 
 
 def acting(duty: MeshLoad, over: MeshLoad) -> Safeties:

@@ -1,0 +1,7 @@
+"""The table of joints: every row of the strength check, in the order of ``strength.csv``."""
+
+from pareto_monoped.strength import gears
+from pareto_monoped.strength.joint import ActuatorJoint, LegJoint
+
+TABLE: tuple[ActuatorJoint | LegJoint, ...] = (*gears.JOINTS,)
+"""All rows. A module with joints of its own adds its tuple here."""
