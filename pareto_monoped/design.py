@@ -256,8 +256,8 @@ PAPER_MOTOR = "VT8020"
 RuleSet = Literal["paper", "iso6336"]
 """Names of the sets of rules that gearboxes are chosen by: see ``actuator.settings.ActuatorSettings``."""
 RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
-DEFAULT_RULES: RuleSet = "paper"
-"""The rules of every command and study file that names none."""
+DEFAULT_RULES: RuleSet = "iso6336"
+"""The rules of every command and study file that names none. What is stored without rules was made with ``paper``."""
 HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
 """Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
 GRAVITY_M_PER_S2 = 9.81

@@ -65,7 +65,7 @@ def objective(start: Calibration) -> Callable[[Floats], float]:
     of copies that do not jump. The worst over ``LINK_SCALES`` counts: the foot of the literal model chatters, and how
     it does can change within a few grams; a fit must not lie on or beside such a place.
     """
-    actuators = map_for(PAPER_MOTOR)
+    actuators = map_for(PAPER_MOTOR, "paper")
 
     def value(numbers: Floats) -> float:
         found = []
@@ -118,7 +118,7 @@ def write(calibration: Calibration, path: Path) -> None:
 
 def show(calibration: Calibration) -> None:
     """Print the fitted numbers and, per case, medians, errors and percentiles."""
-    spreads = paper_spreads(map_for(PAPER_MOTOR), calibration)
+    spreads = paper_spreads(map_for(PAPER_MOTOR, "paper"), calibration)
     for key in FITTED:
         print(f"{key} = {_current(calibration, key)!r}")
     print("| case | height m | paper | off | 5 to 95 % | energy J | paper | off | 5 to 95 % |")

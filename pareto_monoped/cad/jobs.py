@@ -41,7 +41,7 @@ class Job:
     design: Design
     motor: Motor
     calibration: Calibration
-    rules: RuleSet = "paper"
+    rules: RuleSet = DEFAULT_RULES
     folder: Path
     formats: tuple[str, ...] = FORMATS
     force: bool = False

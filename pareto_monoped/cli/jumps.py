@@ -205,9 +205,14 @@ def table1(as_json: bool) -> None:
     Simulated under the calibrations `paper` and `reference`.
     """
     from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.jump.calibration import rules_for
     from pareto_monoped.jump.table1 import table1 as rows_of
 
-    rows = rows_of(map_for(PAPER_MOTOR))
+    paper, reference = (map_for(PAPER_MOTOR, rules_for(name)) for name in ("paper", "reference"))
+    ratios = sorted({ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)})
+    for note in filter(None, map(reference.stand_in, ratios)):
+        click.echo(f"note: reference: {note}", err=True)
+    rows = rows_of(paper, reference)
     if as_json:
         click.echo(json.dumps([row.as_dict() for row in rows], indent=2))
     else:

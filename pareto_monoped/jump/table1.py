@@ -56,17 +56,20 @@ class Row:
         return asdict(self)
 
 
-def table1(actuator_map: ActuatorMap, *, workers: int = 1, seed: int = 0) -> tuple[Row, ...]:
+def table1(
+    paper_map: ActuatorMap, reference_map: ActuatorMap, *, workers: int = 1, seed: int = 0
+) -> tuple[Row, ...]:
     """The four cases of Table I.
 
     Args:
-        actuator_map: the gearboxes of the paper's motor.
+        paper_map: the gearboxes of the paper's motor for the calibration ``paper``.
+        reference_map: those for ``reference``.
         workers: threads.
         seed: of the perturbations.
     """
-    spreads = paper_spreads(actuator_map, load_calibration("paper"), workers=workers, seed=seed)
+    spreads = paper_spreads(paper_map, load_calibration("paper"), workers=workers, seed=seed)
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
-    reference = Evaluator(actuator_map, load_calibration("reference"), workers)(designs)
+    reference = Evaluator(reference_map, load_calibration("reference"), workers)(designs)
     return tuple(
         Row(
             case=case.name,

@@ -68,7 +68,7 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.table1 import paper_spreads
 
-    spreads = paper_spreads(map_for("VT8020"), load_calibration("paper"), perturbations=40)
+    spreads = paper_spreads(map_for("VT8020", "paper"), load_calibration("paper"), perturbations=40)
     return tuple({k: v if isfinite(v) else None for k, v in asdict(spread).items()} for spread in spreads)
 
 

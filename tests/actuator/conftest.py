@@ -7,7 +7,7 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 
 @pytest.fixture(scope="session")
 def settings():
-    return ActuatorSettings()
+    return ActuatorSettings(rules="paper")
 
 
 @pytest.fixture(scope="session")
@@ -17,4 +17,4 @@ def vt8020():
 
 @pytest.fixture(scope="session")
 def vt_map():
-    return map_for("VT8020")
+    return map_for("VT8020", "paper")

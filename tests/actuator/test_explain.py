@@ -9,7 +9,7 @@ from pareto_monoped.actuator.service.sheet import service_sheet
 
 @pytest.fixture(scope="module")
 def actuator_map():
-    return map_for("VT8020")
+    return map_for("VT8020", "paper")
 
 
 def test_gaps_are_the_intervals_without_a_gearbox(actuator_map):
@@ -21,7 +21,7 @@ def test_gaps_are_the_intervals_without_a_gearbox(actuator_map):
 
 
 def test_separate_gaps_stay_separate():
-    below, above = gaps(map_for("MAD_M6C12"))
+    below, above = gaps(map_for("MAD_M6C12", "paper"))
     assert (below.ratio_low, round(below.ratio_high, 9)) == (4.0, 4.3)
     assert (above.ratio_low, round(above.ratio_high, 9)) == (7.1, 15.0)
 

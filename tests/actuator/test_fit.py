@@ -121,7 +121,7 @@ def test_interfaces_do_not_depend_on_the_gear_set(name):
 
 
 def test_faces_and_bearings_are_where_they_must_be():
-    found = map_for("VT8020")
+    found = map_for("VT8020", "paper")
     for ratio in (4.0, 6.0, 7.0, 8.7):
         actuator = found.lookup(ratio)
         parts = {part.name: part for part in actuator.parts}

@@ -192,7 +192,7 @@ def test_far_from_every_gearbox_nothing_stands_in():
     with pytest.raises(DesignError, match=r"no gearbox in .*would help"):
         found.lookup(max(e.actuator.ratio for e in found.entries if e.actuator) + STAND_IN_WITHIN + 0.2)
     assert found.interval_index([3.9, np.nan, 14.9, 15.1]).tolist() == [-1] * 4
-    paper = map_for("VT8020")
+    paper = map_for("VT8020", "paper")
     assert paper.interval_index([9.0, 8.85]).tolist() == [-1, -1]
     assert paper.stand_in(9.0) == ""
 

@@ -46,7 +46,7 @@ def test_the_ends_of_the_map_are_rounded_in_the_same_way(vt_map):
 
 @given(ratio=st.floats(4.0, 8.7999))
 def test_the_real_ratio_lies_in_the_interval_asked_for(ratio):
-    found = map_for("VT8020")
+    found = map_for("VT8020", "paper")
     index = int(found.interval_index([ratio])[0])
     entry = found.entries[index]
     real = entry.actuator.ratio

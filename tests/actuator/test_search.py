@@ -37,9 +37,9 @@ def test_the_papers_gear_sets_are_the_lightest_of_their_intervals(vt_map, ratio,
 @pytest.mark.parametrize(
     "changed",
     [
-        ActuatorSettings(bearings="regression"),
-        ActuatorSettings(modules_mm=ISO_54_SERIES_1_MM),
-        ActuatorSettings(modules_mm=(0.5,)),
+        ActuatorSettings(rules="paper", bearings="regression"),
+        ActuatorSettings(rules="paper", modules_mm=ISO_54_SERIES_1_MM),
+        ActuatorSettings(rules="paper", modules_mm=(0.5,)),
     ],
     ids=["regression", "first series", "module 0.5"],
 )
@@ -52,9 +52,9 @@ def test_the_papers_gear_sets_do_not_hang_on_bearing_model_or_series(vt8020, cha
 
 def test_without_the_rings_rim_a_larger_module_wins_at_4(vt8020):
     """The term that decides for 30/30/90 x5: with module 0.7 the ring's wall would be 2.3 modules thick."""
-    actuator = build_map(vt8020, ActuatorSettings(constraints_off=frozenset({"ring_rim"}))).lookup(4.0)
+    actuator = build_map(vt8020, ActuatorSettings(rules="paper", constraints_off=frozenset({"ring_rim"}))).lookup(4.0)
     assert actuator.gears.module_mm > 0.5
-    assert actuator.mass_kg > 0.98 * build_map(vt8020).lookup(4.0).mass_kg
+    assert actuator.mass_kg > 0.98 * build_map(vt8020, ActuatorSettings(rules="paper")).lookup(4.0).mass_kg
 
 
 def test_families_end_and_change_where_the_paper_says(vt_map):
@@ -169,12 +169,12 @@ def test_binding_constraints_are_those_that_keep_a_lighter_set_out(vt8020, vt_ma
     entry = vt_map.entries[0]
     assert "ring_rim" in entry.binding
     for name in entry.binding:
-        relaxed = build_map(vt8020, ActuatorSettings(constraints_off=frozenset({name}))).entries[0]
+        relaxed = build_map(vt8020, ActuatorSettings(rules="paper", constraints_off=frozenset({name}))).entries[0]
         assert relaxed.actuator.mass_kg < entry.actuator.mass_kg
     free = [name for name in ("planet_rim", "contact_ratio", "ring_root") if name not in entry.binding]
     assert free
     for name in free:
-        relaxed = build_map(vt8020, ActuatorSettings(constraints_off=frozenset({name}))).entries[0]
+        relaxed = build_map(vt8020, ActuatorSettings(rules="paper", constraints_off=frozenset({name}))).entries[0]
         assert relaxed.actuator.mass_kg == entry.actuator.mass_kg
 
 
@@ -183,7 +183,7 @@ def test_forbidding_constraints_open_the_interval_when_off(vt8020, vt_map):
     entry = vt_map.entries[53]
     assert entry.actuator is None
     assert entry.forbidden_by["ESSPG"] == ("sun_rim",)
-    open_map = build_map(vt8020, ActuatorSettings(constraints_off=frozenset({"sun_rim"})))
+    open_map = build_map(vt8020, ActuatorSettings(rules="paper", constraints_off=frozenset({"sun_rim"})))
     assert open_map.lookup(9.3).gears.sun_teeth < 20
     assert "ring_root" in vt_map.entries[48].forbidden_by["ESSPG"]
 

@@ -4,8 +4,13 @@ from pareto_monoped.actuator.settings import ActuatorSettings, default_parts
 from pareto_monoped.errors import InputError
 
 
-def test_defaults_are_the_papers_limits():
-    settings = ActuatorSettings()
+def test_design_is_by_iso_6336_with_three_planets_unless_asked_otherwise():
+    assert ActuatorSettings().rules == "iso6336"
+    assert ActuatorSettings().planets_least == 3
+
+
+def test_the_rules_paper_have_the_papers_limits():
+    settings = ActuatorSettings(rules="paper")
     assert (settings.planets_least, settings.planets_max, settings.teeth_min) == (2, 7, 18)
     assert (settings.planet_gap_mm, settings.diameter_clearance_mm) == (5.0, 10.0)
     assert min(settings.modules_mm) == 0.5

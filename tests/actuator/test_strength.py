@@ -8,7 +8,7 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm, lewis_form_factor, velocity_factor
 
 MOTOR = load_motor("VT8020")
-SETTINGS = ActuatorSettings()
+SETTINGS = ActuatorSettings(rules="paper")
 
 
 def gears(sun=18, planet=36, module=0.5, planets=3):

@@ -50,8 +50,8 @@ def test_a_front_is_exported_in_its_order_each_n_th_from_the_first(data, tmp_pat
 def test_a_row_of_table_1_has_the_paper_s_motor_and_the_reference_calibration(tmp_path):
     job = case_job("B", folder=tmp_path, hip_rad=0.1, knee_rad=0.2)
     assert job.design == PAPER_CASES["B"].design
-    assert (job.motor.name, job.calibration.name, job.rules) == ("VT8020", "reference", "paper")
-    assert case_job("B", folder=tmp_path, rules="iso6336").rules == "iso6336"
+    assert (job.motor.name, job.calibration.name, job.rules) == ("VT8020", "reference", "iso6336")
+    assert case_job("B", folder=tmp_path, rules="paper").rules == "paper"
     assert (job.hip_rad, job.knee_rad, job.formats) == (0.1, 0.2, FORMATS)
     with pytest.raises(InputError, match="format 'dwg'"):
         case_job("B", folder=tmp_path, formats=["dwg"])

@@ -113,9 +113,9 @@ def test_what_is_physically_certain_holds_for_random_designs(evaluator):
 def test_peaks_respect_the_motor(evaluator):
     designs = random_designs(20, seed=6)
     result = evaluator(designs)
-    # 5.5 N m times a ratio that is at most the interval's upper end
-    assert np.all(result.peak_torque_knee_n_m <= 5.5 * (designs[:, 2] + 0.1))
-    assert np.all(result.peak_torque_hip_n_m <= 5.5 * (designs[:, 3] + 0.1))
+    ratios = robot_arrays(designs, evaluator.actuator_map).ratio
+    assert np.all(result.peak_torque_knee_n_m <= 5.5 * ratios[:, 1] + 1e-9)
+    assert np.all(result.peak_torque_hip_n_m <= 5.5 * ratios[:, 0] + 1e-9)
 
 
 def test_bits_do_not_depend_on_batch_order_or_workers(evaluator):

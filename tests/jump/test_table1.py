@@ -13,7 +13,7 @@ from pareto_monoped.jump.table1 import paper_spreads, table1
 
 @pytest.fixture(scope="module")
 def rows():
-    return {row.case: row for row in table1(map_for("VT8020"), workers=2)}
+    return {row.case: row for row in table1(map_for("VT8020", "paper"), map_for("VT8020"), workers=2)}
 
 
 @pytest.mark.parametrize("case", PAPER_CASES)
@@ -51,7 +51,7 @@ def test_rows_are_plain_values(rows):
 @pytest.mark.parametrize("count", [4, 5])
 def test_medians_of_an_even_and_of_an_odd_number_of_copies(count):
     """An even number has its median halfway between the two in the middle."""
-    actuator_map, calibration = map_for("VT8020"), load_calibration("paper")
+    actuator_map, calibration = map_for("VT8020", "paper"), load_calibration("paper")
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
     copies = perturbed(designs, count, np.random.default_rng(8))
     copies[::count] = designs
@@ -69,7 +69,7 @@ def test_medians_of_an_even_and_of_an_odd_number_of_copies(count):
 
 
 def test_copies_that_do_not_jump_are_left_out_and_counted():
-    actuator_map, calibration = map_for("VT8020"), load_calibration("paper")
+    actuator_map, calibration = map_for("VT8020", "paper"), load_calibration("paper")
     never = replace(calibration, simulation=replace(calibration.simulation, time_limit_s=0.1))
     for spread in paper_spreads(actuator_map, never, perturbations=2):
         assert spread.jumped_share == 0.0
