@@ -209,7 +209,9 @@ def table1(as_json: bool) -> None:
     from pareto_monoped.jump.table1 import table1 as rows_of
 
     paper, reference = (map_for(PAPER_MOTOR, rules_for(name)) for name in ("paper", "reference"))
-    ratios = sorted({ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)})
+    ratios = sorted(
+        {ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)}
+    )
     for note in filter(None, map(reference.stand_in, ratios)):
         click.echo(f"note: reference: {note}", err=True)
     rows = rows_of(paper, reference)

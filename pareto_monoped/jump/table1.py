@@ -56,9 +56,7 @@ class Row:
         return asdict(self)
 
 
-def table1(
-    paper_map: ActuatorMap, reference_map: ActuatorMap, *, workers: int = 1, seed: int = 0
-) -> tuple[Row, ...]:
+def table1(paper_map: ActuatorMap, reference_map: ActuatorMap, *, workers: int = 1, seed: int = 0) -> tuple[Row, ...]:
     """The four cases of Table I.
 
     Args:

@@ -107,7 +107,10 @@ def test_contact_stress_of_the_published_sets_as_measured_apart(sun, planet, pla
     """
     motor = load_motor("VT8020")
     one = gears(sun, planet, 0.5, planets)
-    mesh, width = build_stage(one, motor, "ESSPG", SETTINGS).sun_mesh, face_width_mm(one, motor, ActuatorSettings(rules="paper"))
+    mesh, width = (
+        build_stage(one, motor, "ESSPG", SETTINGS).sun_mesh,
+        face_width_mm(one, motor, ActuatorSettings(rules="paper")),
+    )
     factors = 1.25 * 1.1 * 1.3 * (1.35 if planets == 5 else 1.0)
     for load, expected in ((1.0, bare_mpa), (factors, with_factors_mpa)):
         stress = contact_stress_mpa(
