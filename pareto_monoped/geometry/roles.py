@@ -30,6 +30,7 @@ class Role(StrEnum):
     FOOT = "foot"
     BUMPER = "bumper"  # of an end stop, soft
     STRIKER = "striker"  # what meets a bumper
+    ELECTRONICS = "electronics"  # drivers, sensors and their magnets
     MOTOR_STATOR = "motor stator"
     MOTOR_ROTOR = "motor rotor"
 

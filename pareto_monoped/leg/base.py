@@ -9,6 +9,7 @@ from pareto_monoped.geometry.screws import M3, M4, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
 from pareto_monoped.leg.bearing import LIP, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.electronics import DRIVER_PLATE_MM, driver_parts
 from pareto_monoped.leg.journal import far_cheek_z_mm
 from pareto_monoped.leg.sandwich import Place, holes_at
 from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
@@ -36,7 +37,14 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Part,
         d: dimensions.
     """
     far_mm = far_cheek_z_mm(knee_actuator_length_m, d)
-    return (*_near_cheek(d), *_far_cheek(far_mm, d), *_rods(far_mm, d), *base_stop_parts(d))
+    return (
+        *_near_cheek(d),
+        *_far_cheek(far_mm, d),
+        *_rods(far_mm, d),
+        *base_stop_parts(d),
+        *driver_parts("hip", d.hip_mount_mm, -1.0, d),
+        *driver_parts("knee", far_mm + d.far_cheek_mm, 1.0, d),
+    )
 
 
 def _rod_places(d: LegDimensions) -> tuple[Place, ...]:
@@ -138,6 +146,7 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """The rods between the cheeks' inner faces, with a screw at either end."""
     places = _rod_places(d)
+    lower, upper = places[:2], places[2:]
     near_mm = d.hip_mount_mm + d.cheek_mm
     thread = Circle(radius_mm=M4.core)
     return (
@@ -154,20 +163,25 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         *(
             screw_part(
-                f"base_rod_screw_{side}",
+                f"base_{row}_rod_screw_{side}",
                 M4,
                 visibility=Visibility.OUTSIDE,
                 head="cap",
-                seat_mm=seat_mm,
-                grip_mm=grip_mm,
+                seat_mm=seat_mm - direction * under_mm,
+                grip_mm=grip_mm + under_mm,
                 room_mm=_ROD_THREAD,
                 direction=direction,
                 material=MATERIALS.steel,
-                places_mm=places,
+                places_mm=where,
+                note=note,
             )
             for side, seat_mm, grip_mm, direction in (
                 ("near", d.hip_mount_mm, d.cheek_mm, 1.0),
                 ("far", far_mm + d.far_cheek_mm, d.far_cheek_mm, -1.0),
+            )
+            for row, where, under_mm, note in (
+                ("lower", lower, 0.0, ""),
+                ("upper", upper, DRIVER_PLATE_MM, "through the driver's plate and the cheek"),
             )
         ),
     )

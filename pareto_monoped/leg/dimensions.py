@@ -17,6 +17,7 @@ from pareto_monoped.actuator.bearings import small_bearing
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.errors import DesignError
 from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
+from pareto_monoped.leg.motor_drivers import MotorDriver, motor_driver_for
 
 _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into the axle, cables through the journal
@@ -42,6 +43,8 @@ class LegDimensions:
         back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
             their diameter.
         chain: the thigh's chain and its sprockets.
+        driver: the motor driver on either cheek of the base.
+        driver_note: what the parts list says beside its name: that it limits the motor, where it does.
         bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base.
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
@@ -73,6 +76,8 @@ class LegDimensions:
     back_holes: int
     back_screw_mm: float
     chain: ChainDrive
+    driver: MotorDriver
+    driver_note: str
     bearing_bore_radius_mm: float
     bearing_outer_radius_mm: float
     bearing_width_mm: float
@@ -175,6 +180,8 @@ def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
         )
     mount, output = actuators[0].mount, actuators[0].output
     bearing = small_bearing(_BEARING_BORE_MM)
+    motor = actuator_map.motor
+    driver = motor_driver_for(motor)
     return LegDimensions(
         mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
         mount_holes=mount.bolts.count,
@@ -188,6 +195,8 @@ def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
         back_holes=mount.back_bolts.count,
         back_screw_mm=mount.back_bolts.diameter_mm,
         chain=chain_drive_for(max(actuator.peak_torque_n_m for actuator in actuators)),
+        driver=driver,
+        driver_note="" if driver.carries(motor) else f"; {driver.limit(motor)}",
         bearing_bore_radius_mm=0.5 * float(bearing.inner_diameter_mm),
         bearing_outer_radius_mm=0.5 * float(bearing.outer_diameter_mm),
         bearing_width_mm=float(bearing.width_mm),

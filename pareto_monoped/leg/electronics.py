@@ -1,0 +1,168 @@
+"""The motor drivers on the base: a plate on the outside of either cheek, under the upper rods' screws, carries a board.
+
+Each driver stands on the side of its motor. The knee motor's cables come through the journal, on the hip axis, where
+the thigh's swing only twists them. Cable ties hold them to the driver's plate and to the rods.
+"""
+
+import numpy as np
+
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Role, Visibility
+from pareto_monoped.geometry.screws import M4, screw_part
+from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
+from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.outlines import rounded
+from pareto_monoped.leg.sandwich import Place, holes_at
+from pareto_monoped.materials import ALLOYS, MATERIALS
+
+DRIVER_PLATE_MM = 2.0
+"""Thickness of a driver's plate, the least for a flush countersunk M3; our own choice."""
+# Our own layout, mm.
+_STANDOFF = 8.0  # length, as sold; above the 4 mm high heads of the rods' screws
+_STANDOFF_RADIUS = 2.75  # a disc within its hexagon of 5.5 mm across flats
+_THREAD = 4.0  # of either screw in a standoff
+_BOARD = 1.6  # thickness of a circuit board
+_ABOVE_ROD = 8.0  # from the upper rods to the board's lower holes: 1.5 mm between a head and a standoff
+_RIM = 5.0  # of the plate around holes
+_BELOW_ROD = 7.0  # the same below the upper rods
+_FRAME = 5.5  # half the width of the plate's sides, around the window in it
+_CORNER = 4.0  # radius of plate and window
+_TIE_HOLE = 1.75  # radius: for ties of 2.5 mm
+_TIES_X = (6.0, 12.0)  # of the holes for a tie in the plate's upper side
+_CLEAR_OF_HOLES = 4.0  # from the board's holes to what stands on it
+
+
+def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:
+    """The driver of one motor on the outside of a cheek, in the frame of the base.
+
+    Args:
+        motor: whose driver it is, ``hip`` or ``knee``: the parts' names begin with it.
+        face_mm: height z of the cheek's outer face, float or shape (n,).
+        direction: outwards along z, -1 or 1.
+        d: dimensions.
+    """
+    driver, holes = d.driver, _hole_places(d)
+    back, under = face_mm + direction * DRIVER_PLATE_MM, face_mm + direction * (DRIVER_PLATE_MM + _STANDOFF)
+    over = under + direction * _BOARD
+    return (
+        Part(
+            name=f"{motor}_driver_plate",
+            role=Role.BRACKET,
+            material=MATERIALS.aluminium,
+            process="laser cut",
+            prisms=(_between(_plate_outline(d), face_mm, back, *_plate_holes(d)),),
+            grade=ALLOYS["aw_6082_t6"],
+            note=f"{DRIVER_PLATE_MM:g} mm sheet; countersink the board's holes on the cheek's side; "
+            "cable ties through the upper holes",
+        ),
+        screw_part(
+            f"{motor}_standoff_screw",
+            driver.screw,
+            head="countersunk",
+            seat_mm=face_mm,
+            grip_mm=DRIVER_PLATE_MM,
+            room_mm=_THREAD,
+            direction=direction,
+            material=MATERIALS.steel,
+            places_mm=holes,
+            note="flush, into the standoff",
+        ),
+        Part(
+            name=f"{motor}_standoff",
+            role=Role.SPACER,
+            visibility=Visibility.DETAIL,
+            material=MATERIALS.aluminium,
+            process="bought",
+            prisms=(_between(Circle(radius_mm=_STANDOFF_RADIUS), back, under, Circle(radius_mm=driver.screw.core)),),
+            places_mm=holes,
+            note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
+        ),
+        _board(motor, under, over, direction, d),
+        screw_part(
+            f"{motor}_driver_screw",
+            driver.screw,
+            head="cap",
+            seat_mm=over,
+            grip_mm=_BOARD,
+            room_mm=_THREAD,
+            direction=-direction,
+            material=MATERIALS.steel,
+            places_mm=holes,
+            note="through the board into the standoff",
+        ),
+    )
+
+
+def _between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -> Prism:
+    """A prism between two heights in either order."""
+    low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
+    return Prism(outline=outline, z0_mm=low, z1_mm=high, holes=holes)
+
+
+def _lower_row_mm(d: LegDimensions) -> float:
+    """Height y of the board's lower holes."""
+    return d.upper_rod_mm[1] + _ABOVE_ROD
+
+
+def _hole_places(d: LegDimensions) -> tuple[Place, ...]:
+    """The board's four mounting holes."""
+    x, low = 0.5 * d.driver.hole_width_mm, _lower_row_mm(d)
+    return tuple((side * x, y, 0.0) for y in (low, low + d.driver.hole_length_mm) for side in (-1.0, 1.0))
+
+
+def _plate_outline(d: LegDimensions) -> Shape:
+    """A rectangle around the board's holes and the upper rods."""
+    rod_x, rod_y = d.upper_rod_mm
+    return rounded(
+        half_width_mm=max(0.5 * d.driver.hole_width_mm, rod_x) + _RIM,
+        high_mm=_lower_row_mm(d) + d.driver.hole_length_mm + _RIM,
+        low_mm=rod_y - _BELOW_ROD,
+        corner_mm=_CORNER,
+    )
+
+
+def _plate_holes(d: LegDimensions) -> tuple[Shape, ...]:
+    """For the rods' screws, the standoffs' screws and cable ties, and the window that lightens the plate."""
+    rod_x, rod_y = d.upper_rod_mm
+    low, high = _lower_row_mm(d), _lower_row_mm(d) + d.driver.hole_length_mm
+    ties = tuple((side * x, high, 0.0) for x in _TIES_X for side in (-1.0, 1.0))
+    window = rounded(
+        half_width_mm=0.5 * d.driver.hole_width_mm - _FRAME,
+        high_mm=high - _FRAME,
+        low_mm=low + _FRAME,
+        corner_mm=_CORNER,
+    )
+    return (
+        window,
+        *holes_at(((-rod_x, rod_y, 0.0), (rod_x, rod_y, 0.0)), M4.hole),
+        *holes_at(_hole_places(d), d.driver.screw.hole),
+        *holes_at(ties, _TIE_HOLE),
+    )
+
+
+def _board(motor: str, under_mm: Numbers, over_mm: Numbers, direction: float, d: LegDimensions) -> Part:
+    """The driver: a bare board, and a block for what stands on it between the rows of its screws."""
+    driver = d.driver
+    middle = _lower_row_mm(d) + 0.5 * driver.hole_length_mm
+    block = driver.hole_length_mm - 2.0 * _CLEAR_OF_HOLES
+    return Part(
+        name=f"{motor}_driver",
+        role=Role.ELECTRONICS,
+        material=MATERIALS.electronics,
+        process="bought",
+        prisms=(
+            _between(
+                rectangle(width_mm=driver.width_mm, height_mm=driver.length_mm, y_mm=middle),
+                under_mm,
+                over_mm,
+                *holes_at(_hole_places(d), driver.screw.hole),
+            ),
+            _between(
+                rectangle(width_mm=driver.width_mm, height_mm=block, y_mm=middle),
+                over_mm,
+                over_mm + direction * (driver.height_mm - _BOARD),
+            ),
+        ),
+        catalogue_mass_kg=driver.mass_kg,
+        note=f"motor driver {driver.name}, bare board{d.driver_note}",
+    )

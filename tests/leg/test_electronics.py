@@ -1,0 +1,73 @@
+"""The motor drivers on the base: the choice of the board, and its place."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.leg.base import base_parts
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.motor_drivers import MOTOR_DRIVERS, motor_driver_for, peak_current_a
+
+MOTEUS, ODRIVE = MOTOR_DRIVERS
+
+
+def boards(leg):
+    return {part.name: part for part in base_parts(0.09, leg) if part.role is Role.ELECTRONICS}
+
+
+def test_holes_are_those_of_the_published_mounts():
+    # Published from the motor's axis: 23 and 15 mm up and down, 20 mm to the sides; 29, 13 and 22.5 mm.
+    assert (MOTEUS.hole_length_mm, MOTEUS.hole_width_mm) == (23.0 + 15.0, 2 * 20.0)
+    assert (ODRIVE.hole_length_mm, ODRIVE.hole_width_mm) == (29.0 + 13.0, 2 * 22.5)
+
+
+def test_peak_current_is_the_amplitude_that_gives_the_peak_torque():
+    # Three sinusoidal currents in phase with the induced voltages, whose amplitude is k_t w / sqrt(3): the mean over a
+    # turn of the sum of voltage times current, over the speed, is the torque.
+    motor = load_motor("VT8020")
+    angle = np.linspace(0.0, 2.0 * np.pi, 3600, endpoint=False)[:, None] - 2.0 * np.pi / 3.0 * np.arange(3)
+    voltage_per_speed = motor.torque_constant_n_m_per_a / np.sqrt(3.0) * np.sin(angle)
+    torque = np.mean(np.sum(voltage_per_speed * peak_current_a(motor) * np.sin(angle), axis=1))
+    assert torque == pytest.approx(motor.peak_torque_n_m)
+
+
+@pytest.mark.parametrize(
+    ("name", "driver", "carried"),
+    [
+        ("U8", MOTEUS, True),  # 24 V, 40 A
+        ("VT8020", ODRIVE, True),  # 48 V is too much for the lighter board
+        ("U12", ODRIVE, False),  # 158 A at its peak torque
+    ],
+)
+def test_the_lightest_board_that_carries_the_motor_is_chosen(name, driver, carried):
+    motor = load_motor(name)
+    assert motor_driver_for(motor) is driver
+    assert driver.carries(motor) is carried
+
+
+def test_a_board_that_limits_its_motor_says_so_in_the_parts_list():
+    notes = {part.note for part in boards(leg_dimensions(map_for("U12"))).values()}
+    assert notes == {
+        "motor driver ODrive Pro, bare board; gives 120 A of the 158 A that U12 takes at its peak torque, and so 76% "
+        "of that torque"
+    }
+    high = dataclasses.replace(load_motor("VT8020"), rated_voltage_v=60.0)
+    assert ODRIVE.limit(high) == "takes 58 V, less than the 60 V of VT8020"
+
+
+@pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
+def test_each_joint_s_board_stands_outside_its_cheek(leg, driver):
+    parts = base_parts(0.09, dataclasses.replace(leg, driver=driver))
+    cheeks = {part.name: part.prisms for part in parts if part.name.endswith("_cheek")}
+    found = {part.name: part for part in parts if part.role is Role.ELECTRONICS}
+    assert sorted(found) == ["hip_driver", "knee_driver"]
+    assert max(p.z1_mm for p in found["hip_driver"].prisms) < min(p.z0_mm for p in cheeks["base_near_cheek"])
+    assert min(p.z0_mm for p in found["knee_driver"].prisms) > max(p.z1_mm for p in cheeks["base_far_cheek"])
+    for part in found.values():
+        heights = [z for prism in part.prisms for z in (prism.z0_mm, prism.z1_mm)]
+        assert max(heights) - min(heights) == pytest.approx(driver.height_mm)
+        assert part.mass_kg() == driver.mass_kg
