@@ -141,6 +141,7 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
     if chosen != data.study.objectives:
         unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
         click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
+    _say_of_strength(data)
     rows = rows[shown_columns(data.trials, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
@@ -151,6 +152,14 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
         click.echo(json.dumps(rows.to_dict(orient="records"), indent=2))
     elif csv_file is None:
         _print_table(rows, chosen)
+
+
+def _say_of_strength(data: "StudyData") -> None:
+    """Say that designs may not hold, where a study did not ask for it."""
+    from pareto_monoped.study.definition import NO_STRENGTH
+
+    if not data.study.strength:
+        click.echo(f"note: {NO_STRENGTH}", err=True)
 
 
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
@@ -207,6 +216,7 @@ def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
     data = read_study(db)
     rows, names = data.front(), shown_columns(data.trials, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
+    _say_of_strength(data)
     row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
     if as_json:
         click.echo(json.dumps(row | {"why": picked.why}, indent=2))

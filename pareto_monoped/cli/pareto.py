@@ -23,8 +23,14 @@ if TYPE_CHECKING:
 @click.option("--db", type=click.Path(path_type=Path), help="Study database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold.")
 def pareto(
-    study_file: Path, output: Path | None, db: Path | None, evaluations: int | None, workers: int | None
+    study_file: Path,
+    output: Path | None,
+    db: Path | None,
+    evaluations: int | None,
+    workers: int | None,
+    no_strength: bool,
 ) -> None:
     """Do the main job: actuator map, two fronts, knee design, its CAD, report.
 
@@ -38,7 +44,7 @@ def pareto(
     from pareto_monoped.cad.made import is_made
     from pareto_monoped.pareto.pick import Knee, pick
     from pareto_monoped.study.choices import counterpart
-    from pareto_monoped.study.definition import load_study
+    from pareto_monoped.study.definition import NO_STRENGTH, load_study
     from pareto_monoped.study.reader import read_study
 
     study = load_study(study_file)
@@ -52,6 +58,7 @@ def pareto(
     steps.do("actuators", "--motor", study.motor, "--csv", table)
     options = [f"--evaluations={evaluations}"] if evaluations else []
     options += [f"--workers={workers}"] if workers else []
+    options += ["--no-strength"] if no_strength else []
     steps.do("run", study_file, "--db", db, *options)
     dbs = [db]
     if other is not None:
@@ -80,6 +87,8 @@ def pareto(
     if other is not None:
         _print_choices(studies)
     click.echo(f"Simulated with motor {study.motor}, calibration {study.calibration}.")
+    if not studies[0].study.strength:
+        click.echo(f"Note: {NO_STRENGTH}.")
     counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
     click.echo(f"Designs on the front: {counts}.")
 

@@ -43,6 +43,7 @@ _REASONS = {
 @click.option(
     "--objectives", metavar="A,B", help="Two or three measures, instead of the study's; needs a --db of its own."
 )
+@click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
 def run(
     study_file: Path,
     evaluations: int | None,
@@ -50,6 +51,7 @@ def run(
     workers: int | None,
     db: Path | None,
     objectives: str | None,
+    no_strength: bool,
 ) -> int:
     """Run a study, or continue it where it stopped.
 
@@ -59,7 +61,11 @@ def run(
     from pareto_monoped.study.goals import names_of
     from pareto_monoped.study.run import run as run_study
 
-    study = load_study(study_file, objectives=None if objectives is None else names_of(objectives))
+    study = load_study(
+        study_file,
+        objectives=None if objectives is None else names_of(objectives),
+        strength=False if no_strength else None,
+    )
     target = db or study_file.with_suffix(".db")
     with progress_reports() as progress:
         summary = run_study(
@@ -86,6 +92,7 @@ def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def status(db: Path, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
+    from pareto_monoped.study.definition import NO_STRENGTH
     from pareto_monoped.study.status import status as study_status
 
     facts = study_status(db)
@@ -100,6 +107,7 @@ def status(db: Path, as_json: bool) -> None:
         **({"gearbox rules": rules} if (rules := facts["settings"].get("rules")) else {}),
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
         "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
+        "strength": "every joint has its required factor" if facts["strength"] else NO_STRENGTH,
         "least height": f"{facts['settings']['constraints']['min_height_m']:g} m",
         **_other_limits(facts),
         "evaluations": f"{facts['evaluations']} of {facts['budget']}",
@@ -126,8 +134,15 @@ def _state(facts: dict[str, Any]) -> str:
 
 def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
     """The line on the limits besides the least height; none if there are no others."""
+    from pareto_monoped.strength.joint import GROUP_MEASURES
+
     limits: dict[str, float | None] = facts["settings"]["constraints"]
-    shown = [f"{key} {value:g}" for key, value in limits.items() if value is not None and key != "min_height_m"]
+    told = {"min_height_m": None, **(dict.fromkeys((f"min_{name}" for name in GROUP_MEASURES.values()), 1.0))}
+    shown = [
+        f"{key} {value:g}"
+        for key, value in limits.items()
+        if value is not None and not (key in told and told[key] in (None, value))
+    ]
     wrapped = textwrap.wrap(", ".join(shown), width=57)
     return {"other limits": ("\n" + " " * 23).join(wrapped)} if shown else {}
 
@@ -157,6 +172,8 @@ def _say(line: str) -> None:
 
 
 def _finish(summary: "RunSummary") -> int:
+    from pareto_monoped.study.definition import NO_STRENGTH
+
     _say(
         f"{summary.db}: {summary.evaluations} evaluations ({summary.new_evaluations} new, {summary.seconds:.1f} s), "
         f"{_REASONS[summary.stop_reason]}"
@@ -165,6 +182,8 @@ def _finish(summary: "RunSummary") -> int:
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
+    if not summary.strength:
+        _say(f"note: {NO_STRENGTH}")
     return 130 if summary.stop_reason == "interrupted" else 0
 
 

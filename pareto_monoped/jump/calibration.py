@@ -28,6 +28,7 @@ _STRICT = ConfigDict(extra="forbid")
 
 DEFAULT = "reference"
 _PAPER = "paper"
+_STRENGTH_BY_DEFAULT = False  # see ``strength_for``
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 # As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
@@ -366,6 +367,14 @@ def rules_for(
         allowed = f"'paper' with the calibration {_PAPER!r}, which is fitted with these gearboxes"
         raise error(complaint(key, asked, allowed, "drop it, or choose another calibration"))
     return "paper"
+
+
+def strength_for(calibration: str) -> bool:
+    """Whether a study under a calibration asks for strength unless its file says otherwise.
+
+    The calibration ``paper`` follows the paper's simulation, whose robot has no end stops.
+    """
+    return _STRENGTH_BY_DEFAULT and calibration != _PAPER
 
 
 def calibration_names() -> tuple[str, ...]:

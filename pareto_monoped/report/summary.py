@@ -9,6 +9,7 @@ from pareto_monoped.design import HEADLINE_HEIGHT_M, PAPER_CASES
 from pareto_monoped.pareto.at_height import best_at_height
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.schema import Case
+from pareto_monoped.study.definition import NO_STRENGTH
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
@@ -106,4 +107,6 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
             f"Heights simulated again for this page differ by up to {1000.0 * again.drift_m:.1f} mm from those stored: "
             "the code, a library version or the machine is not the one that the study ran with."
         )
+    if not data.study.strength:
+        lines.append(f"{NO_STRENGTH[0].upper()}{NO_STRENGTH[1:]}.")
     return lines

@@ -24,8 +24,8 @@ def make_algorithm(study: Study) -> Algorithm:
         case WeightedSettings() as settings:
             from pareto_monoped.study.weighted import WeightedSearch
 
-            nominal = PAPER_CASES["nominal"].design.as_dict()
-            start = np.array([settings.start.get(name, nominal[name]) for name in space.names])
+            nominal = PAPER_CASES["nominal"].design
+            start = np.array([settings.start.get(name, getattr(nominal, name)) for name in space.names])
             return WeightedSearch(space, settings, start, study.seed, study.reference_point)
         case RandomSettings() as settings:
             from pareto_monoped.study.random_search import RandomSearch

@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.jump.calibration import rules_for
+from pareto_monoped.jump.calibration import rules_for, strength_for
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.study.algorithm_settings import (
@@ -22,6 +22,9 @@ from pareto_monoped.study.algorithm_settings import (
     default_algorithm,
 )
 from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
+
+NO_STRENGTH = "strength was not asked for: designs may not hold"
+"""What every output says of a study without ``Study.strength``; those of earlier versions are among them."""
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
@@ -71,6 +74,7 @@ class _File:
     reference_point: dict[str, Any] = field(default_factory=dict)
     stop: Stop = field(default_factory=Stop)
     audit: bool = True
+    strength: bool = False  # of a stored study; a file without it takes the default of ``strength_for``
     algorithm: dict[str, Any] = field(default_factory=dict)
 
 
@@ -79,7 +83,8 @@ class Study:
     """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
 
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
-    the study ends; ill-conditioned designs then leave it.
+    the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
+    measure of strength is then constrained.
     """
 
     name: str
@@ -96,6 +101,7 @@ class Study:
     reference_point: ReferencePoint
     stop: Stop
     audit: bool
+    strength: bool = False
     algorithm: AlgorithmSettings
 
     @property
@@ -119,13 +125,15 @@ class Study:
     def as_dict(self) -> dict[str, Any]:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
-        Optional variables at their defaults, limits that are off and came later, and the rules ``paper`` are left out,
-        and the paper's objectives stand as 0.1.0 stored them, so that studies stored before there were others keep
-        their hash.
+        Left out are optional variables at their defaults, limits that are off and came later, the rules ``paper``, and
+        strength that is not asked for. The paper's objectives stand as 0.1.0 stored them. So studies stored before
+        there were others keep their hash.
         """
         plain = asdict(self)
         if self.rules == "paper":
             del plain["rules"]
+        if not self.strength:
+            del plain["strength"]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
             for name, v in zip(NAMES, self._ordered(), strict=True)
@@ -138,7 +146,12 @@ class Study:
 
 
 def load_study(
-    path: Path, *, evaluations: int | None = None, seed: int | None = None, objectives: Sequence[str] | None = None
+    path: Path,
+    *,
+    evaluations: int | None = None,
+    seed: int | None = None,
+    objectives: Sequence[str] | None = None,
+    strength: bool | None = None,
 ) -> Study:
     """The study in a TOML file.
 
@@ -147,6 +160,7 @@ def load_study(
         evaluations: budget to use instead of the one in the file.
         seed: seed to use instead of the one in the file.
         objectives: measures to use instead of those in the file; what its reference point says of others is left out.
+        strength: whether designs must hold, instead of what the file says.
 
     Raises:
         StudyError: an unknown key, a wrong type, impossible bounds, or no readable TOML.
@@ -162,6 +176,9 @@ def load_study(
     if seed is not None:
         values["seed"] = seed
     values.setdefault("rules", rules_for(str(values.get("calibration"))))
+    if strength is not None:
+        values["strength"] = strength
+    values.setdefault("strength", strength_for(str(values.get("calibration"))))
     if objectives is not None:
         values["objectives"] = list(objectives)
         if isinstance(corner := values.get("reference_point"), dict):
@@ -194,10 +211,11 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         seed=file.seed,
         variables=_variables(file, source),
         objectives=objectives,
-        constraints=constraints_of(file.constraints, source=source),
+        constraints=constraints_of(file.constraints, strength=file.strength, source=source),
         reference_point=corner,
         stop=file.stop,
         audit=file.audit,
+        strength=file.strength,
         algorithm=_algorithm(file.algorithm, corner, source),
     )
 

@@ -14,12 +14,15 @@ from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import MEASURE_NAMES, MEASURES, measure
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
+from pareto_monoped.strength.joint import GROUP_MEASURES
 
 Side = Literal["min", "max"]
 
 MIN_HEIGHT_M = 0.55
 """Least height of a study that names none: a jump of 5 cm. It keeps robots that only stand, and therefore spend no
 energy, off the front."""
+LEAST_SAFETY = 1.0
+"""Least value of every measure of strength where strength is asked for: each joint has its required factor."""
 _ALWAYS_STORED = ("min_height_m", "max_energy_j", "max_mass_kg", "min_foot_clearance_m")
 """Limits that every stored study names, also where they are off, in this order; 0.1.0 had no others."""
 _ALLOWED = {("min", "height_m"): (BASE_START_HEIGHT_M, 10.0), ("min", "foot_clearance_m"): (0.0, 10.0)}
@@ -65,15 +68,16 @@ class Constraints:
         return dict.fromkeys(_ALWAYS_STORED) | {limit.key: limit.value for limit in self.limits}
 
 
-def constraints_of(table: Mapping[str, Any], *, source: str = "constraints") -> Constraints:
+def constraints_of(table: Mapping[str, Any], *, strength: bool = False, source: str = "constraints") -> Constraints:
     """Limits from a table of ``measure = { min = a, max = b }``, or of keys such as ``max_mass_kg``.
 
     Args:
         table: as in a study file or a stored study; a value of None is off.
+        strength: whether every measure of strength is at least ``LEAST_SAFETY``; the table may ask for more.
         source: where it comes from, for messages.
 
     Raises:
-        StudyError: an unknown measure or key, a limit given twice, or a value out of range.
+        StudyError: an unknown measure or key, a limit given twice, a value out of range, or less than strength asks.
     """
     given: set[tuple[Side, str]] = set()
     chosen: dict[tuple[Side, str], float] = {}
@@ -86,6 +90,12 @@ def constraints_of(table: Mapping[str, Any], *, source: str = "constraints") -> 
                 typed = f"constraints.{key}.{side}" if key == name else f"constraints.{key}"
                 chosen[side, name] = _value((side, name), limit, f"{source}: {typed}")
     chosen.setdefault(("min", "height_m"), MIN_HEIGHT_M)
+    for name in GROUP_MEASURES.values() if strength else ():
+        least = chosen.setdefault(("min", name), LEAST_SAFETY)
+        if least < LEAST_SAFETY:
+            allowed = f"at least {LEAST_SAFETY:g} with strength = true"
+            problem = complaint(f"constraints.{name}.min", least, allowed, "raise it, or set strength = false")
+            raise StudyError(f"{source}: {problem}")
     for name in {name for _, name in chosen}:
         low, high = chosen.get(("min", name)), chosen.get(("max", name))
         if low is not None and high is not None and low > high:

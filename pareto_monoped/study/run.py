@@ -36,6 +36,7 @@ class RunSummary:
         seconds: duration of this session.
         stop_reason: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or
             ``interrupted``.
+        strength: whether designs on the front hold; else strength was not asked for.
     """
 
     db: Path
@@ -47,6 +48,7 @@ class RunSummary:
     hypervolume_unit: str
     seconds: float
     stop_reason: str
+    strength: bool
 
 
 def _silent(_: Any) -> None:
@@ -215,4 +217,5 @@ def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> R
         hypervolume_unit=objectives.volume_unit,
         seconds=seconds,
         stop_reason=after.meta.stop_reason or "",
+        strength=after.study.strength,
     )

@@ -53,5 +53,6 @@ def status(db: Path) -> dict[str, Any]:
         "hash": data.meta.hash,
         "versions": data.meta.versions,
         "created": data.meta.created,
+        "strength": data.study.strength,
         "settings": data.study.as_dict(),
     }

@@ -149,6 +149,7 @@ FACTS = {
     "objectives": {"height_m": "maximise", "energy_j": "minimise"},
     "best_at_0_8_m": {"energy_j": 23.456},
     "hash": "0123456789abcdef0123",
+    "strength": True,
     "settings": {"variables": dict.fromkeys("abcdefg"), "constraints": {"min_height_m": 0.6}},
 }
 
@@ -159,6 +160,8 @@ FACTS = {
         ({}, ("state", "finished (the hypervolume has stopped growing)")),
         ({"state": "running", "process": 77}, ("state", "running (process 77)")),
         ({"state": "unfinished", "stop_reason": "interrupted"}, ("state", "unfinished")),
+        ({}, ("strength", "every joint has its required factor")),
+        ({"strength": False}, ("strength", "strength was not asked for: designs may not hold")),
         ({"settings": FACTS["settings"] | {"rules": "iso6336"}}, ("gearbox rules", "iso6336")),
         ({}, ("free variables", "2 of 7")),
         ({}, ("least height", "0.6 m")),
@@ -197,6 +200,7 @@ SUMMARY = RunSummary(
     hypervolume_unit="m J",
     seconds=3.21,
     stop_reason="budget",
+    strength=True,
 )
 
 
