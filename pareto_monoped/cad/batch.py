@@ -1,16 +1,37 @@
 """Run export jobs: one here, or many in parallel, each in its own process and folder."""
 
-import multiprocessing
-import signal
+import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from itertools import islice
+from dataclasses import dataclass
 from typing import Any
 
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.workers import Workers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a batch is.
+
+    Attributes:
+        job: the one that was made last.
+        made: how many were made so far.
+        total: how many there are to make.
+        elapsed_s: time since the beginning.
+    """
+
+    job: Job
+    made: int
+    total: int
+    elapsed_s: float
+
+    @property
+    def left_s(self) -> float:
+        """Time that the rest takes at the mean speed so far."""
+        return self.elapsed_s / self.made * (self.total - self.made)
 
 
 def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[str, Any]:
@@ -29,15 +50,16 @@ def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[s
     ).record
 
 
-def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = lambda _: None) -> int:
-    """Export designs in parallel; the first failure stops the rest and is raised, as does an interrupt.
+def run_all(jobs: Sequence[Job], *, workers: int, progress: Callable[[Progress], None] = lambda _: None) -> int:
+    """Export designs in parallel; the same call continues with what is not made yet.
 
-    Exports in progress are finished then, so that every folder is complete; the same call continues with the rest.
+    The first failure is raised when the exports in progress have ended. An interrupt ends them at once; each folder is
+    then complete or absent.
 
     Args:
         jobs: what to export; what is made already is left alone.
         workers: number of processes.
-        done: called with each job as soon as it is made.
+        progress: called after every job.
 
     Returns:
         How many were made.
@@ -45,24 +67,8 @@ def run_all(jobs: Sequence[Job], *, workers: int, done: Callable[[Job], None] = 
     todo = [job for job in jobs if not is_made(job)]
     if not todo:
         return 0
-    # Fresh processes: the CAD kernel's and the simulator's threads do not survive a fork. Ctrl-C reaches them too; they
-    # leave it to this process and finish the folders that they are at.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(
-        max_workers=min(workers, len(todo)),
-        mp_context=context,
-        initializer=signal.signal,
-        initargs=(signal.SIGINT, signal.SIG_IGN),
-    ) as pool:
-        # Hand over no more jobs than there are workers: an executor finishes what it has, come what may.
-        waiting = iter(todo)
-        running: dict[Future[dict[str, Any]], Job] = {}
-        while True:
-            for job in islice(waiting, workers - len(running)):
-                running[pool.submit(run, job)] = job
-            if not running:
-                break
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                future.result()
-                done(running.pop(future))
+    start_s = time.monotonic()
+    with Workers(run, min(workers, len(todo))) as processes:
+        for made, job in enumerate(processes.do(todo), 1):
+            progress(Progress(job=job, made=made, total=len(todo), elapsed_s=time.monotonic() - start_s))
     return len(todo)

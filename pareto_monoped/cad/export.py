@@ -1,7 +1,9 @@
 """Export a design: build it as it can be built, check it, and write one folder that is either whole or not there."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -85,53 +87,67 @@ def export_design(
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
-    kernel.start()
-    built = as_built(design, actuator_map)
-    robot = build_robot(built, actuator_map)
-    require_fit(robot, leg_dimensions(actuator_map))
-    simulated = robot_arrays(built.as_array(), actuator_map, calibration.mass)
-    pose = assembly_pose(simulated, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
-    progress("building")
-    product = build_product(robot, pose)
-    # The kernel builds and writes solids in its process, a thread draws, and the rest is done here.
-    solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in wanted else None
-    pictures = files.pictures(product) if "png" in wanted else {}
-    progress("simulating")
-    jumps = _jumps({"searched": design, "as_built": built}, actuator_map, calibration)
-    progress("checking")
-    shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
-    part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
-    checks = run_checks(
-        product, robot_arrays(built.as_array(), actuator_map), part_files=part_files, other_files=other_files
-    )
-    _require_passed(checks, out_dir)
-    record = design_record(
-        searched=design,
-        built=built,
-        robot=robot,
-        actuator_map=actuator_map,
-        pose=pose,
-        jumps=jumps,
-        calibration=calibration,
-        source=source,
-        formats=wanted,
-    )
-    progress("writing")
-    with beside(out_dir) as folder:
-        files.write_meshes(folder, part_files, other_files, wanted)
-        files.write_drawings(folder, product, wanted)
-        files.write_models(folder, product, shown, simulated, built, calibration, wanted)
-        write(folder, "bom.csv", parts_list(product))
-        write(folder, "checks.json", checks_record(checks))
-        write(folder, "README.md", readme(record, product, checks, wanted))
-        for name, picture in pictures.items():
-            write(folder, name, picture.result())
-        if solids is not None:
-            files.write_solids(folder, *solids.result())
-        record["files"] = [*files_in(folder), RECORD]
-        write(folder, RECORD, json.dumps(record, indent=2) + "\n")
-        move_in(folder, out_dir)
+    with _helpers() as threads:
+        built = as_built(design, actuator_map)
+        robot = build_robot(built, actuator_map)
+        require_fit(robot, leg_dimensions(actuator_map))
+        simulated = robot_arrays(built.as_array(), actuator_map, calibration.mass)
+        pose = assembly_pose(simulated, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
+        progress("building")
+        product = build_product(robot, pose)
+        # The kernel builds and writes solids in its process, threads draw, and the rest is done here.
+        solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in wanted else None
+        pictures = files.pictures(product, threads) if "png" in wanted else {}
+        progress("simulating")
+        jumps = simulated_jumps({"searched": design, "as_built": built}, actuator_map, calibration)
+        progress("checking")
+        shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
+        part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
+        checks = run_checks(
+            product, robot_arrays(built.as_array(), actuator_map), part_files=part_files, other_files=other_files
+        )
+        _require_passed(checks, out_dir)
+        record = design_record(
+            searched=design,
+            built=built,
+            robot=robot,
+            actuator_map=actuator_map,
+            pose=pose,
+            jumps=jumps,
+            calibration=calibration,
+            source=source,
+            formats=wanted,
+        )
+        progress("writing")
+        with beside(out_dir) as folder:
+            files.write_meshes(folder, part_files, other_files, wanted)
+            files.write_drawings(folder, product, wanted)
+            files.write_models(folder, product, shown, simulated, built, calibration, wanted)
+            write(folder, "bom.csv", parts_list(product))
+            write(folder, "checks.json", checks_record(checks))
+            write(folder, "README.md", readme(record, product, checks, wanted))
+            for name, picture in pictures.items():
+                write(folder, name, picture.result())
+            if solids is not None:
+                files.write_solids(folder, *solids.result())
+            record["files"] = [*files_in(folder), RECORD]
+            write(folder, RECORD, json.dumps(record, indent=2) + "\n")
+            move_in(folder, out_dir)
     return ExportSummary(folder=out_dir, record=record, checks=checks, files=tuple(record["files"]))
+
+
+@contextmanager
+def _helpers() -> Iterator[ThreadPoolExecutor]:
+    """The kernel's process, and a thread that draws; after an exception nobody waits for either."""
+    kernel.start()
+    threads = ThreadPoolExecutor(max_workers=1, thread_name_prefix="draw")
+    try:
+        yield threads
+    except BaseException:
+        threads.shutdown(wait=False, cancel_futures=True)
+        kernel.give_up()
+        raise
+    threads.shutdown()
 
 
 def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
@@ -142,7 +158,7 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
         raise CheckError(f"export of {out_dir}: {'; '.join(failures[:_NAMED_FAILURES])}{more}; nothing was written")
 
 
-def _jumps(
+def simulated_jumps(
     designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration
 ) -> dict[str, dict[str, Any]]:
     """Status, reason, height and energy of some designs' jumps, by the designs' names, as JSON values."""

@@ -1,24 +1,17 @@
-"""What to export: jobs from a row of the paper's Table I, from the trials of a study, or from an earlier export."""
+"""What to export: jobs from a row of the paper's Table I, or from the trials of a study."""
 
-import json
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.actuator.motors import Motor, load_motor, stored_motor
-from pareto_monoped.cad.write.design_record import MADE_BY
+from pareto_monoped.actuator.motors import Motor, load_motor
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
-from pareto_monoped.design import DEFAULT_RULES, DEFAULTS, NAMES, PAPER_CASES, RULE_SETS, Design, RuleSet
-from pareto_monoped.errors import InputError
-from pareto_monoped.jump.calibration import Calibration, calibration_of, load_calibration
+from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
+from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration
 
 if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
-
-_CASE_MOTOR, _CASE_CALIBRATION = "VT8020", "reference"
-"""What a row of Table I is built and simulated with: the paper's motor and our best model of its robot."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,6 +46,7 @@ class Job:
 def case_job(
     case: str,
     *,
+    motor: str = PAPER_MOTOR,
     rules: RuleSet = DEFAULT_RULES,
     folder: Path,
     formats: Sequence[str] | None = None,
@@ -60,10 +54,11 @@ def case_job(
     hip_rad: float | None = None,
     knee_rad: float | None = None,
 ) -> Job:
-    """The job for a row of the paper's Table I, with the paper's motor and the reference calibration.
+    """The job for a row of the paper's Table I with the default calibration, our best model of the paper's robot.
 
     Args:
         case: name of the row.
+        motor: name or TOML file of the motor; default the paper's.
         rules: of the gearboxes.
         folder: where to.
         formats: some of ``FORMATS``; default all.
@@ -73,11 +68,12 @@ def case_job(
 
     Raises:
         InputError: an unknown format.
+        MotorError: an unknown or impossible motor.
     """
     return Job(
         design=PAPER_CASES[case].design,
-        motor=load_motor(_CASE_MOTOR),
-        calibration=load_calibration(_CASE_CALIBRATION),
+        motor=load_motor(motor),
+        calibration=load_calibration(DEFAULT),
         rules=rules,
         folder=folder,
         formats=chosen_formats(formats),
@@ -146,74 +142,3 @@ def front_jobs(
     """
     trials = data.front()["trial"].astype(int).tolist()[::every]
     return [trial_job(data, trial, folder=folder / f"trial_{trial}", formats=formats, force=force) for trial in trials]
-
-
-def record_job(
-    path: Path,
-    *,
-    folder: Path,
-    formats: Sequence[str] | None = None,
-    force: bool = False,
-    note: Callable[[str], None] = lambda _: None,
-) -> Job:
-    """The job that makes an export again from its ``design.json``: the same bytes, by the same version.
-
-    Args:
-        path: the record.
-        folder: where to.
-        formats: some of ``FORMATS``; default those of the record.
-        force: replace an earlier export there.
-        note: called with a line of text if another version made the record.
-
-    Raises:
-        InputError: the file is missing, or no record of an export, or its motor or calibration is impossible.
-    """
-    source = f"design record {str(path)!r}"
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-        design = _design(record["searched"])
-        angles = {name: _finite(record["pose"][name]) for name in ("hip_rad", "knee_rad")}
-        motor, calibration = dict(record["motor_data"]), dict(record["calibration_data"])
-        origin = dict(record["source"])
-        wanted = [str(name) for name in record["formats"]]
-        maker = str(record["made_by"])
-        rules = _rules(record.get("rules", "paper"))
-    except OSError as problem:
-        raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
-        why = f"no {problem}" if isinstance(problem, KeyError) else str(problem).splitlines()[0]
-        raise InputError(f"{source}: is not the record of an export ({why}); give the design.json of one") from None
-    if maker != MADE_BY:
-        note(f"{source} was made by {maker!r}, this is {MADE_BY}: files may differ")
-    return Job(
-        design=design,
-        motor=stored_motor(motor, source=source),
-        calibration=calibration_of(calibration, source=source),
-        rules=rules,
-        folder=folder,
-        formats=chosen_formats(wanted if formats is None else formats),
-        force=force,
-        source=origin,
-        **angles,
-    )
-
-
-def _design(searched: Mapping[str, Any]) -> Design:
-    """The design of a record; optional variables that it does not name have their defaults."""
-    values = DEFAULTS | dict(searched)
-    return Design.from_array([_finite(values[name]) for name in NAMES])
-
-
-def _rules(name: Any) -> RuleSet:
-    """The rules of a record, which names them if they are not those of the paper."""
-    for rules in RULE_SETS:
-        if name == rules:
-            return rules
-    raise ValueError(f"rules {name!r} are none of {', '.join(RULE_SETS)}")
-
-
-def _finite(value: Any) -> float:
-    number = float(value)
-    if not math.isfinite(number):
-        raise ValueError(f"{number} is not a number")
-    return number

@@ -1,12 +1,12 @@
 """Whether the export that a job asks for exists already, complete and up to date."""
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.as_built import as_built, assembly_pose, require_fit
+from pareto_monoped.cad.compare import difference
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD
@@ -22,7 +22,8 @@ _NOT_COMPARED = ("jumps", "formats", "files")
 """Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
 _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
 """Keys whose values the job gives; all others are computed, and another machine may round them differently."""
-_REL_TOLERANCE = 1e-9
+REL_TOLERANCE = 1e-9
+"""Of numbers that another machine may round in another way."""
 
 
 def is_made(job: Job, *, any_pose: bool = False) -> bool:
@@ -40,10 +41,11 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
         if not (set(job.formats) <= set(record["formats"]) and _is_whole(job.folder, record)):
             return False
         found = {key: value for key, value in record.items() if key not in _NOT_COMPARED}
-        expected = _expected(job)
+        expected = expected_record(job)
         if any_pose:
             expected["pose"] = found["pose"]
-        return all(found[key] == expected[key] for key in _GIVEN) and _same(found, expected)
+        given = all(found[key] == expected[key] for key in _GIVEN)
+        return given and difference(found, expected, rel_tolerance=REL_TOLERANCE) is None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, DesignError):
         # No record, or none of ours; or a design that cannot be built, which the export itself will explain.
         return False
@@ -61,7 +63,7 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
     return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
 
 
-def _expected(job: Job) -> dict[str, Any]:
+def expected_record(job: Job) -> dict[str, Any]:
     """The record that this version would write, without what is not compared."""
     actuator_map = map_of(job.motor, job.rules)
     built = as_built(job.design, actuator_map)
@@ -80,14 +82,3 @@ def _expected(job: Job) -> dict[str, Any]:
         formats=(),
     )
     return {key: value for key, value in record.items() if key not in _NOT_COMPARED}
-
-
-def _same(one: Any, other: Any) -> bool:
-    """Whether two JSON values are equal, numbers to within rounding."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=_REL_TOLERANCE, abs_tol=1e-12)
-    return type(one) is type(other) and bool(one == other)

@@ -2,15 +2,17 @@
 
 import math
 import os
+import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from pareto_monoped.cli.fronts import required, selector_options
-from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
+from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
+    from pareto_monoped.cad.batch import Progress
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.pareto.pick import Selector
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
 )
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
+@click.option("--motor", metavar="NAME", help=f"With --case: name or TOML file.  [default: {PAPER_MOTOR}]")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="FILE", help="Repeat the export that has this design.json."
@@ -42,6 +45,7 @@ def export(
     selector: "Selector | None",
     output: Path,
     case: str | None,
+    motor: str | None,
     rules: RuleSet | None,
     record: Path | None,
     whole_front: bool,
@@ -59,28 +63,33 @@ def export(
     so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg)
-    if rules is not None and case is None:
-        raise click.UsageError("--rules goes with --case only, studies and records name theirs; drop it")
-    from pareto_monoped.cad.jobs import case_job, front_jobs, record_job, trial_job
-    from pareto_monoped.pareto.pick import pick
-    from pareto_monoped.study.reader import read_study
+    for option, value in (("--rules", rules), ("--motor", motor)):
+        if value is not None and case is None:
+            raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
+    from pareto_monoped.cad.interrupt import ending_at
 
-    names = None if formats is None else [name.strip() for name in formats.split(",")]
-    angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
-    if record is not None:
-        _one(record_job(record, folder=output, formats=names, force=force, note=_note))
-    elif case is not None:
-        chosen = rules or DEFAULT_RULES
-        _one(case_job(case, rules=chosen, folder=output, formats=names, force=force, **angles))
-    elif whole_front:
-        jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
-        _many(jobs, workers or os.cpu_count() or 1)
-    else:
-        study, wanted = _given(db), required(selector)
-        data = read_study(study)
-        picked = pick(data.front(), wanted, data.study.objectives)
-        _note(picked.why)
-        _one(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles))
+    with ending_at(signal.SIGINT):
+        from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
+        from pareto_monoped.cad.records import record_job
+        from pareto_monoped.pareto.pick import pick
+        from pareto_monoped.study.reader import read_study
+
+        names = None if formats is None else [name.strip() for name in formats.split(",")]
+        angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
+        if record is not None:
+            _one(record_job(record, folder=output, formats=names, force=force, note=_note))
+        elif case is not None:
+            kit, chosen = motor or PAPER_MOTOR, rules or DEFAULT_RULES
+            _one(case_job(case, motor=kit, rules=chosen, folder=output, formats=names, force=force, **angles))
+        elif whole_front:
+            jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
+            _many(jobs, workers or os.cpu_count() or 1)
+        else:
+            study, wanted = _given(db), required(selector)
+            data = read_study(study)
+            picked = pick(data.front(), wanted, data.study.objectives)
+            _note(picked.why)
+            _one(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles))
 
 
 def _refuse_mixed_sources(
@@ -132,22 +141,35 @@ def _one(job: "Job") -> None:
 
 def _many(jobs: "list[Job]", workers: int) -> None:
     from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
 
     from pareto_monoped.cad.batch import run_all
 
-    columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True)) as bar:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Bar(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task("exporting", total=len(jobs))
 
-        def done(job: "Job") -> None:
-            bar.advance(task)
-            bar.console.print(f"wrote {job.folder}")
+        def show(progress: "Progress") -> None:
+            # Each line stands for itself, as the bar is drawn on terminals only.
+            bar.update(task, completed=len(jobs) - progress.total + progress.made)
+            left = f", {_duration(progress.left_s)} left" if progress.made < progress.total else ""
+            bar.console.print(
+                f"wrote {progress.job.folder} ({progress.made} of {progress.total}{left})", soft_wrap=True
+            )
 
         try:
-            made = run_all(jobs, workers=workers, done=done)
+            made = run_all(jobs, workers=workers, progress=show)
         except KeyboardInterrupt:
             bar.console.print("interrupted; the same command continues from here")
             raise
         bar.update(task, completed=len(jobs))
     click.echo(f"{made} made, {len(jobs) - made} already there")
+
+
+def _duration(seconds: float) -> str:
+    """A time to wait, in words: ``50 s``, ``12 min`` or ``3 h 05 min``."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"

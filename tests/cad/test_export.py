@@ -120,6 +120,12 @@ def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
         require_fit(robot, dataclasses.replace(leg, chain=weak))
 
 
+def test_the_time_left_is_that_of_the_rest_at_the_mean_speed():
+    progress = batch.Progress(job=None, made=5, total=20, elapsed_s=10.0)
+    assert progress.left_s == pytest.approx(30.0)
+    assert dataclasses.replace(progress, made=20).left_s == 0.0
+
+
 def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):
     job = jobs.Job(
         design=DESIGN,

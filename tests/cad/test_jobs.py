@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.cad import batch, jobs
+from pareto_monoped.cad import batch, jobs, records
 from pareto_monoped.cad import export as export_room
 from pareto_monoped.cli import main
 from pareto_monoped.config import checked
@@ -74,9 +74,9 @@ def test_an_export_is_made_again_byte_for_byte(original, tmp_path, capsys):
 
 
 def test_formats_of_the_record_can_be_limited(original, tmp_path):
-    job = jobs.record_job(original / "design.json", folder=tmp_path / "again", formats=["dxf"])
+    job = records.record_job(original / "design.json", folder=tmp_path / "again", formats=["dxf"])
     assert job.formats == ("dxf",)
-    assert jobs.record_job(original / "design.json", folder=tmp_path / "again").formats == tuple(
+    assert records.record_job(original / "design.json", folder=tmp_path / "again").formats == tuple(
         name for name in jobs.FORMATS if name in FORMATS
     )
 
@@ -158,6 +158,72 @@ def test_a_damaged_or_hostile_record_is_one_line_and_writes_nothing(original, tm
     assert [entry.name for entry in tmp_path.iterdir()] == ["design.json"]
 
 
+def more(*keys):
+    """Add a thousandth and a bit."""
+
+    def change(record):
+        inner = record
+        for key in keys[:-1]:
+            inner = inner[key]
+        inner[keys[-1]] *= 1.0011
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (more("as_built", "thigh_length_m"), "as_built.thigh_length_m"),
+        (more("as_built", "knee_ratio"), "as_built.knee_ratio"),
+        (more("searched", "stiffness_n_per_m"), "as_built.stiffness_n_per_m"),
+        (more("jumps", "searched", "height_m"), "jumps.searched.height_m"),
+        (more("jumps", "as_built", "energy_j"), "jumps.as_built.energy_j"),
+        (put("slipped", "jumps", "as_built", "status"), "jumps.as_built.status"),
+        (more("mass_kg"), "mass_kg"),
+        (more("actuators", "hip", "peak_torque_n_m"), "actuators.hip.peak_torque_n_m"),
+        (put(17, "actuators", "knee", "sun_teeth"), "actuators.knee.sun_teeth"),
+        (drop("actuators", "knee", "family"), "actuators.knee.family"),
+        (put("U12", "motor"), "motor"),
+        (put("reference-2", "calibration"), "calibration"),
+        (drop("jumps"), "jumps"),
+        (put(1, "invented"), "invented"),
+    ],
+)
+def test_a_tampered_record_is_refused_with_the_field_that_disagrees(original, tmp_path, capsys, change, field):
+    path = damaged(change)(original, tmp_path / "design.json")
+    code, out, err = export(capsys, "--record", path, "-o", tmp_path / "out")
+    assert code == 2
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert f"design.json': {field} = " in err
+    assert "give the record as its export wrote it" in err
+    assert [entry.name for entry in tmp_path.iterdir()] == ["design.json"]
+
+
+@pytest.mark.parametrize(
+    ("change", "refused"),
+    [
+        (put("pareto-monoped 0.1.0", "made_by"), None),
+        (put(7.0, "as_built", "knee_ratio"), None),
+        (put(9.0, "mass_kg"), None),
+        (more("as_built", "thigh_length_m"), "as_built.thigh_length_m"),
+        (put("U12", "motor"), "motor"),
+    ],
+)
+def test_of_another_version_only_what_no_version_changes_is_compared(original, tmp_path, change, refused):
+    def older(record):
+        change(record)
+        record["made_by"] = "pareto-monoped 0.1.0"
+
+    path, notes = damaged(older)(original, tmp_path / "design.json"), []
+    if refused is None:
+        records.record_job(path, folder=tmp_path / "out", note=notes.append)
+        assert len(notes) == 1
+    else:
+        with pytest.raises(InputError, match=f"{refused} = "):
+            records.record_job(path, folder=tmp_path / "out", note=notes.append)
+
+
 def test_a_missing_record_is_one_line(tmp_path, capsys):
     code, _, err = export(capsys, "--record", tmp_path / "none.json", "-o", tmp_path / "out")
     assert code == 2
@@ -179,7 +245,7 @@ def test_names_in_a_record_cannot_lead_outside_its_folder(original, tmp_path, mo
     path = damaged(hostile)(original, tmp_path / "design.json")
     notes = []
     folder = tmp_path / "out"
-    batch.run(jobs.record_job(path, folder=folder, formats=(), note=notes.append))
+    batch.run(records.record_job(path, folder=folder, formats=(), note=notes.append))
     assert len(notes) == 1
     assert "was made by '../../x'" in notes[0]
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["design.json", "out", "precious.txt"]
@@ -189,7 +255,7 @@ def test_names_in_a_record_cannot_lead_outside_its_folder(original, tmp_path, mo
 
 def test_a_record_without_its_own_words_is_refused():
     with pytest.raises(InputError, match=r"give the design\.json of an export"):
-        jobs.record_job(Path("/"), folder=Path("x"))
+        records.record_job(Path("/"), folder=Path("x"))
 
 
 @pytest.mark.parametrize(

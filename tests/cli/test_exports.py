@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.cli import main
+from pareto_monoped.cli.exports import _duration
 
 
 def run(capsys, *words):
@@ -29,6 +31,8 @@ def run(capsys, *words):
         (("export", "study.db", "-o", "x"), "no selector given"),
         (("export", "missing.db", "--knee", "-o", "x"), "missing.db"),
         (("export", "study.db", "--knee", "--rules", "paper", "-o", "x"), "--rules goes with --case only"),
+        (("export", "study.db", "--knee", "--motor", "U12", "-o", "x"), "--motor goes with --case only"),
+        (("export", "--case", "C", "--motor", "U99", "-o", "x"), "motor = 'U99'"),
         (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format 'dwg'"),
     ],
 )
@@ -58,9 +62,25 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
     assert all(check["passed"] for check in json.loads((folder / "checks.json").read_text()))
 
 
+def test_a_case_is_exported_with_another_motor(capsys, tmp_path):
+    code, _, _ = run(capsys, "export", "--case", "C", "--motor", "U12", "--formats", "dxf", "-o", tmp_path / "u12")
+    record = json.loads((tmp_path / "u12" / "design.json").read_text())
+    assert code == 0
+    assert record["motor"] == record["motor_data"]["name"] == "U12"
+    assert record["source"] == {"case": "C"}
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.4, "0 s"), (99.4, "99 s"), (99.6, "2 min"), (3569.0, "59 min"), (5969.0, "99 min"), (11100.0, "3 h 05 min")],
+)
+def test_a_time_to_wait_in_words(seconds, words):
+    assert _duration(seconds) == words
+
+
 @pytest.mark.long
 def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
-    """Ctrl-C reaches the whole group of processes, as from a terminal; folders are complete or absent."""
+    """Ctrl-C reaches the whole group of processes, as from a terminal; exports in progress leave nothing."""
     words = [sys.executable, "-m", "pareto_monoped"]
     study = Path(__file__).parent.parent.parent / "studies" / "quick.toml"
     db, folder = tmp_path / "quick.db", tmp_path / "front"
@@ -90,9 +110,10 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     assert running.returncode == 130
     assert "Traceback" not in message
     assert "the same command continues from here" in message
+    expected = -(-len(rows) // every)
+    assert re.search(rf"wrote .*trial_\d+ \(1 of {expected}, \d+ (s|min) left\)", message)
     made = sorted(folder.iterdir())
     assert all((path / "design.json").is_file() for path in made)
-    expected = -(-len(rows) // every)
     assert 1 <= len(made) < expected
     before = {path.name: (path / "design.json").stat().st_mtime_ns for path in made}
     again = subprocess.run(export, check=True, capture_output=True, text=True)

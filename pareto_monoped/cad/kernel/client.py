@@ -2,7 +2,7 @@
 
 The kernel holds Python's lock while it works, so that a thread would gain nothing; in its own process it builds, checks
 and writes solids while this one simulates, makes meshes and draws. The process is started once and serves every later
-export; it ends with this one.
+export. It ends with this one, or by ``give_up``: it keeps nothing, so that it is killed and nobody waits for it.
 """
 
 import atexit
@@ -11,10 +11,12 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
+from queue import SimpleQueue
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -72,6 +74,21 @@ def start() -> None:
     _process()
 
 
+def give_up() -> None:
+    """End the kernel if it owes an answer; its unanswered questions fail. A later question starts another."""
+    if _process.cache_info().currsize:
+        process = _process()
+        if process.owes:
+            _process.cache_clear()
+            process.close()
+
+
+def kill() -> None:
+    """End the kernel without waiting for anything: for a process that ends itself."""
+    if _process.cache_info().currsize:
+        _process().process.kill()
+
+
 def solid_facts(parts: Sequence[Part]) -> "Future[list[SolidFacts]]":
     """Facts of the solids of some parts, in their order."""
     return _process().ask("solid_facts", list(parts))
@@ -88,17 +105,37 @@ class _Process:
     def __init__(self) -> None:
         # Use this process's import path, never the working directory.
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+        # In a process group of its own, so that Ctrl-C reaches only this process, which then ends the kernel.
         self.process = subprocess.Popen(
             [sys.executable, "-P", "-m", "pareto_monoped.cad.kernel.process"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=environment,
+            process_group=0,
         )
-        self.line = ThreadPoolExecutor(max_workers=1, thread_name_prefix="cad-kernel")
+        self.questions: SimpleQueue[tuple[Future[Any], str, Any] | None] = SimpleQueue()
+        self.last: Future[Any] | None = None
+        # A daemon: the end of this process does not wait for an answer.
+        self.line = Thread(target=self._serve, name="cad-kernel", daemon=True)
+        self.line.start()
         atexit.register(self.close)
 
     def ask(self, question: str, argument: Any) -> "Future[Any]":
-        return self.line.submit(self._talk, question, argument)
+        future: Future[Any] = Future()
+        self.last = future
+        self.questions.put((future, question, argument))
+        return future
+
+    def _serve(self) -> None:
+        """Ask one question after the other until None comes."""
+        while (asked := self.questions.get()) is not None:
+            future, question, argument = asked
+            try:
+                answer = self._talk(question, argument)
+            except Exception as problem:
+                future.set_exception(problem)
+            else:
+                future.set_result(answer)
 
     def _talk(self, question: str, argument: Any) -> Any:
         assert self.process.stdin is not None
@@ -107,16 +144,30 @@ class _Process:
             pickle.dump((question, argument), self.process.stdin)
             self.process.stdin.flush()
             answer = pickle.load(self.process.stdout)  # noqa: S301 - from our own process
-        except (OSError, EOFError) as problem:
-            _process.cache_clear()  # a later question starts another
+        except (OSError, EOFError, pickle.UnpicklingError) as problem:
+            if self.current:
+                _process.cache_clear()  # a later question starts another
             raise RuntimeError(f"the CAD kernel's process ended (exit code {self.process.wait()})") from problem
         if isinstance(answer, BaseException):
             raise answer
         return answer
 
+    @property
+    def current(self) -> bool:
+        """Whether questions go to this process, not to one that replaced it."""
+        return bool(_process.cache_info().currsize) and _process() is self
+
+    @property
+    def owes(self) -> bool:
+        """Whether a question is unanswered; they are answered in their order."""
+        return self.last is not None and not self.last.done()
+
     def close(self) -> None:
-        """End the process: it ends when its input does."""
-        self.line.shutdown(cancel_futures=True)
+        """End the process, whatever it works at."""
+        atexit.unregister(self.close)
+        self.process.kill()
+        self.questions.put(None)
+        self.line.join()
         for stream in (self.process.stdin, self.process.stdout):
             if stream is not None and not stream.closed:
                 with suppress(OSError):  # it has ended already

@@ -1,7 +1,7 @@
 """Which file of an export holds what."""
 
 from collections.abc import Collection, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from pathlib import Path
 
 import numpy as np
@@ -94,16 +94,13 @@ def write_models(
         write(folder, "model/monoped.urdf", urdf.urdf(arrays, calibration.joints, shown, solid))
 
 
-def pictures(product: Product) -> dict[str, Future[bytes]]:
-    """PNG files by name, which a thread draws from now on."""
+def pictures(product: Product, threads: Executor) -> dict[str, Future[bytes]]:
+    """PNG files by name, which threads draw from now on."""
     shown = {
         "assembly.png": scenes.assembly_scene(product),
         "knee_actuator_section.png": scenes.section_scene(product, "knee_actuator"),
     }
-    thread = ThreadPoolExecutor(max_workers=1)
-    drawn = {name: thread.submit(_drawing, scene) for name, scene in shown.items()}
-    thread.shutdown(wait=False)
-    return drawn
+    return {name: threads.submit(_drawing, scene) for name, scene in shown.items()}
 
 
 def _drawing(scene: scenes.Scene) -> bytes:

@@ -2,12 +2,12 @@
 
 import json
 import re
-import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pareto_monoped.cad.write.unbroken import noted, unbroken
 from pareto_monoped.errors import OutputError
 from pareto_monoped.files import current_umask, unwritable
 
@@ -64,17 +64,24 @@ def beside(out_dir: Path) -> Iterator[Path]:
     except OSError as error:
         raise unwritable(out_dir, error, "give a writable folder") from error
     try:
-        # mkdtemp makes private folders, but an export should have the permissions of any other folder of the user.
-        folder.chmod(0o777 & ~current_umask())
-        yield folder
+        with noted(folder):
+            # mkdtemp makes private folders, but an export should have the permissions of any other folder of the user.
+            folder.chmod(0o777 & ~current_umask())
+            yield folder
     except OSError as error:
         raise unwritable(out_dir, error, "make room or give another") from error
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def move_in(folder: Path, out_dir: Path) -> None:
-    """Put a finished folder in its place, instead of the files of an earlier export; other files stay."""
+    """Put a finished folder in its place, instead of the files of an earlier export; other files stay.
+
+    An interrupt waits until this is done.
+    """
+    with unbroken():
+        _move(folder, out_dir)
+
+
+def _move(folder: Path, out_dir: Path) -> None:
     if not out_dir.exists() or not any(out_dir.iterdir()):
         folder.replace(out_dir)
         return

@@ -1,6 +1,7 @@
 """The kernel's process answers, says what went wrong, and is replaced when it dies."""
 
 import dataclasses
+import signal
 
 import numpy as np
 import pytest
@@ -56,3 +57,22 @@ def test_a_kernel_that_dies_is_replaced():
         kernel.solid_facts([PLATE]).result()
     assert kernel.solid_facts([PLATE]).result()[0].valid
     assert kernel._process().process is not first
+
+
+def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting():
+    kernel.start()
+    first = kernel._process().process
+    first.send_signal(signal.SIGSTOP)
+    owed = kernel.solid_facts([PLATE])
+    kernel.give_up()
+    assert first.returncode == -signal.SIGKILL
+    with pytest.raises(RuntimeError, match="process ended"):
+        owed.result()
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+
+
+def test_an_idle_kernel_is_kept():
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+    before = kernel._process()
+    kernel.give_up()
+    assert kernel._process() is before

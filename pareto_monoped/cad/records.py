@@ -1,0 +1,140 @@
+"""An export again, from its ``design.json``; a record that contradicts itself is refused."""
+
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pareto_monoped.actuator.motors import stored_motor
+from pareto_monoped.actuator.search import map_of
+from pareto_monoped.cad.as_built import as_built
+from pareto_monoped.cad.compare import Difference, difference
+from pareto_monoped.cad.export import simulated_jumps
+from pareto_monoped.cad.jobs import Job
+from pareto_monoped.cad.made import REL_TOLERANCE, expected_record
+from pareto_monoped.cad.write.design_record import MADE_BY
+from pareto_monoped.cad.write.formats import chosen_formats
+from pareto_monoped.design import DEFAULTS, NAMES, RULE_SETS, Design, RuleSet
+from pareto_monoped.errors import InputError
+from pareto_monoped.jump.calibration import calibration_of
+
+_JUMP_REL_TOLERANCE = 1e-3
+"""Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
+_RATIOS = ("hip_ratio", "knee_ratio")
+"""Variables that a design is built with as its gearboxes have them, which another version may choose differently."""
+
+
+def record_job(
+    path: Path,
+    *,
+    folder: Path,
+    formats: Sequence[str] | None = None,
+    force: bool = False,
+    note: Callable[[str], None] = lambda _: None,
+) -> Job:
+    """The job that makes an export again from its ``design.json``: the same bytes, by the same version.
+
+    Args:
+        path: the record.
+        folder: where to.
+        formats: some of ``FORMATS``; default those of the record.
+        force: replace an earlier export there.
+        note: called with a line of text if another version made the record.
+
+    Raises:
+        InputError: the file is missing, or no record of an export, or its motor or calibration is impossible, or a
+            field of it does not follow from the others.
+        DesignError: its design cannot be built.
+    """
+    source = f"design record {str(path)!r}"
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+        design = _design(record["searched"])
+        angles = {name: _finite(record["pose"][name]) for name in ("hip_rad", "knee_rad")}
+        motor, calibration = dict(record["motor_data"]), dict(record["calibration_data"])
+        origin = dict(record["source"])
+        wanted = [str(name) for name in record["formats"]]
+        maker = str(record["made_by"])
+        rules = _rules(record.get("rules", "paper"))
+    except OSError as problem:
+        raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
+        why = f"no {problem}" if isinstance(problem, KeyError) else str(problem).splitlines()[0]
+        raise InputError(f"{source}: is not the record of an export ({why}); give the design.json of one") from None
+    job = Job(
+        design=design,
+        motor=stored_motor(motor, source=source),
+        calibration=calibration_of(calibration, source=source),
+        rules=rules,
+        folder=folder,
+        formats=chosen_formats(wanted if formats is None else formats),
+        force=force,
+        source=origin,
+        **angles,
+    )
+    wrong = _contradiction(record, job, same_version=maker == MADE_BY)
+    if wrong is not None:
+        raise InputError(
+            f"{source}: {wrong.field} = {_short(wrong.found)}: must be {_short(wrong.expected)} to agree with the rest "
+            "of the record; give the record as its export wrote it"
+        )
+    if maker != MADE_BY:
+        note(f"{source} was made by {maker!r}, this is {MADE_BY}: files may differ")
+    return job
+
+
+def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -> Difference | None:
+    """The first field of a record that does not follow from its design, motor and calibration.
+
+    Another version may choose other gearboxes and weigh other parts. What it built is then only compared where no
+    version differs.
+    """
+    # A list of files follows from the formats, and a folder need not have all of them any more.
+    found = {key: value for key, value in record.items() if key not in ("formats", "files")}
+    if same_version:
+        expected = expected_record(job)
+        jumps = found.pop("jumps", None)
+        wrong = difference(found, expected, rel_tolerance=REL_TOLERANCE)
+        if wrong is not None:
+            return wrong
+        designs = {"searched": job.design, "as_built": Design.from_array(list(expected["as_built"].values()))}
+        simulated = simulated_jumps(designs, map_of(job.motor, job.rules), job.calibration)
+        return difference(jumps, simulated, rel_tolerance=_JUMP_REL_TOLERANCE, field="jumps")
+    built = as_built(job.design, map_of(job.motor, job.rules)).as_dict()
+    fixed = {
+        "motor": job.motor.name,
+        "calibration": job.calibration.label,
+        "as_built": {name: value for name, value in built.items() if name not in _RATIOS},
+    }
+    found = {key: found.get(key) for key in fixed}
+    if isinstance(found["as_built"], dict):
+        found["as_built"] = {name: value for name, value in found["as_built"].items() if name not in _RATIOS}
+    return difference(found, fixed, rel_tolerance=REL_TOLERANCE)
+
+
+def _short(value: Any) -> str:
+    """A value in a message of one line."""
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _design(searched: Mapping[str, Any]) -> Design:
+    """The design of a record; optional variables that it does not name have their defaults."""
+    values = DEFAULTS | dict(searched)
+    return Design.from_array([_finite(values[name]) for name in NAMES])
+
+
+def _rules(name: Any) -> RuleSet:
+    """The rules of a record, which names them if they are not those of the paper."""
+    for rules in RULE_SETS:
+        if name == rules:
+            return rules
+    raise ValueError(f"rules {name!r} are none of {', '.join(RULE_SETS)}")
+
+
+def _finite(value: Any) -> float:
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{number} is not a number")
+    return number

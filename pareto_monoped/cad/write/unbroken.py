@@ -1,0 +1,57 @@
+"""Interrupts while an export is written: its move into place is not broken off, its temporary folders are deleted."""
+
+import shutil
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Ctrl-C, and what ends the worker processes of a batch."""
+_moving = threading.Lock()
+_unfinished: set[Path] = set()
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Hold interrupts back until the block has ended, then deliver them."""
+    with _moving:
+        if threading.current_thread() is not threading.main_thread():
+            # Python runs signal handlers in the main thread only.
+            yield
+            return
+        came: list[tuple[int, FrameType | None]] = []
+        before = {held: signal.signal(held, lambda number, frame: came.append((number, frame))) for held in _SIGNALS}
+        try:
+            yield
+        finally:
+            for held, handler in before.items():
+                signal.signal(held, handler)
+    for number, frame in came:
+        handler = before[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+        elif handler is signal.SIG_DFL:
+            signal.raise_signal(number)
+
+
+@contextmanager
+def noted(folder: Path) -> Iterator[None]:
+    """Remember a temporary folder while the block runs, and delete what is still in it at the end."""
+    _unfinished.add(folder)
+    try:
+        yield
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        _unfinished.discard(folder)
+
+
+@contextmanager
+def without_unfinished() -> Iterator[None]:
+    """Delete all temporary folders; nothing takes its place while the block runs."""
+    with _moving:
+        for folder in tuple(_unfinished):
+            shutil.rmtree(folder, ignore_errors=True)
+        yield
