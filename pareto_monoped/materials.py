@@ -158,6 +158,7 @@ class Materials:
     motor_stator: Material
     motor_rotor: Material
     printed_plastic: Material
+    magnet: Material
     electronics: Material
     rubber: Material
     fluoroelastomer: Elastomer

@@ -70,7 +70,7 @@ class Actuator:
         efficiency: of both gear meshes together.
         contact_ratio_sun, contact_ratio_ring: of sun and planet, of planet and ring.
         reflected_inertia_kg_m2: of everything that turns with the motor or in the gearbox, at the output.
-        length_mm: from the output face to the back, without the screw heads that stand out there.
+        length_mm: from the output face to the back, without the screw heads and the encoder that stand out there.
         output, mount: where the links are bolted on.
         parts: every part, including the screws that hold a framed motor.
         rating: of the gears after ISO 6336; None under the rules ``paper``.
@@ -154,7 +154,7 @@ def build_actuator(
         contact_ratio_sun=float(outer),
         contact_ratio_ring=float(inner),
         reflected_inertia_kg_m2=reflected_inertia_kg_m2(parts, gears, motor),
-        length_mm=-min(float(p.z0_mm) for part in parts if part.role not in SCREWS for p in part.prisms),
+        length_mm=-min(float(p.z0_mm) for part in parts if part.role not in _STANDING_OUT for p in part.prisms),
         output=output_interface(settings),
         mount=mount_interface(motor, family, settings),
         parts=parts,
@@ -162,6 +162,8 @@ def build_actuator(
     )
 
 
+_STANDING_OUT = SCREWS | {Role.ELECTRONICS}
+"""Roles of what may stand out at the back, where journal or air is."""
 _GEAR_OF_GROUP = {Group.ROTOR: "sun", Group.PLANET: "planet", Group.HOUSING: "ring"}
 """Group of a gear -> which one it is; the rating names them so."""
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from pareto_monoped.actuator.external_housing import housing_parts
+from pareto_monoped.actuator.encoder import encoder_parts, shaft_end
+from pareto_monoped.actuator.external_housing import BACK_BORE_MM, housing_parts
 from pareto_monoped.actuator.external_layout import ExternalLayout, external_layout
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
@@ -30,6 +31,9 @@ _MOTOR_THREAD_MM = 5.0
 """How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
 _HUB_MM = 4.0
 """Metal around the sun's shaft in the coupling; our own choice."""
+_SHAFT_MM, _SHAFT_BORE_MM = 4.0, 4.5
+"""Radii of a framed motor's shaft and of its bore in the base. The data sheets show no dimension of it; our own
+assumption, with the rear end flush with the base."""
 _ROTOR_HOLE_MM = 0.2
 """Clearance hole less screw diameter in the coupling (ISO 273, fine: 3.2 mm for M3)."""
 _ROTOR_TAPPED_MM = -0.5
@@ -56,6 +60,7 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         *housing_parts(at, shell, motor, settings),
         *_motor_screws(shell, motor, settings),
         *_motor_parts(at, shell, motor, settings),
+        *encoder_parts(shell.z_plate, shell.z_end, BACK_BORE_MM, "motor_rotor"),
     )
 
 
@@ -169,7 +174,7 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
     clearance = settings.parts.casing.rotor_clearance_mm
     frame, rotor_share, base = motor.framed, motor.rotor_mass_share, shell.base_mm
     assert frame is not None
-    z_motor, z_plate = shell.z_motor, shell.z_plate
+    z_motor, z_plate, holes = shell.z_motor, shell.z_plate, motor_holes(motor, MOTOR_TAPPED_HOLE_MM)
     return (
         Part(
             name="motor_stator",
@@ -177,7 +182,7 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
             visibility=Visibility.INSIDE,
             material=settings.materials.motor_stator,
             prisms=(
-                *slab(z_plate, z_plate + base, at.r_stator_out, motor_holes(motor, MOTOR_TAPPED_HOLE_MM)),
+                *slab(z_plate, z_plate + base, at.r_stator_out, _SHAFT_BORE_MM, holes),
                 *tube(z_plate + base, z_motor - base - clearance, at.r_stator_out, at.r_stator_in),
             ),
             process="bought",
@@ -192,6 +197,7 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
             prisms=(
                 *slab(z_motor - base, z_motor, at.r_motor, _rotor_holes(_output(motor), _ROTOR_TAPPED_MM)),
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
+                *shaft_end(z_plate, z_motor - base, _SHAFT_MM),
             ),
             process="bought",
             group=Group.ROTOR,

@@ -22,7 +22,7 @@ from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import ALLOYS
 
-_BACK_BORE_MM = 8.0
+BACK_BORE_MM = 8.0
 """Radius of the backplate's central hole, behind the motor's shaft; our own choice."""
 
 
@@ -119,7 +119,7 @@ def _casing_and_backplate(
                     shell.z_end,
                     z_plate,
                     at.r_plate,
-                    _BACK_BORE_MM,
+                    BACK_BORE_MM,
                     back,
                     motor_holes(motor, MOTOR_CLEARANCE_HOLE_MM),
                     *back_vents,

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.actuator.encoder import encoder_parts, shaft_end
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
@@ -64,6 +65,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="backplate"),
         ),
         *_motor_parts(at, shell, motor, settings),
+        *encoder_parts(shell.z_plate, shell.z_end, shell.r_rear_seat - settings.parts.casing.lip_mm, "sun"),
     )
 
 
@@ -82,7 +84,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
                 *slab(shell.z_neck, -END_PLAY_MM, shell.r_journal),
                 *slab(at.z_gear_front, shell.z_neck, shell.r_neck),
                 *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
-                *slab(shell.z_plate, at.z_gear_back, shaft),
+                *shaft_end(shell.z_plate, at.z_gear_back, shaft),
             ),
             process="machined",
             group=Group.ROTOR,
