@@ -20,6 +20,8 @@ from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
+from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
@@ -29,8 +31,11 @@ from pareto_monoped.materials import ALLOYS
 
 _MOTOR_THREAD_MM = 5.0
 """How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
-_HUB_MM = 4.0
-"""Metal around the sun's shaft in the coupling; our own choice."""
+_HUB_MM = 3.0
+"""Metal around the spline in the coupling; our own choice."""
+_SCREWS_ALONE = 0.5
+"""Circle of the turning face's screws over the motor's diameter from which their friction carries the torque without
+dowels: M3 of 8.8 on the VT8020's 71.5 mm hold six times its peak torque."""
 _SHAFT_MM, _SHAFT_BORE_MM = 4.0, 4.5
 """Radii of a framed motor's shaft and of its bore in the base. The data sheets show no dimension of it; our own
 assumption, with the rear end flush with the base."""
@@ -65,42 +70,35 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 
 def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What turns with the motor: sun, its shaft, coupling."""
+    """What turns with the motor: the sun in one piece with its splined shaft, the coupling, and its dowels."""
     data, materials = settings.parts, settings.materials
-    shaft = 0.5 * data.gears.sun_bore_mm
     output = _output(motor)
     r_coupling = 0.5 * (output.pitch_circle_mm + output.diameter_mm) + data.coupling.rim_mm - _RIM_LESS_MM
+    spline = data.spline.external
     return (
         Part(
             name="sun",
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
             material=materials.gear_steel,
-            prisms=slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm), shaft),
+            prisms=(
+                *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
+                *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
+                *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
+                *slab(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
+                *slab(shell.z_motor, shell.z_coupling, spline),
+            ),
             process="machined",
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
             note=note_with(
-                gear_note(settings),
+                f"one piece with its shaft, {spline_note(spline)}; " + gear_note(settings),
                 at.gears.sun_teeth,
                 at.gears.module_mm,
                 data.gears.backlash_mm,
             ),
-            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="sun_shaft"),
-        ),
-        Part(
-            name="sun_shaft",
-            role=Role.SHAFT,
-            visibility=Visibility.INSIDE,
-            material=materials.steel,
-            prisms=slab(shell.z_motor, -END_PLAY_MM, shaft),
-            process="machined",
-            group=Group.ROTOR,
-            grade=ALLOYS["dowel"],
-            fits=(Fit(diameter_mm=2.0 * shaft, zone="m6"),),
-            note="dowel",
-            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
+            joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(
             name="coupling",
@@ -111,21 +109,57 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
                 shell.z_motor,
                 shell.z_coupling,
                 r_coupling,
-                shaft,
+                spline,
                 _rotor_holes(output, _ROTOR_HOLE_MM),
-                *_coupling_windows(shaft, output),
+                *_dowel_holes(motor),
+                *_coupling_windows(float(spline.tip_radius_mm), output),
             ),
             process="machined",
             group=Group.ROTOR,
-            grade=ALLOYS["aw_6082_t6"],
-            note="screwed to the motor's turning face",
+            grade=ALLOYS["aw_7075_t6"],
+            fits=_dowel_fits(motor),
+            note=f"screwed to the motor's turning face; bore {HUB_NOTE}",
         ),
+        *_coupling_dowels(shell, motor, settings),
     )
 
 
-def _coupling_windows(shaft_mm: float, output: HolePattern) -> tuple[Pattern, ...]:
+def _dowel_holes(motor: Motor) -> tuple[Pattern, ...]:
+    """One hole for a dowel between every two screws of the turning face, where its circle is small."""
+    output = _output(motor)
+    if output.pitch_circle_mm > _SCREWS_ALONE * motor.outer_diameter_mm:
+        return ()
+    return (COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count),)
+
+
+def _dowel_fits(motor: Motor) -> tuple[Fit, ...]:
+    return (COUPLING_DOWEL.hole_fit,) if _dowel_holes(motor) else ()
+
+
+def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """The dowels through the coupling into the motor's turning face."""
+    return tuple(
+        dowel_part(
+            "coupling_dowel",
+            COUPLING_DOWEL,
+            end_mm=shell.z_motor - shell.base_mm,
+            room_mm=shell.base_mm + settings.parts.coupling.thickness_mm + DOWEL_STANDS_OUT_MM,
+            direction=1.0,
+            material=settings.materials.steel,
+            count=holes.count,
+            pitch_radius_mm=holes.pitch_radius_mm,
+            phase_rad=holes.phase_rad,
+            group=Group.ROTOR,
+            partner="coupling",
+            note="drill and ream the turning face through the coupling",
+        )
+        for holes in _dowel_holes(motor)
+    )
+
+
+def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]:
     """Six lightening holes between the coupling's hub and its bolt circle, as large as their webs allow."""
-    low, high = shaft_mm + _HUB_MM, 0.5 * (output.pitch_circle_mm - output.diameter_mm) - _WEB_MM
+    low, high = hub_mm + _HUB_MM, 0.5 * (output.pitch_circle_mm - output.diameter_mm) - _WEB_MM
     middle = 0.5 * (low + high)
     radius = min(0.5 * (high - low) - _HALF_WEB_MM, middle * np.sin(np.pi / 6.0) - _HALF_WEB_MM)
     return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=6),) if radius >= _LEAST_WINDOW_MM else ()
@@ -195,7 +229,13 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
             role=Role.MOTOR_ROTOR,
             material=settings.materials.motor_rotor,
             prisms=(
-                *slab(z_motor - base, z_motor, at.r_motor, _rotor_holes(_output(motor), _ROTOR_TAPPED_MM)),
+                *slab(
+                    z_motor - base,
+                    z_motor,
+                    at.r_motor,
+                    _rotor_holes(_output(motor), _ROTOR_TAPPED_MM),
+                    *_dowel_holes(motor),
+                ),
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
                 *shaft_end(z_plate, z_motor - base, _SHAFT_MM),
             ),

@@ -7,6 +7,7 @@ import numpy as np
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sun_shaft import SunNeck, sun_neck
 from pareto_monoped.geometry.screws import LENGTHS_MM
 from pareto_monoped.geometry.shapes import Numbers
 
@@ -29,8 +30,8 @@ _RING_STEP_MM = 1.0
 class ExternalLayout:
     """Radii and heights of coupling, motor and housing, in mm, beyond what ``Layout`` has.
 
-    From the front: the ring housing's seat and its ring's groove; flange and web, where ring housing and casing meet;
-    coupling; motor; backplate.
+    From the front: the neck of the sun's shaft; the ring housing's seat and its ring's groove; flange and web, where
+    ring housing and casing meet; coupling; motor; backplate.
     """
 
     z_groove_back: Numbers
@@ -47,6 +48,7 @@ class ExternalLayout:
     r_flange: Numbers
     r_web: Numbers
     r_bolts: Numbers
+    neck: SunNeck
     base_mm: float
 
 
@@ -77,6 +79,7 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
         r_flange=r_flange,
         r_web=np.maximum(r_flange, at.r_casing + casing.wall_mm),
         r_bolts=r_tube + _FLANGE_BOLTS_MM,
+        neck=sun_neck(at, settings),
         base_mm=_frame_base_mm(motor, coupling.thickness_mm),
     )
 

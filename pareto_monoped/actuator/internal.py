@@ -23,6 +23,8 @@ from pareto_monoped.actuator.internal_layout import InternalLayout, frameless, i
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
+from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
@@ -36,8 +38,8 @@ _HUB_WALL_MM = 1.2
 """Of the coupling's hub, which touches the inner ring of the rear bearing only (6800: abutment 12 mm)."""
 _PAD_RIM_MM = 0.5
 """Metal inside and outside the threads in the backplate's pad; our own choice."""
-_BELL_PLAY_MM = 1.0
-"""From the sun's rear shaft to the bell's bore; our own choice."""
+_BELL_PLAY_MM = 0.5
+"""From the spline of the sun's shaft, which is put through the bell, to the bell's bore; our own choice."""
 
 
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
@@ -70,10 +72,11 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 
 def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What turns with the motor: the sun in one piece with its shaft, and the coupling to the bell."""
+    """What turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
     data, materials = settings.parts, settings.materials
-    coupling, shaft = data.coupling, data.coupling.shaft_radius_mm
+    coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
     z_hub = shell.z_coupling - coupling.thickness_mm
+    dowels = _bell_dowel_holes(settings)
     return (
         Part(
             name="sun",
@@ -81,22 +84,24 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             visibility=Visibility.INSIDE,
             material=materials.gear_steel,
             prisms=(
-                *slab(shell.z_neck, -END_PLAY_MM, shell.r_journal),
-                *slab(at.z_gear_front, shell.z_neck, shell.r_neck),
+                *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
+                *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
                 *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
-                *shaft_end(shell.z_plate, at.z_gear_back, shaft),
+                *slab(shell.z_coupling, at.z_gear_back, shaft),
+                *slab(z_hub, shell.z_coupling, spline),
+                *shaft_end(shell.z_plate, z_hub, shaft),
             ),
             process="machined",
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
             note=note_with(
-                "one piece with its shaft; " + gear_note(settings),
+                f"one piece with its shaft, {spline_note(spline)}; " + gear_note(settings),
                 at.gears.sun_teeth,
                 at.gears.module_mm,
                 data.gears.backlash_mm,
             ),
-            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="coupling"),
+            joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(
             name="coupling",
@@ -104,13 +109,28 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             visibility=Visibility.INSIDE,
             material=materials.aluminium,
             prisms=(
-                *slab(z_hub, shell.z_coupling, coupling.radius_mm, shaft, _bell_holes(settings, M3.core)),
+                *slab(z_hub, shell.z_coupling, coupling.radius_mm, spline, _bell_holes(settings, M3.core), dowels),
                 *tube(shell.z_seat, z_hub, shaft + _HUB_WALL_MM, shaft),
             ),
             process="machined",
             group=Group.ROTOR,
-            grade=ALLOYS["aw_6082_t6"],
-            note="screwed to the bell",
+            grade=ALLOYS["aw_7075_t6"],
+            fits=(COUPLING_DOWEL.hole_fit,),
+            note=f"screwed to the bell; bore {HUB_NOTE}",
+        ),
+        dowel_part(
+            "coupling_dowel",
+            COUPLING_DOWEL,
+            end_mm=z_hub,
+            room_mm=shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM,
+            direction=1.0,
+            material=materials.steel,
+            count=dowels.count,
+            pitch_radius_mm=dowels.pitch_radius_mm,
+            phase_rad=dowels.phase_rad,
+            group=Group.ROTOR,
+            partner="coupling",
+            note="drill and ream the bell through the coupling",
         ),
     )
 
@@ -119,6 +139,12 @@ def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
     """Bolt pattern between bell and coupling."""
     coupling = settings.parts.coupling
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * coupling.bolt_circle_mm, count=coupling.bolt_count)
+
+
+def _bell_dowel_holes(settings: ActuatorSettings) -> Pattern:
+    """One hole for a dowel between every two of these bolts."""
+    coupling = settings.parts.coupling
+    return COUPLING_DOWEL.holes(coupling.bolt_circle_mm, coupling.bolt_count, np.pi / coupling.bolt_count)
 
 
 def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
@@ -264,7 +290,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
     kit, rotor_share = frameless(motor), motor.rotor_mass_share
     height = kit.stator_height_mm
     assert height is not None
-    bell_bore = settings.parts.coupling.shaft_radius_mm + _BELL_PLAY_MM
+    bell_bore = float(settings.parts.spline.internal.tip_radius_mm) + _BELL_PLAY_MM
     z_bell, z_stator_back = shell.z_bell, shell.z_stator_back
     return (
         Part(
@@ -285,7 +311,14 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             material=settings.materials.motor_rotor,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
-                *slab(shell.z_coupling, z_bell, at.r_motor, bell_bore, _bell_holes(settings, M3.hole)),
+                *slab(
+                    shell.z_coupling,
+                    z_bell,
+                    at.r_motor,
+                    bell_bore,
+                    _bell_holes(settings, M3.hole),
+                    _bell_dowel_holes(settings),
+                ),
             ),
             process="bought",
             group=Group.ROTOR,

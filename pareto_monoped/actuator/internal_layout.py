@@ -7,12 +7,9 @@ import numpy as np
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import FramelessMotor, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sun_shaft import SunNeck, sun_neck
 from pareto_monoped.geometry.shapes import Numbers
 
-_NECK_RADIUS_MM = 3.8
-"""Of the sun's neck, which touches the inner ring of its end bearing only (619/6: abutment from 7.6 mm diameter)."""
-_NECK_PLAY_MM = 0.2
-"""Axial play of the rotor between end bearing and rear bearing; our own choice."""
 _FLANGE_LESS_MM = 1.0
 """By how much the ring housing's flange is narrower than the casing's, within whose bolts it stays."""
 
@@ -26,10 +23,9 @@ class InternalLayout:
         z_bell, z_stator_back: front of the bell, back of the stator.
         z_coupling: front of the coupling, at the bell's back.
         z_seat, z_plate, z_end: front of the rear bearing, front and back of the backplate.
-        z_neck: back of the sun shaft's end in the end bearing.
+        neck: front end of the sun's shaft.
         r_seat_out, r_flange, r_flange_bolts, r_lip: of the ring housing: outside of its seat, its flange, the flange's
             bolt circle, the lip's opening.
-        r_journal, r_neck: of the sun's shaft in the end bearing and behind it.
         r_rear_seat: of the rear bearing's seat.
     """
 
@@ -41,13 +37,11 @@ class InternalLayout:
     z_seat: Numbers
     z_plate: Numbers
     z_end: Numbers
-    z_neck: Numbers
+    neck: SunNeck
     r_seat_out: Numbers
     r_flange: Numbers
     r_flange_bolts: Numbers
     r_lip: Numbers
-    r_journal: Numbers
-    r_neck: Numbers
     r_rear_seat: Numbers
 
 
@@ -71,7 +65,6 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
     z_seat = z_coupling - data.coupling.thickness_mm - casing.bearing_play_mm
     z_plate = z_seat - at.rear_bearing.width_mm
     r_flange = r_seat_out + casing.flange_width_mm - _FLANGE_LESS_MM
-    r_journal = 0.5 * at.end_bearing.inner_diameter_mm
     return InternalLayout(
         z_flange=z_flange,
         z_lip=z_lip,
@@ -81,7 +74,7 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
         z_seat=z_seat,
         z_plate=z_plate,
         z_end=z_plate - casing.wall_mm,
-        z_neck=-at.end_bearing.width_mm - _NECK_PLAY_MM,
+        neck=sun_neck(at, settings),
         r_seat_out=r_seat_out,
         r_flange=r_flange,
         r_flange_bolts=r_flange - 0.5 * (casing.flange_width_mm - _FLANGE_LESS_MM),
@@ -90,8 +83,6 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
             np.minimum(at.r_seat - casing.lip_mm, at.r_ring - 0.5 * casing.ring_lip_mm),
             at.r_bore + data.carrier.shoulder_height_mm + casing.rotor_clearance_mm,
         ),
-        r_journal=r_journal,
-        r_neck=np.maximum(r_journal, np.minimum(_NECK_RADIUS_MM, at.r_carrier_in - casing.rotor_clearance_mm))[()],
         r_rear_seat=0.5 * at.rear_bearing.outer_diameter_mm,
     )
 

@@ -42,7 +42,7 @@ MOUNT_BORE_MM = 25.0
 the thread pad. It also leaves room for the journal behind."""
 
 OUTPUT_BORE_MM = 14.0
-"""Across the coupling's hub within the holes of the turning face: a shaft of 6 mm in 4 mm of metal."""
+"""Across the coupling's hub within the holes of the turning face: a spline of 10 mm in 2 mm of metal."""
 
 AIR_GAP_MM = 0.5
 """Magnetic air gap of small outrunners, per side; an estimate."""

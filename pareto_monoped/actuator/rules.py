@@ -166,10 +166,11 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         cures=("a wider motor", "a smaller module"),
     ),
     "sun_rim": Constraint(
-        says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG; the ISSPG's sun has no bore)",
+        says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG, whose sun is on a shaft)",
         source="AGMA 2001-D04, rim thickness factor 1",
         margin=_sun_rim,
         cures=("a smaller bore of the sun", "a larger module"),
+        rule_sets=("paper",),
     ),
     "planet_rim": Constraint(
         says="wall between the planet's bore and its roots >= 1.2 tooth depths",

@@ -10,6 +10,7 @@ from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -120,6 +121,28 @@ class CouplingData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SplineData:
+    """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm."""
+
+    __pydantic_config__ = _STRICT
+
+    module_mm: Positive
+    external_teeth: Annotated[int, Field(ge=6)]
+    internal_teeth: Annotated[int, Field(ge=6)]
+    sun_shaft_radius_mm: Positive
+
+    @property
+    def external(self) -> ExternalGear:
+        """Of the ESSPG."""
+        return ExternalGear(teeth=self.external_teeth, module_mm=self.module_mm)
+
+    @property
+    def internal(self) -> ExternalGear:
+        """Of the ISSPG."""
+        return ExternalGear(teeth=self.internal_teeth, module_mm=self.module_mm)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class InterfaceData:
     """Bolt patterns towards the links."""
 
@@ -140,6 +163,7 @@ class PartData:
     carrier: CarrierData
     casing: CasingData
     coupling: CouplingData
+    spline: SplineData
     interface: InterfaceData
     rating: RatingData
     duty: DutyData

@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from itertools import combinations
 
+import numpy as np
+
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
-from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 # Pairs that touch or mesh by design, checked in other ways.
@@ -22,6 +24,15 @@ class Ring:
     r1: float
     z0: float
     z1: float
+    outline: Shape
+    holes: tuple[Shape, ...]
+
+    def fits(self, other: "Ring") -> bool:
+        """Whether one is splined into the other: the same toothing outside and inside."""
+        return any(
+            isinstance(inner.outline, ExternalGear) and inner.outline in outer.holes
+            for inner, outer in ((self, other), (other, self))
+        )
 
 
 def outer_mm(shape: Shape) -> float:
@@ -34,6 +45,7 @@ def outer_mm(shape: Shape) -> float:
 def inner_mm(holes: tuple[Shape, ...]) -> float:
     """Radius of the central hole; patterns of holes are left out, which is on the safe side."""
     centred = [hole.radius_mm for hole in holes if isinstance(hole, Circle)]
+    centred += [hole.root_radius_mm for hole in holes if isinstance(hole, ExternalGear)]  # a spline
     centred += [hole.tip_radius_mm for hole in holes if isinstance(hole, InternalGear)]
     assert len(centred) <= 1
     return float(centred[0]) if centred else 0.0
@@ -46,8 +58,21 @@ def rings(part: Part) -> list[Ring]:
         r0, r1 = inner_mm(prism.holes), outer_mm(prism.outline)
         if part.pitch_radius_mm:
             r0, r1 = part.pitch_radius_mm - r1, part.pitch_radius_mm + r1
-        found.append(Ring(part=part.name, group=part.group, r0=r0, r1=r1, z0=float(prism.z0_mm), z1=float(prism.z1_mm)))
+        found.append(ring_of(part, prism, r0, r1))
     return found
+
+
+def ring_of(part: Part, prism: Prism, r0: float, r1: float) -> Ring:
+    return Ring(
+        part=part.name,
+        group=part.group,
+        r0=r0,
+        r1=r1,
+        z0=float(prism.z0_mm),
+        z1=float(prism.z1_mm),
+        outline=prism.outline,
+        holes=prism.holes,
+    )
 
 
 def gap_mm(a: Ring, b: Ring) -> float:
@@ -113,9 +138,11 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
         if a.pitch_radius_mm and b.pitch_radius_mm:
             # Planet, bush, pin and its screw on one axis: nested, seen from that axis. All others: side by side.
             one_axis = abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
+            if one_axis and is_fastener(a) and is_fastener(b) and a.phase_rad != b.phase_rad and beside(a, b):
+                continue
             rings_a, rings_b = (rings_about_own_axis(part) if one_axis else rings(part) for part in (a, b))
-        elif any(part.name.endswith("_screw") for part in (a, b)):
-            screw, other = (a, b) if a.name.endswith("_screw") else (b, a)
+        elif is_fastener(a) or is_fastener(b):
+            screw, other = (a, b) if is_fastener(a) else (b, a)
             found += screw_clashes(screw, other)
             continue
         elif "planet_pin" in pair and pair & {"carrier", "secondary_carrier"}:
@@ -127,24 +154,34 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
             rings_a, rings_b = rings(a), rings(b)
         turning = a.group != b.group and not any("bearing" in name or "bush" in name for name in pair)
         needed = clearance_mm if turning else 0.0
-        least = min(gap_mm(x, y) for x in rings_a for y in rings_b)
+        least = min(gap_mm(x, y) for x in rings_a for y in rings_b if not x.fits(y))
         if least < needed - 1e-9:
             found.append(f"{a.name} and {b.name}: {least:.3f} mm, {needed} needed")
     return found
 
 
 def rings_about_own_axis(part: Part) -> list[Ring]:
-    return [
-        Ring(
-            part=part.name,
-            group=part.group,
-            r0=inner_mm(prism.holes),
-            r1=outer_mm(prism.outline),
-            z0=float(prism.z0_mm),
-            z1=float(prism.z1_mm),
-        )
-        for prism in part.prisms
-    ]
+    return [ring_of(part, prism, inner_mm(prism.holes), outer_mm(prism.outline)) for prism in part.prisms]
+
+
+def is_fastener(part: Part) -> bool:
+    """Whether it stands in holes that other parts have for it."""
+    return part.name.endswith(("_screw", "_dowel"))
+
+
+def beside(a: Part, b: Part) -> bool:
+    """Whether two fasteners on one circle stand at angles that leave room between them."""
+    turns = {
+        (k / n * 2.0 * np.pi + part.phase_rad, part.name) for part in (a, b) for n in [part.count] for k in range(n)
+    }
+    radius = max(float(prism.outline.radius_mm) for prism in a.prisms) + max(
+        float(prism.outline.radius_mm) for prism in b.prisms
+    )
+    return all(
+        2.0 * a.pitch_radius_mm * abs(np.sin(0.5 * (one - other))) >= radius
+        for (one, name), (other, its) in combinations(turns, 2)
+        if name != its
+    )
 
 
 def overlaps_within(part: Part) -> list[str]:

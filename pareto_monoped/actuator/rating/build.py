@@ -106,10 +106,8 @@ def _rim_factors(gears: GearSet, family: Family, settings: ActuatorSettings) -> 
     planet = external_rim_factor((gears.planet().root_radius_mm - 0.5 * data.planet_bore_mm) / depth)
     wall = ring_radius_mm(gears, family, settings) - gears.ring_root_radius_mm
     ring = internal_rim_factor(wall / gears.module_mm)
-    if family == "ISSPG":
-        # One piece with its shaft: no rim.
-        return np.ones(np.shape(planet))[()], planet, ring
-    return external_rim_factor((gears.sun().root_radius_mm - 0.5 * data.sun_bore_mm) / depth), planet, ring
+    # The sun is one piece with its shaft: no rim.
+    return np.ones(np.shape(planet))[()], planet, ring
 
 
 def _mesh(

@@ -45,12 +45,10 @@ def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Sti
 
     Rings of gears, housing, bolted joints and the rotor itself are taken as rigid.
     """
-    steel, gear = settings.materials.steel, settings.materials.gear_steel
-    shaft = gear if actuator.family == "ISSPG" else steel  # the ESSPG's sun sits on a dowel
     return Stiffness(
         mesh=mesh_compliance(actuator),
         pins=pin_compliance(actuator.gears, at, settings),
-        shaft=_shaft_compliance(actuator, at, shaft) / actuator.ratio**2,
+        shaft=_shaft_compliance(actuator, at, settings.materials.gear_steel) / actuator.ratio**2,
         carrier=_carrier_compliance(actuator, at, settings.materials.aluminium),
     )
 
@@ -93,16 +91,16 @@ def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> fl
 def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:
     """Of the sun's shaft from the coupling's front to the middle of the teeth, at the sun.
 
-    The teeth of a sun in one piece with its shaft stiffen it; half their width is counted as plain shaft.
+    The sun's teeth stiffen the shaft; half their width is counted as plain shaft.
     """
     coupling = [prism for part in actuator.parts if part.role is Role.COUPLING for prism in part.prisms]
     front = max(float(prism.z1_mm) for prism in coupling)
-    turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role in (Role.SHAFT, Role.GEAR)]
+    turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role is Role.GEAR]
     radii = [
         float(prism.outline.radius_mm)
         for part in turning
         for prism in part.prisms
-        if isinstance(prism.outline, Circle) and prism.z0_mm < front <= prism.z1_mm
+        if isinstance(prism.outline, Circle) and prism.z0_mm <= front < prism.z1_mm
     ]
     middle = 0.5 * float(at.z_gear_back + at.z_gear_front)
     return 1e3 * (middle - front) / (steel.shear_modulus_mpa * 0.5 * np.pi * max(radii) ** 4)

@@ -37,7 +37,7 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
             families.setdefault(entry.actuator.family, entry.actuator.ratio)
     ratios = list(families.values())
     design = PAPER_CASES["A"].design.replace({"knee_ratio": ratios[-1], "hip_ratio": ratios[0]})
-    assert loose_parts(build_robot(design, found)) == ([], pytest.approx(219, abs=30))
+    assert loose_parts(build_robot(design, found)) == ([], pytest.approx(245, abs=40))
 
 
 @pytest.mark.parametrize(
@@ -50,9 +50,8 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
         ("knee_actuator/planet_pin_screw", {"knee_actuator/secondary_carrier", "knee_actuator/planet"}),
         ("hip_actuator/planet_bush", {"hip_actuator/planet"}),
         ("hip_actuator/backplate_screw", {"hip_actuator/backplate", "hip_actuator/motor_rotor"}),
-        ("knee_actuator/coupling_screw", {"knee_actuator/coupling", "knee_actuator/sun"}),
         ("base_frame/hip_mount_screw", {"hip_actuator/casing", "hip_actuator/motor_stator"}),
-        ("journal/journal_screw", {"knee_actuator/motor_stator", "knee_actuator/motor_rotor"}),
+        ("journal/journal_screw", {"knee_actuator/motor_stator"}),
         ("thigh/hip_coupling_screw", {"thigh/hip_coupling"}),
         ("thigh/turnbuckle_end", {"thigh/turnbuckle_barrel"}),
         ("thigh/drive_sprocket", {"thigh/drive_coupling"}),

@@ -1,0 +1,129 @@
+"""Hardened parallel pins (ISO 8734, type A) as parts, and the holes that they stand in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.screws import cylinder
+from pareto_monoped.geometry.shapes import Numbers, Pattern
+from pareto_monoped.materials import ALLOYS, Alloy, Material
+
+LENGTHS_MM = np.array([5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40], dtype=np.float64)
+"""Lengths in which pins are sold (ISO 8734)."""
+_SOLD_MM = {2.0: (5, 20), 2.5: (6, 24), 3.0: (8, 30), 4.0: (10, 40), 5.0: (12, 50)}
+"""Least and greatest length by diameter (ISO 8734)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dowel:
+    """A size of dowel.
+
+    Pressed into one part by H7/m6, which leaves aluminium elastic, and bonded there, because this fit may have play.
+    The holes of the other parts are reamed together with it.
+
+    Attributes:
+        diameter_mm: nominal.
+    """
+
+    diameter_mm: float
+
+    @property
+    def radius_mm(self) -> float:
+        """Half the diameter."""
+        return 0.5 * self.diameter_mm
+
+    @property
+    def fit(self) -> Fit:
+        """Tolerance of the dowel."""
+        return Fit(diameter_mm=self.diameter_mm, zone="m6")
+
+    @property
+    def hole_fit(self) -> Fit:
+        """Tolerance of its holes."""
+        return Fit(diameter_mm=self.diameter_mm, zone="H7")
+
+    @property
+    def alloy(self) -> Alloy:
+        """What it is made of."""
+        return ALLOYS["dowel"]
+
+    def holes(self, pitch_circle_mm: Numbers, count: Numbers, phase_rad: float) -> Pattern:
+        """Holes for dowels on a circle."""
+        return Pattern(
+            radius_mm=self.radius_mm, pitch_radius_mm=0.5 * pitch_circle_mm, count=count, phase_rad=phase_rad
+        )
+
+    def length_mm(self, room_mm: Numbers) -> Numbers:
+        """The longest catalogue length that fits.
+
+        Raises:
+            DesignError: even the shortest is too long.
+        """
+        least, most = _SOLD_MM[self.diameter_mm]
+        sold = LENGTHS_MM[(least <= LENGTHS_MM) & (most >= LENGTHS_MM)]
+        row = np.searchsorted(sold, np.asarray(room_mm) + 1e-9, side="right") - 1
+        if np.any(row < 0):
+            raise DesignError(
+                f"dowel of {self.diameter_mm:g} mm with room for {np.min(room_mm):g} mm: must have room for "
+                f"{sold[0]:g} mm; make a plate thicker or the dowel thinner"
+            )
+        return sold[row][()]
+
+
+def dowel_part(
+    name: str,
+    dowel: Dowel,
+    *,
+    end_mm: Numbers,
+    room_mm: Numbers,
+    direction: float,
+    material: Material,
+    count: Numbers,
+    pitch_radius_mm: Numbers,
+    phase_rad: float,
+    partner: str,
+    group: Group = Group.FIXED,
+    note: str = "",
+) -> Part:
+    """A circle of bought dowels, each of the greatest length for which its holes have room.
+
+    Args:
+        name: of the part.
+        dowel: its size.
+        end_mm: height of the end at which it begins, such as the bottom of its blind hole.
+        room_mm: from there to as far as it may reach.
+        direction: in which it reaches along z, -1 or 1.
+        material: of the pin.
+        count: how many on the circle.
+        pitch_radius_mm: radius of the circle.
+        phase_rad: angle of the first one.
+        partner: name of the part of the same unit in which it is pressed and bonded.
+        group: what it moves with.
+        note: what else the maker should know.
+
+    Raises:
+        DesignError: no catalogue length fits.
+    """
+    length = dowel.length_mm(room_mm)
+    # In a population the lengths differ; notes are used only for single parts.
+    long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
+    return Part(
+        name=name,
+        role=Role.PIN,
+        visibility=Visibility.INSIDE,
+        material=material,
+        prisms=(cylinder(dowel.radius_mm, end_mm, end_mm + direction * length),),
+        process="bought",
+        count=count,
+        pitch_radius_mm=pitch_radius_mm,
+        phase_rad=phase_rad,
+        group=group,
+        grade=dowel.alloy,
+        fits=(dowel.fit,),
+        note=f"parallel pin {dowel.diameter_mm:g} m6{long} (ISO 8734 A){'; ' + note if note else ''}",
+        joint=Joint(kind=JointKind.BONDED, how="pressed and bonded into", partner=partner),
+    )
