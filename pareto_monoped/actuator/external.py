@@ -25,7 +25,7 @@ from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import screw_for, screw_part
+from pareto_monoped.geometry.screws import Screw, clearance, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import ALLOYS
 
@@ -73,6 +73,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     """What turns with the motor: the sun in one piece with its splined shaft, the coupling, and its dowels."""
     data, materials = settings.parts, settings.materials
     output = _output(motor)
+    through = _rotor_holes(output, _ROTOR_HOLE_MM)
     r_coupling = 0.5 * (output.pitch_circle_mm + output.diameter_mm) + data.coupling.rim_mm - _RIM_LESS_MM
     spline = data.spline.external
     return (
@@ -110,7 +111,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
                 shell.z_coupling,
                 r_coupling,
                 spline,
-                _rotor_holes(output, _ROTOR_HOLE_MM),
+                through,
                 *_dowel_holes(motor),
                 *_coupling_windows(float(spline.tip_radius_mm), output),
             ),
@@ -118,6 +119,9 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             group=Group.ROTOR,
             grade=ALLOYS["aw_7075_t6"],
             fits=_dowel_fits(motor),
+            features=(
+                clearance(_output_screw(output), (through,), shell.z_motor, shell.z_coupling, countersunk="high"),
+            ),
             note=f"screwed to the motor's turning face; bore {HUB_NOTE}",
         ),
         *_coupling_dowels(shell, motor, settings),
@@ -173,7 +177,7 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
     return (
         screw_part(
             "coupling_screw",
-            screw_for(output.diameter_mm, 0.5 * output.diameter_mm + 0.5 * _ROTOR_TAPPED_MM),
+            _output_screw(output),
             head="countersunk",
             seat_mm=shell.z_coupling,
             grip_mm=settings.parts.coupling.thickness_mm,
@@ -252,6 +256,11 @@ def _output(motor: Motor) -> HolePattern:
     """Holes in the motor's turning face."""
     assert motor.output_holes is not None
     return motor.output_holes
+
+
+def _output_screw(output: HolePattern) -> Screw:
+    """The screw for the motor's turning face."""
+    return screw_for(output.diameter_mm, 0.5 * output.diameter_mm + 0.5 * _ROTOR_TAPPED_MM)
 
 
 def _rotor_holes(output: HolePattern, play_mm: float) -> Pattern:

@@ -19,7 +19,7 @@ from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import M3, screw_part
+from pareto_monoped.geometry.screws import M3, clearance, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import ALLOYS
 
@@ -212,7 +212,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.OUTPUT,
             grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
-            note="countersink the back",
+            features=(clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),),
         ),
         Part(
             name="retaining_ring",

@@ -28,7 +28,7 @@ from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import M3, screw_part
+from pareto_monoped.geometry.screws import M3, clearance, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import ALLOYS
 
@@ -174,6 +174,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             process="machined",
             group=Group.HOUSING,
             grade=ALLOYS["aw_6082_t6"],
+            features=(clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),),
             note="bore and faces in one clamping",
         ),
         Part(
@@ -291,7 +292,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
     height = kit.stator_height_mm
     assert height is not None
     bell_bore = float(settings.parts.spline.internal.tip_radius_mm) + _BELL_PLAY_MM
-    z_bell, z_stator_back = shell.z_bell, shell.z_stator_back
+    z_bell, z_stator_back, screws = shell.z_bell, shell.z_stator_back, _bell_holes(settings, M3.hole)
     return (
         Part(
             name="motor_stator",
@@ -311,18 +312,12 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             material=settings.materials.motor_rotor,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
-                *slab(
-                    shell.z_coupling,
-                    z_bell,
-                    at.r_motor,
-                    bell_bore,
-                    _bell_holes(settings, M3.hole),
-                    _bell_dowel_holes(settings),
-                ),
+                *slab(shell.z_coupling, z_bell, at.r_motor, bell_bore, screws, _bell_dowel_holes(settings)),
             ),
             process="bought",
             group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * kit.mass_kg,
-            note=f"{motor.name}, frameless",
+            features=(clearance(M3, (screws,), shell.z_coupling, z_bell, countersunk="high"),),
+            note=f"{motor.name}, frameless; countersink the bell's holes",
         ),
     )

@@ -13,6 +13,8 @@ from functools import lru_cache, reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.features import Feature
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
@@ -221,7 +223,7 @@ class Part:
         accuracy_class: of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters.
         joint: what holds it where its shape does not.
         visibility: where it is drawn.
-        countersunk_mm: heights of the flush faces of countersunk heads, which are drawn as plain shanks.
+        features: its holes, chamfers and countersunk heads, whose cones are geometry too.
     """
 
     name: str
@@ -242,12 +244,17 @@ class Part:
     accuracy_class: int | None = field(default=None, compare=False)
     joint: Joint | None = None
     visibility: Visibility = Visibility.OUTSIDE
-    countersunk_mm: tuple[Numbers, ...] = ()
+    features: tuple[Feature, ...] = ()
+
+    @property
+    def bevels(self) -> tuple[Bevel, ...]:
+        """The cones of all features."""
+        return tuple(bevel for feature in self.features for bevel in feature.bevels)
 
     def volume_mm3(self) -> Numbers:
         """Volume of one instance."""
         volume: Numbers = 0.0
-        solids: tuple[Prism | Ball, ...] = (*self.prisms, *self.balls)
+        solids: tuple[Prism | Ball | Bevel, ...] = (*self.prisms, *self.balls, *self.bevels)
         for solid in solids:
             volume = volume + solid.integrals()[0]
         return volume
@@ -281,7 +288,7 @@ class Part:
 
     def _circle(self) -> MassProperties:
         """The instances of one place, about the centre of their circle."""
-        one = _uniform((*self.prisms, *self.balls), self.material.density_kg_per_m3)
+        one = _uniform((*self.prisms, *self.balls, *self.bevels), self.material.density_kg_per_m3)
         if self.catalogue_mass_kg is not None:
             one = one.scaled(np.asarray(self.catalogue_mass_kg, dtype=np.float64) / one.mass_kg)
         everything = one.scaled(self.count)
@@ -306,7 +313,7 @@ def _remembered(part: Part) -> MassProperties:
     return part._everywhere()
 
 
-def _uniform(solids: tuple[Prism | Ball, ...], density_kg_per_m3: float) -> MassProperties:
+def _uniform(solids: tuple[Prism | Ball | Bevel, ...], density_kg_per_m3: float) -> MassProperties:
     """Mass properties of solids of one density about the origin, in SI."""
     columns = zip(*(solid.integrals() for solid in solids), strict=True)
     sums = [np.asarray(reduce(np.add, column), dtype=np.float64) for column in columns]

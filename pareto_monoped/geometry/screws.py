@@ -6,9 +6,10 @@ from typing import Literal
 import numpy as np
 
 from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.features import COARSE_PITCHES_MM, Cone, CountersunkHead, Hole, Mouth, Thread
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role, Visibility
-from pareto_monoped.geometry.shapes import Circle, Numbers
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.materials import Material
 
 Head = Literal["cap", "countersunk", "hexagon"]
@@ -33,6 +34,7 @@ class Screw:
         hole: clearance hole (ISO 273, fine).
         core: tapping hole; a screw inside a thread is drawn with this radius, so that it overlaps nothing.
         head, head_height: cap screw (ISO 4762).
+        countersunk: of a countersunk head in its face, the cone drawn sharp.
     """
 
     shank: float
@@ -40,6 +42,7 @@ class Screw:
     core: float
     head: float
     head_height: float
+    countersunk: float
 
     def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
         """A screw on the z axis without its head: through a grip into a thread, in ``direction`` (-1 or 1)."""
@@ -51,6 +54,78 @@ class Screw:
         """Such as ``M3``."""
         return f"M{2.0 * self.shank:g}"
 
+    @property
+    def thread(self) -> Thread:
+        """The thread that it is driven into."""
+        diameter = 2.0 * self.shank
+        return Thread(diameter_mm=diameter, pitch_mm=COARSE_PITCHES_MM[diameter])
+
+    def countersink(self, hole_mm: float) -> Mouth:
+        """The mouth of a hole of radius ``hole_mm`` that takes a countersunk head flush with its face."""
+        return Mouth.at_90_degrees(self.countersunk, hole_mm, Cone.COUNTERSINK)
+
+    @property
+    def tap_lead(self) -> Mouth:
+        """The mouth of a tapped hole: a chamfer to the nominal diameter (DIN 76-1: 1 to 1.05 diameters)."""
+        return Mouth.at_90_degrees(self.shank, self.core)
+
+
+def clearance(
+    screw: Screw,
+    shapes: tuple[Circle | Pattern, ...],
+    low_mm: Numbers,
+    high_mm: Numbers,
+    *,
+    countersunk: Literal["low", "high"] | None = None,
+) -> Hole:
+    """Clearance holes for a screw, if asked for countersunk at one end.
+
+    Args:
+        screw: what goes through them.
+        shapes: as they stand in the prisms; their radius is ``screw.hole``, or that of a sleeve nut.
+        low_mm: height of their lower ends.
+        high_mm: height of their upper ends.
+        countersunk: the end that takes the head.
+    """
+    sink = None if countersunk is None else screw.countersink(float(shapes[0].radius_mm))
+    return Hole(
+        shapes=shapes,
+        low_mm=low_mm,
+        high_mm=high_mm,
+        low=sink if countersunk == "low" else None,
+        high=sink if countersunk == "high" else None,
+    )
+
+
+def tapped(
+    screw: Screw,
+    shapes: tuple[Circle | Pattern, ...],
+    low_mm: Numbers,
+    high_mm: Numbers,
+    *,
+    enters: Literal["low", "high", "both"],
+    usable_mm: Numbers | None = None,
+) -> Hole:
+    """Tapped holes for a screw, chamfered where it enters.
+
+    Args:
+        screw: what is driven into them.
+        shapes: as they stand in the prisms; their radius is ``screw.core``.
+        low_mm: height of their lower ends.
+        high_mm: height of their upper ends.
+        enters: the end or ends at which the thread begins.
+        usable_mm: depth of the thread; None: all of the hole.
+    """
+    return Hole(
+        shapes=shapes,
+        low_mm=low_mm,
+        high_mm=high_mm,
+        low=screw.tap_lead if enters in ("low", "both") else None,
+        high=screw.tap_lead if enters in ("high", "both") else None,
+        thread=screw.thread,
+        thread_mm=usable_mm,
+    )
+
 
 def cylinder(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
     """A cylinder on the z axis between two heights in either order."""
@@ -58,22 +133,24 @@ def cylinder(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
     return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=low, z1_mm=high)
 
 
-M25 = Screw(shank=1.25, hole=1.35, core=1.025, head=2.25, head_height=2.5)
-M3 = Screw(shank=1.5, hole=1.6, core=1.25, head=2.75, head_height=3.0)
-M4 = Screw(shank=2.0, hole=2.15, core=1.65, head=3.5, head_height=4.0)
-M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0)
+# Countersunk: ISO 7721 for M2.5, ISO 10642 from M3 up. ISO 14581 heads of short M3 lie 0.2 mm below the face.
+M25 = Screw(shank=1.25, hole=1.35, core=1.025, head=2.25, head_height=2.5, countersunk=2.75)
+M3 = Screw(shank=1.5, hole=1.6, core=1.25, head=2.75, head_height=3.0, countersunk=3.36)
+M4 = Screw(shank=2.0, hole=2.15, core=1.65, head=3.5, head_height=4.0, countersunk=4.48)
+M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0, countersunk=5.6)
 
 
 def screw_for(diameter_mm: float, core_mm: float) -> Screw:
     """The screw for a motor's thread, with the core radius that the actuator draws there."""
     known = {2.0 * screw.shank: screw for screw in (M25, M3, M4, M5)}
-    # Between the standard sizes: proportions that are no smaller than those of ISO 4762 from M3 up.
+    # Between the standard sizes: proportions that are no smaller than those of ISO 4762 and ISO 10642 from M3 up.
     other = Screw(
         shank=0.5 * diameter_mm,
         hole=0.5 * diameter_mm + 0.15,
         core=0.0,
         head=0.92 * diameter_mm,
         head_height=diameter_mm,
+        countersunk=1.12 * diameter_mm,
     )
     return replace(known.get(diameter_mm, other), core=core_mm)
 
@@ -150,6 +227,16 @@ def screw_part(
         # A disc of the hexagon's area.
         radius = HEXAGON_FLATS_MM[size] * np.sqrt(np.sqrt(3.0) / 2.0 / np.pi)
         drawn = (cylinder(float(radius), seat_mm - direction * HEXAGON_HEIGHT_MM[size], seat_mm), *drawn)
+    features: tuple[CountersunkHead, ...] = ()
+    if head == "countersunk":
+        if np.any(grip_mm < screw.countersunk - screw.shank):
+            raise DesignError(
+                f"{name}: grip of {np.min(grip_mm):g} mm must be {screw.countersunk - screw.shank:g} mm or more, the "
+                "height of its countersunk head; make the plate thicker"
+            )
+        features = (
+            CountersunkHead(shank_mm=screw.shank, radius_mm=screw.countersunk, face_mm=seat_mm, inwards=direction),
+        )
     # In a population the lengths differ; notes are used only for single parts.
     long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
     standard = _STANDARDS.get(head) or (_COMMON if np.min(length) >= 8.0 and size >= 3.0 else _SMALL)
@@ -164,7 +251,7 @@ def screw_part(
         phase_rad=phase_rad,
         group=group,
         visibility=visibility,
-        countersunk_mm=(seat_mm,) if head == "countersunk" else (),
+        features=features,
         note=f"{screw.name}{long} {standard} {grade}{', ' + note if note else ''}",
     )
     return part if places_mm is None else replace(part, places_mm=places_mm)

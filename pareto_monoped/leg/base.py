@@ -5,7 +5,7 @@ import numpy as np
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import M3, M4, screw_part
+from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
 from pareto_monoped.leg.bearing import LIP, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -72,6 +72,8 @@ def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
     """The plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
+    mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
+    seats = holes_at(hip_seat_screws(d), M4.hole)
     return (
         Part(
             name="base_near_cheek",
@@ -85,7 +87,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                     z1_mm=z1,
                     holes=(
                         Circle(radius_mm=d.coupler_radius_mm + _BORE_PLAY),
-                        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes),
+                        mount,
                         # One below each gap between the screws.
                         Pattern(
                             radius_mm=_RELIEF_RADIUS,
@@ -94,13 +96,17 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                             phase_rad=np.pi / 6,
                         ),
                         *_common_holes(d),
-                        *holes_at(hip_seat_screws(d), M4.hole),
+                        *seats,
                     ),
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
-            note=f"{d.cheek_mm:g} mm sheet; countersink the screw holes: the actuator's on the "
-            "thigh's side, those of the hip's seats on the actuator's",
+            # The actuator's screws come from the thigh's side, those of the hip's seats from the actuator's.
+            features=(
+                clearance(M3, (mount,), z0, z1, countersunk="high"),
+                clearance(M4, seats, z0, z1, countersunk="low"),
+            ),
+            note=f"{d.cheek_mm:g} mm sheet",
         ),
         screw_part(
             "hip_mount_screw",

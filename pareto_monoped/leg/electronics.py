@@ -8,7 +8,7 @@ import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import M4, screw_part
+from pareto_monoped.geometry.screws import M4, clearance, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.outlines import rounded
@@ -52,8 +52,16 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             process="laser cut",
             prisms=(_between(_plate_outline(d), face_mm, back, *_plate_holes(d)),),
             grade=ALLOYS["aw_6082_t6"],
-            note=f"{DRIVER_PLATE_MM:g} mm sheet; countersink the board's holes on the cheek's side; "
-            "cable ties through the upper holes",
+            features=(
+                clearance(
+                    driver.screw,
+                    holes_at(holes, driver.screw.hole),
+                    np.minimum(face_mm, back)[()],
+                    np.maximum(face_mm, back)[()],
+                    countersunk="low" if direction > 0.0 else "high",
+                ),
+            ),
+            note=f"{DRIVER_PLATE_MM:g} mm sheet; cable ties through the upper holes",
         ),
         screw_part(
             f"{motor}_standoff_screw",

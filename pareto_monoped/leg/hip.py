@@ -7,7 +7,7 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.sprocket import sprocket_prisms
+from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the couplings, mm.
@@ -94,7 +94,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             role=Role.SPROCKET,
             material=MATERIALS.steel,
             process="machined",
-            prisms=sprocket_prisms(d),
+            prisms=sprocket_prisms(d, M3.head + HEAD_PLAY),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["c45_n"],
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",

@@ -5,11 +5,11 @@ import numpy as np
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, cylinder, screw_part
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, clearance, cylinder, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.sprocket import BORE_RADIUS, sprocket_prisms
+from pareto_monoped.leg.sprocket import BORE_RADIUS, HEAD_PLAY, sprocket_prisms, sprocket_screws
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the cups, mm.
@@ -170,15 +170,21 @@ def _flange_z_mm(d: LegDimensions) -> float:
 def _sprocket(d: LegDimensions) -> tuple[Part, ...]:
     """The sprocket and the screws that hold it on the axle's flange."""
     half_tooth = 0.5 * d.chain.sprocket_width_mm
+    prisms = sprocket_prisms(d, M3.countersunk + HEAD_PLAY)
     return (
         Part(
             name="knee_sprocket",
             role=Role.SPROCKET,
             material=MATERIALS.steel,
             process="machined",
-            prisms=sprocket_prisms(d),
             grade=ALLOYS["c45_n"],
-            note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606); as drive_sprocket, screw holes countersunk",
+            prisms=prisms,
+            features=(
+                clearance(
+                    M3, (sprocket_screws(d, M3.hole),), d.sprocket_recess_mm - half_tooth, half_tooth, countersunk="low"
+                ),
+            ),
+            note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
         screw_part(
             "knee_sprocket_screw",

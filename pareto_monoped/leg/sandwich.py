@@ -1,7 +1,9 @@
 """The sandwich that both links are made of: two plates on a core, with windows and bolted bridges between them."""
 
+import math
 from itertools import pairwise
 
+from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import Screw, cylinder, screw_length_mm
@@ -42,9 +44,19 @@ def sleeve_bolt(name: str, screw: Screw, half_stack_mm: float, places_mm: tuple[
             cylinder(screw.shank, sleeve - half_stack_mm, half_stack_mm),
         ),
         places_mm=places_mm,
-        countersunk_mm=(-half_stack_mm, half_stack_mm),
+        features=(
+            _head(screw.shank + _SLEEVE_WALL, screw, -half_stack_mm),
+            _head(screw.shank, screw, half_stack_mm),
+        ),
         note=f"{screw.name} x {long:g} countersunk (ISO 10642) 8.8 in a countersunk sleeve nut {screw.name} x "
         f"{sleeve:g}, flush, {stack:g} mm together",
+    )
+
+
+def _head(shank_mm: float, screw: Screw, face_mm: float) -> CountersunkHead:
+    """The flush head of a screw or of its sleeve nut, which has the same cone."""
+    return CountersunkHead(
+        shank_mm=shank_mm, radius_mm=screw.countersunk, face_mm=face_mm, inwards=-math.copysign(1.0, face_mm)
     )
 
 
@@ -53,7 +65,7 @@ def bolts_at(heights: tuple[Numbers, ...]) -> tuple[Place, ...]:
     return tuple((side * BRIDGE_BOLT_X, y, 0.0) for y in heights for side in (-1.0, 1.0))
 
 
-def holes_at(places: tuple[Place, ...], radius_mm: float) -> tuple[Shape, ...]:
+def holes_at(places: tuple[Place, ...], radius_mm: float) -> tuple[Circle, ...]:
     """A hole at every place."""
     return tuple(Circle(radius_mm=radius_mm, x_mm=x, y_mm=y) for x, y, _ in places)
 

@@ -1,9 +1,11 @@
 """The shank: a fork of two plates around the thigh's knee end, with the knee's axle, a core and the foot."""
 
+from typing import Literal
+
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
-from pareto_monoped.geometry.screws import M3, M4
-from pareto_monoped.geometry.shapes import Circle, Numbers, hull, rectangle
+from pareto_monoped.geometry.screws import M3, M4, clearance
+from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, hull, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.knee import axle_holes, axle_parts
 from pareto_monoped.leg.outlines import rounded
@@ -44,7 +46,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     bridges = (-d.fork_mm - BRIDGE, core_end + BRIDGE)
     foot_bolts = tuple((0.0, flat + up, 0.0) for up in (_BLOCK_BOLT, _BLOCK_HEIGHT - _BLOCK_BOLT))
     return (
-        _plate(flat, bridges, foot_bolts, d),
+        *_plates(flat, bridges, foot_bolts, d),
         _core(core_end, bridges, d),
         sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges)),
         *axle_parts(d),
@@ -54,8 +56,10 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     )
 
 
-def _plate(flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Place, ...], d: LegDimensions) -> Part:
-    """Both plates, from the knee to the foot's flat."""
+def _plates(
+    flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Place, ...], d: LegDimensions
+) -> tuple[Part, ...]:
+    """Both plates, from the knee to the foot's flat: mirror images, as their screws are countersunk outside."""
     half_gap = 0.5 * d.shank_gap_mm
     fork_window = rounded(
         half_width_mm=d.shank_window_half_width_mm,
@@ -63,32 +67,39 @@ def _plate(flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Pla
         low_mm=-d.fork_mm + _FORK_WINDOW_END,
         corner_mm=WINDOW_CORNER,
     )
-    return Part(
-        name="shank_plate",
-        role=Role.PLATE,
-        material=MATERIALS.aluminium,
-        process="laser cut",
-        prisms=(
-            Prism(
-                outline=hull(
-                    top_radius_mm=d.shank_top_radius_mm,
-                    bottom_radius_mm=d.shank_bottom_radius_mm,
-                    length_mm=-flat_mm - _FOOT_GAP - d.shank_bottom_radius_mm,
-                ),
-                z0_mm=0.0,
-                z1_mm=d.shank_plate_mm,
-                holes=(
-                    axle_holes(),
-                    fork_window,
-                    *windows_between(bridges, d.shank_window_half_width_mm),
-                    *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-                    *holes_at((*foot_bolts, *shank_stop_bolts(d)), sleeve_hole(M4)),
-                ),
+    bolted = holes_at(bolts_at(bridges), sleeve_hole(M3))
+    thick = holes_at((*foot_bolts, *shank_stop_bolts(d)), sleeve_hole(M4))
+    outline = hull(
+        top_radius_mm=d.shank_top_radius_mm,
+        bottom_radius_mm=d.shank_bottom_radius_mm,
+        length_mm=-flat_mm - _FOOT_GAP - d.shank_bottom_radius_mm,
+    )
+    holes: tuple[Shape, ...] = (
+        axle_holes(),
+        fork_window,
+        *windows_between(bridges, d.shank_window_half_width_mm),
+        *bolted,
+        *thick,
+    )
+    sides: tuple[tuple[str, float, Literal["low", "high"]], ...] = (
+        ("near", -half_gap - d.shank_plate_mm, "low"),
+        ("far", half_gap, "high"),
+    )
+    return tuple(
+        Part(
+            name=f"shank_plate_{side}",
+            role=Role.PLATE,
+            material=MATERIALS.aluminium,
+            process="laser cut",
+            prisms=(Prism(outline=outline, z0_mm=low, z1_mm=low + d.shank_plate_mm, holes=holes),),
+            features=tuple(
+                clearance(screw, shapes, low, low + d.shank_plate_mm, countersunk=outside)
+                for screw, shapes in ((M3, bolted), (M4, thick))
             ),
-        ),
-        places_mm=((0.0, 0.0, half_gap), (0.0, 0.0, -half_gap - d.shank_plate_mm)),
-        grade=ALLOYS["aw_6082_t6"],
-        note=f"{d.shank_plate_mm:g} mm sheet; countersink the bolt holes outside",
+            grade=ALLOYS["aw_6082_t6"],
+            note=f"{d.shank_plate_mm:g} mm sheet",
+        )
+        for side, low, outside in sides
     )
 
 

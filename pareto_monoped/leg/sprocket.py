@@ -12,9 +12,9 @@ from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.leg.dimensions import LegDimensions
 
 # Our own layout, mm.
-BORE_RADIUS = 9.0  # takes the neck of the knee's axle, which is 1 mm smaller in radius than the bearing's seat
-_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS, _RELIEF_COUNT = 3.0, 18.3, 15  # between screws and teeth: 1.4 mm to the roots
-_HEAD_PLAY = 0.15  # around a sunk screw head
+BORE_RADIUS = 8.5  # takes the neck of the knee's axle; countersinks of its screws stay 0.1 mm outside
+_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS, _RELIEF_COUNT = 2.85, 18.45, 15  # between screws and teeth: 1.4 mm to the roots
+HEAD_PLAY = 0.1  # around a sunk screw head
 
 
 @lru_cache(maxsize=8)
@@ -56,10 +56,19 @@ def sprocket_outline(drive: ChainDrive) -> Path:
     return Path(tuple(pieces))
 
 
-def sprocket_prisms(d: LegDimensions) -> tuple[Prism, ...]:
+def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
+    """The holes of its screws."""
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+
+
+def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
     """The sprocket, with clearance holes for its screws.
 
     A wide one is counterbored at -z, so that screws of the same length suit any width.
+
+    Args:
+        d: dimensions.
+        head_mm: radius of that counterbore.
     """
     half, recess = 0.5 * d.chain.sprocket_width_mm, d.sprocket_recess_mm
 
@@ -70,11 +79,11 @@ def sprocket_prisms(d: LegDimensions) -> tuple[Prism, ...]:
             z1_mm=z1_mm,
             holes=(
                 Circle(radius_mm=BORE_RADIUS),
-                Pattern(radius_mm=screw_radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+                sprocket_screws(d, screw_radius_mm),
                 Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=_RELIEF_COUNT),
             ),
         )
 
     seat = recess - half
     whole = layer(seat, half, M3.hole)
-    return (whole,) if recess == 0.0 else (layer(-half, seat, M3.head + _HEAD_PLAY), whole)
+    return (whole,) if recess == 0.0 else (layer(-half, seat, head_mm), whole)

@@ -37,7 +37,7 @@ _FOOT_DEPTH, _HALF_FOOT = 10.0, 4.5
 # Our own layout of the shank's striker, mm.
 _SPINE = 9.0  # behind the face for extension
 _TOE, _BASE = 7.0, 11.0  # behind the face for flexion: at its end, and in its middle
-_SPINE_BOLT, _BASE_BOLT = (0.0, 4.5), (1.0, 6.0)  # along and behind the faces for extension and flexion
+_SPINE_BOLT, _BASE_BOLT = (0.0, 5.0), (1.0, 6.0)  # along and behind the faces for extension and flexion
 # Our own layout of the base's seats, mm.
 _FLOOR = 6.0  # thickness of a seat under the bumper: beside the web 11 N m on 18 mm x 6 mm are 100 MPa
 _HALF_WEB = 3.0  # 5 kN at 25 mm from the rods are 125 N m on 6 mm x 45 mm: 60 MPa

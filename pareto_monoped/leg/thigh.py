@@ -1,10 +1,13 @@
 """The thigh as a list of parts: sandwich, hip joints, chain, and knee bearings."""
 
+from typing import Literal
+
 import numpy as np
 
+from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import M3, M25
+from pareto_monoped.geometry.screws import M3, M25, clearance
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
 from pareto_monoped.leg.bearing import LIP
 from pareto_monoped.leg.chain import chain_parts
@@ -70,14 +73,22 @@ def _plates(
 ) -> tuple[Part, ...]:
     """The inner plate, which the hip's output turns, and the outer one, which carries the knee actuator."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
+    bolted, cups = holes_at(bolts, sleeve_hole(M3)), cup_holes(-length, M25.hole, d)
     common = (
         *windows_between(bridges, d.thigh_window_half_width_mm),
-        *holes_at(bolts, sleeve_hole(M3)),
+        *bolted,
         Circle(radius_mm=d.bearing_outer_radius_mm - LIP, y_mm=-length),
-        cup_holes(-length, M25.hole, d),
+        cups,
     )
 
-    note = f"{d.plate_mm:g} mm sheet; countersink the bolt holes outside"
+    def flush(low_mm: float, outside: Literal["low", "high"]) -> tuple[Hole, ...]:
+        """The holes of the screws whose heads are flush outside."""
+        return tuple(
+            clearance(screw, shapes, low_mm, low_mm + d.plate_mm, countersunk=outside)
+            for screw, shapes in ((M3, bolted), (M25, (cups,)))
+        )
+
+    note = f"{d.plate_mm:g} mm sheet"
     return (
         Part(
             name="thigh_plate_inner",
@@ -93,6 +104,7 @@ def _plates(
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
+            features=flush(-face, "low"),
             note=note,
         ),
         Part(
@@ -109,7 +121,8 @@ def _plates(
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
-            note=note.replace("; ", "; carries the knee actuator; "),
+            features=flush(half_gap, "high"),
+            note=note + "; carries the knee actuator",
         ),
     )
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M5, M25, screw_for, screw_length_mm, screw_part
 from pareto_monoped.materials import Material
 
@@ -67,8 +68,13 @@ def test_countersunk_screws_are_flush_and_say_so():
     part = made(head="countersunk", seat_mm=3.0)
     assert len(part.prisms) == 2
     assert min(p.z0_mm for p in part.prisms) == 3.0
-    assert part.countersunk_mm == (3.0,)
-    assert made().countersunk_mm == ()
+    assert part.features == (CountersunkHead(shank_mm=1.5, radius_mm=3.36, face_mm=3.0, inwards=1.0),)
+    assert made().features == ()
+
+
+def test_a_plate_thinner_than_a_countersunk_head_is_refused():
+    with pytest.raises(DesignError, match=r"a_screw: grip of 1\.5 mm must be 1\.86 mm or more"):
+        made(head="countersunk", grip_mm=1.5)
 
 
 def test_notes_name_size_standard_and_grade():

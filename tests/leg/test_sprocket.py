@@ -33,7 +33,7 @@ def test_rollers_lie_in_the_sprockets_gaps_without_cutting_into_it():
 
 
 def test_heads_are_sunk_in_a_wide_sprocket_only(leg):
-    light, heavy = (sprocket_prisms(dataclasses.replace(leg, chain=drive)) for drive in CHAIN_DRIVES)
+    light, heavy = (sprocket_prisms(dataclasses.replace(leg, chain=drive), 2.85) for drive in CHAIN_DRIVES)
     (whole,) = light
     assert (whole.z0_mm, whole.z1_mm) == (-1.4, 1.4)
     counterbored, rest = heavy

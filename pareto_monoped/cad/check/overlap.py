@@ -11,8 +11,9 @@ from pareto_monoped.cad.check.limits import OVERLAP
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.outlines import all_polygons
+from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import InternalGear
-from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.geometry.shapes import Circle, Numbers
 
 
 def check(product: Product) -> Check:
@@ -50,12 +51,23 @@ def _rings(instance: Instance) -> _Rings | None:
     """The rings of an instance; None if it is not made of prisms only."""
     rows = []
     for prism in instance.part.prisms:
-        heights = [float((instance.world @ np.array([0.0, 0.0, float(z), 1.0]))[1]) for z in (prism.z0_mm, prism.z1_mm)]
+        heights = _heights(instance, prism.z0_mm, prism.z1_mm)
         bores = [hole for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
         least = max((_bore_radius(bore) for bore in bores), default=0.0)
         greatest = max(float(np.hypot(*points.T).max()) for points in all_polygons([prism.outline]))
         rows.append((least, greatest, min(heights), max(heights)))
+    # A head counts as a cylinder as wide as its face: the question is only whether the meshes need a look.
+    for head in instance.part.features:
+        if isinstance(head, CountersunkHead):
+            (bevel,) = head.bevels
+            heights = _heights(instance, bevel.face_mm, bevel.end_mm)
+            rows.append((0.0, float(head.radius_mm), min(heights), max(heights)))
     return _Rings(axis=instance.world[[0, 2], 3], rows=np.array(rows)) if rows and not instance.part.balls else None
+
+
+def _heights(instance: Instance, *along_mm: Numbers) -> list[float]:
+    """Heights y in the assembly of heights along an instance's own axis."""
+    return [float((instance.world @ np.array([0.0, 0.0, float(z), 1.0]))[1]) for z in along_mm]
 
 
 def _bore_radius(hole: Circle | InternalGear) -> float:

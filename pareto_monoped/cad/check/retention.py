@@ -5,9 +5,10 @@ base, in each of six directions. All parts are stacks of flat shapes across the 
 of shapes in a plane: along the axis a part runs into what lies before its faces, across it into what its shifted
 cross-section cuts. Teeth count by their root circles, since a mesh turns and holds nothing.
 
-Some joints have no shape of their own. A screw's thread is found where its core fills a hole; a countersunk head, drawn
-as a plain shank, counts as a thin disc on its seat. What is pressed, bonded or threaded by other means says so in its
-record (``Part.joint``), which is believed only if the part that it names stands in its way on two opposite sides.
+Some joints have no shape of their own. A screw's thread is found where its core fills a hole. Cones count for nothing,
+but a countersunk head counts as a thin disc on its face, as the countersink under it does not count either. What is
+pressed, bonded or threaded by other means says so in its record (``Part.joint``), which is believed only if the part
+that it names stands in its way on two opposite sides.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,6 +22,7 @@ from pareto_monoped.cad.assembly import Instance, Pose, instances
 from pareto_monoped.cad.check.limits import LOOSE
 from pareto_monoped.cad.check.result import Check, count_of
 from pareto_monoped.cad.shape.outlines import all_polygons
+from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Group, Role
@@ -40,7 +42,6 @@ _TOLERANCE_MM = 0.02
 _TOUCH_MM = 1e-6
 _ALONG_MM = 0.3  # least common height of two parts that stop each other across the axis
 _SKIN_MM = 0.05  # a thread's core lies this close to its hole
-_HEAD = 1.8  # radius of a countersunk head over its shank's
 _HEAD_MM = 0.1
 
 Bools = NDArray[np.bool_]
@@ -224,13 +225,11 @@ def _sections(part: Part) -> Iterator[tuple[m3.CrossSection, float, float]]:
         if ball.pocket is not None:
             disc = _section([Circle(radius_mm=ball.radius_mm, y_mm=ball.y_mm)])
             yield disc - _section([ball.pocket.outline]), float(ball.pocket.z0_mm), float(ball.pocket.z1_mm)
-    heights = [float(z) for p in part.prisms for z in (p.z0_mm, p.z1_mm)]
-    for z in part.countersunk_mm:
-        seat = float(z)
-        shank = next(p for p in part.prisms if min(abs(float(p.z0_mm) - seat), abs(float(p.z1_mm) - seat)) < _TOUCH_MM)
-        assert isinstance(shank.outline, Circle)
-        out = seat + (_HEAD_MM if seat > 0.5 * (min(heights) + max(heights)) else -_HEAD_MM)
-        yield _section([Circle(radius_mm=_HEAD * float(shank.outline.radius_mm))]), min(seat, out), max(seat, out)
+    for head in part.features:
+        if isinstance(head, CountersunkHead):
+            face = float(head.face_mm)
+            out = face - head.inwards * _HEAD_MM
+            yield _section([Circle(radius_mm=head.radius_mm)]), min(face, out), max(face, out)
 
 
 def _section(shapes: Sequence[Shape]) -> m3.CrossSection:

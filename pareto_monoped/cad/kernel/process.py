@@ -17,12 +17,13 @@ from OCP.GProp import GProp_GProps
 from pareto_monoped.cad.kernel import step
 from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly
 from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
+from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 
 def solid_facts(parts: list[Part]) -> list[SolidFacts]:
     """Facts of the solids of some parts, in their order."""
-    return [_facts(part.prisms, part.balls) for part in parts]
+    return [_facts(part.prisms, part.balls, part.bevels) for part in parts]
 
 
 def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
@@ -37,8 +38,8 @@ def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
 
 # As many as ``solid_from`` keeps.
 @lru_cache(maxsize=256)
-def _facts(prisms: tuple[Prism, ...], balls: tuple[Ball, ...]) -> SolidFacts:
-    solid = solid_from(prisms, balls)
+def _facts(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...]) -> SolidFacts:
+    solid = solid_from(prisms, balls, bevels)
     properties = GProp_GProps()
     BRepGProp.VolumeProperties_s(solid, properties)
     centre, matrix = properties.CentreOfMass(), properties.MatrixOfInertia()

@@ -15,9 +15,11 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.shape.beveled import beveled, has_cone
 from pareto_monoped.cad.shape.closed import edge_numbers, flaws, place_numbers
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.shape.stacks import regrouped
+from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 TOLERANCE_MM = 0.01
@@ -54,22 +56,27 @@ class Mesh:
 
 def mesh_of(part: Part, tolerance_mm: float = TOLERANCE_MM) -> Mesh:
     """The mesh of one instance of a part in its own frame."""
-    return _mesh(part.prisms, part.balls, tolerance_mm)
+    return _mesh(part.prisms, part.balls, part.bevels, tolerance_mm)
 
 
 # Designs of one study share most of their 70 kinds of parts, each in two tolerances; a mesh takes about 0.1 MB.
 @lru_cache(maxsize=512)
-def _mesh(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], tolerance_mm: float) -> Mesh:
+def _mesh(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], tolerance_mm: float) -> Mesh:
     stack = regrouped(prisms)
-    mesh = _united(stack, balls, tolerance_mm)
+    mesh = _united(stack, balls, bevels, tolerance_mm)
     # Prisms are apart by rounding if one ends at z0 + (z1 - z0) and the next begins at z1. Multiples of 2^-40 mm add up
     # exactly. They are not used for every part, since other heights order the triangles in another way.
-    return _united([_exact(prism) for prism in stack], balls, tolerance_mm) if _has_twins(mesh) else mesh
+    if not _has_twins(mesh):
+        return mesh
+    return _united([_exact(prism) for prism in stack], balls, bevels, tolerance_mm)
 
 
-def _united(prisms: Sequence[Prism], balls: Sequence[Ball], tolerance_mm: float) -> Mesh:
+def _united(prisms: Sequence[Prism], balls: Sequence[Ball], bevels: Sequence[Bevel], tolerance_mm: float) -> Mesh:
     pieces = [_extruded(prism, tolerance_mm) for prism in prisms] + [_ball(ball, tolerance_mm) for ball in balls]
-    return _welded(mesh_from(m3.Manifold.batch_boolean(pieces, m3.OpType.Add)))
+    mesh = mesh_from(m3.Manifold.batch_boolean(pieces, m3.OpType.Add))
+    if any(has_cone(bevel) for bevel in bevels):
+        mesh = _mesh_of(*beveled(mesh.points_mm, mesh.triangles, bevels))
+    return _welded(mesh)
 
 
 def _exact(prism: Prism) -> Prism:
@@ -92,6 +99,12 @@ def mesh_from(body: m3.Manifold) -> Mesh:
         triangles=np.asarray(raw.tri_verts).astype(np.int64),
         body=body,
     )
+
+
+def _mesh_of(points_mm: NDArray[np.float64], triangles: NDArray[np.int64]) -> Mesh:
+    """Triangles with the manifold that they bound."""
+    body = m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
+    return Mesh(points_mm=points_mm, triangles=triangles, body=body)
 
 
 def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1.0) -> Mesh:

@@ -27,14 +27,14 @@ def test_the_limit_is_where_it_is_said_to_be(product, offset_mm, passes):
 
 
 def test_a_hole_pattern_off_by_more_than_the_limit_is_the_only_failure(product, failing):
-    """The plate lies 0.06 mm off in the assembly: its holes' clearance leaves room for that, and no mesh overlaps."""
+    """A coupling lies 0.06 mm off in the assembly: its holes' clearance leaves room for that, and no mesh overlaps."""
 
     def off(instance):
         world = instance.world.copy()
         world[0, 3] += 0.06
         return dataclasses.replace(instance, world=world)
 
-    broken = with_instance(product, "thigh/thigh_plate_outer", off)
+    broken = with_instance(product, "thigh/hip_coupling", off)
     assert failing(product=broken) == ["bolt patterns coincide"]
 
 

@@ -56,7 +56,7 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
         ("thigh/turnbuckle_end", {"thigh/turnbuckle_barrel"}),
         ("thigh/drive_sprocket", {"thigh/drive_coupling"}),
         ("thigh/knee_bearing", {"shank/knee_axle", "foot/foot"}),
-        ("shank/knee_bolt", {"shank/shank_plate", "foot/foot"}),
+        ("shank/knee_bolt", {"shank/shank_plate_far", "foot/foot"}),
         ("shank/foot_bolt", {"shank/foot_block", "foot/foot"}),
     ],
 )
@@ -139,7 +139,7 @@ def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
             if part.role not in SCREWS:
                 continue
             radii = sorted({float(p.outline.radius_mm) for p in part.prisms})
-            heads = [] if part.countersunk_mm else [p for p in part.prisms if p.outline.radius_mm == radii[-1]]
+            heads = [] if part.features else [p for p in part.prisms if p.outline.radius_mm == radii[-1]]
             length = sum(float(p.z1_mm - p.z0_mm) for p in part.prisms if p not in heads)
             assert length == pytest.approx(LENGTHS_MM[abs(LENGTHS_MM - length).argmin()]), part.name
             assert part.note.startswith(f"M{2.0 * radii[1]:g} x {length:g} "), part.note

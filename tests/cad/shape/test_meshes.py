@@ -15,7 +15,7 @@ HERE = np.eye(4)
 
 
 def mesh(prisms=(), balls=()):
-    return meshes._mesh(tuple(prisms), tuple(balls), TOLERANCE_MM)
+    return meshes._mesh(tuple(prisms), tuple(balls), (), TOLERANCE_MM)
 
 
 def disc(radius_mm, z0_mm, z1_mm, hole_mm):
@@ -61,7 +61,7 @@ def test_prisms_that_rounding_sets_apart_are_united():
     # A bolt's hole beside the bore, as the casing has: slices with a bore alone are regrouped before.
     bolt = Circle(radius_mm=0.5, x_mm=39.3)
     prisms = [dataclasses.replace(prism, holes=(*prism.holes, bolt)) for prism in prisms]
-    apart = meshes._united(prisms, (), TOLERANCE_MM)
+    apart = meshes._united(prisms, (), (), TOLERANCE_MM)
     assert len(apart.body.decompose()) == 2
     assert not apart.is_closed
     united = mesh(prisms)
