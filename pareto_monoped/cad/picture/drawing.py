@@ -23,11 +23,44 @@ _LINE_DEPTH_MM = 1.5  # a line is drawn where the depth jumps by more than this,
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """What to draw: triangles in one frame and their colour."""
+    """What to draw: triangles in one frame and their colour.
+
+    Attributes:
+        points_mm: corners, shape (n, 3).
+        triangles: indices of corners, shape (m, 3).
+        colour: of the body.
+        number: of the row in the legend that names it; 0 for none.
+    """
 
     points_mm: Floats
     triangles: NDArray[np.int64]
     colour: Colour
+    number: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drawn:
+    """A picture, and what is where in it.
+
+    Attributes:
+        image: shape (height, width, 3).
+        numbers: number of the body that is seen at each pixel, 0 for none, shape (height, width).
+        px_per_mm: scale in the plane of the picture.
+        axes: rows right, up and towards the viewer, shape (3, 3).
+        middle_mm: point along right and up that is in the middle of the picture, shape (2,).
+    """
+
+    image: NDArray[np.uint8]
+    numbers: NDArray[np.int64]
+    px_per_mm: float
+    axes: Floats
+    middle_mm: Floats
+
+    def pixel(self, point_mm: Floats) -> tuple[float, float]:
+        """Where a point of the scene is in the picture: right and down from its upper left corner."""
+        height, width, _ = self.image.shape
+        right, up = self.axes[:2] @ point_mm - self.middle_mm
+        return 0.5 * width + right * self.px_per_mm, 0.5 * height - up * self.px_per_mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,8 +79,8 @@ class View:
         return np.stack([right, np.cross(back, right), back])
 
 
-def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin: float = 0.04) -> NDArray[np.uint8]:
-    """A picture of all bodies, scaled to fill it, shape (height, width, 3)."""
+def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin: float = 0.04) -> Drawn:
+    """A picture of all bodies, scaled to fill it."""
     from pareto_monoped.cad.picture import raster
 
     axes = view.axes()
@@ -79,7 +112,14 @@ def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin:
     owners = np.concatenate([*owner, [-1]]).astype(np.int32)
     colours = np.concatenate([*shade, _PAPER[None]])
     image = raster.composed(winner, depth, owners, colours, _LINE, _LINE_DEPTH_MM + 6.0 / scale)
-    return np.asarray(np.clip(image * 255.0 + 0.5, 0, 255), dtype=np.uint8)
+    number = np.array([*(body.number for body in bodies), 0])
+    return Drawn(
+        image=np.asarray(np.clip(image * 255.0 + 0.5, 0, 255), dtype=np.uint8),
+        numbers=number[owners[winner[::2, ::2]]],
+        px_per_mm=0.5 * scale,
+        axes=axes,
+        middle_mm=middle,
+    )
 
 
 def png(image: NDArray[np.uint8]) -> bytes:

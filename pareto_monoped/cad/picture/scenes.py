@@ -1,24 +1,29 @@
-"""The pictures of an export: the assembly, and an actuator cut along its axis with a legend."""
+"""The pictures of an export: the robot, sections of actuators and knee with numbers and legend, an exploded view."""
 
-import colorsys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.assembly import unit_frame
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS, Instance, body_frames, unit_frame
+from pareto_monoped.cad.picture.colours import colour
 from pareto_monoped.cad.picture.drawing import Body, View, draw
+from pareto_monoped.cad.picture.labels import Row, labelled, numbered
 from pareto_monoped.cad.product import Product
-from pareto_monoped.cad.shape.meshes import mesh_from, placed
+from pareto_monoped.cad.shape.meshes import Mesh, mesh_from, placed
 from pareto_monoped.geometry.roles import Visibility
 
 Image = NDArray[np.uint8]
+Floats = NDArray[np.float64]
 
 _FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
 """From the side of the knee actuator, from in front and above."""
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
+_KNEE_AROUND_MM = 62.0
+"""Half of the box around the knee joint that its section shows: the bearings with a part of either link."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,20 +33,20 @@ class Scene:
     Attributes:
         bodies: what to draw.
         view: the direction of view.
-        width, height: of the picture, in pixels, without the legend.
-        legend: name, count and colour, one row per part.
+        width, height: of the picture, in pixels, without the legend and the strips for its numbers.
+        legend: one row per part.
     """
 
     bodies: tuple[Body, ...]
     view: View
     width: int
     height: int
-    legend: tuple[tuple[str, int, tuple[float, float, float]], ...] = ()
+    legend: tuple[Row, ...] = ()
 
     def picture(self) -> Image:
         """Draw it."""
-        image = draw(self.bodies, self.view, width=self.width, height=self.height)
-        return np.concatenate([image, _legend(self.legend, 300, self.height)], axis=1) if self.legend else image
+        drawn = draw(self.bodies, self.view, width=self.width, height=self.height)
+        return labelled(drawn, self.legend)
 
 
 def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
@@ -50,37 +55,116 @@ def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) ->
     for instance, unique in product.placed():
         if instance.part.visibility is Visibility.INSIDE:
             continue
-        points = unique.mesh.points_mm @ instance.world[:3, :3].T + instance.world[:3, 3]
-        bodies.append(Body(points_mm=points, triangles=unique.mesh.triangles, colour=unique.part.material.colour))
+        bodies.append(_body(unique.mesh, instance.world, unique.part.material.colour))
     return Scene(bodies=tuple(bodies), view=_FROM_THE_RIGHT, width=width, height=height)
 
 
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
     """An actuator with a quarter cut away, its output to the left, each part in its own colour."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
-    upright = _to_section_frame() @ np.linalg.inv(unit_frame(unit))
-    parts: dict[str, list[m3.Manifold]] = {}
+    upright = _axis_to_the_left() @ np.linalg.inv(unit_frame(unit))
+    members = [
+        (instance, placed(unique.mesh.body, upright @ instance.in_body))
+        for instance, unique in product.placed()
+        if instance.unit == unit_name
+    ]
+    return _section(members, width=width, height=height)
+
+
+def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Scene:
+    """The knee joint with a quarter cut away: thigh, shank and what is between them, around the joint's axis."""
+    in_joint = np.linalg.inv(body_frames(product.robot, product.pose)["shank"])
+    # Joint axis, which is y, to the left; what points up stays up.
+    turned = np.zeros((4, 4))
+    turned[0, 1], turned[1, 0], turned[2, 2], turned[3, 3] = -1.0, 1.0, 1.0, 1.0
+    half = _KNEE_AROUND_MM
+    around = m3.Manifold.cube((2.0 * half, 2.0 * half, 2.0 * half), center=True)
+    members = []
     for instance, unique in product.placed():
-        if instance.unit == unit_name:
-            parts.setdefault(instance.part.name, []).append(placed(unique.mesh.body, upright @ instance.in_body))
-    bodies, legend = [], []
-    for k, (name, members) in enumerate(parts.items()):
-        colour = _colour(k, len(parts))
-        legend.append((name, len(members), colour))
-        for member in members:
-            kept = _without_quarter(member)
-            if kept.is_empty():
-                continue
-            mesh = mesh_from(kept)
-            bodies.append(Body(points_mm=mesh.points_mm, triangles=mesh.triangles, colour=colour))
-    return Scene(bodies=tuple(bodies), view=_ALONG_X, width=width, height=height, legend=tuple(legend))
+        if instance.unit in ACTUATOR_UNITS:
+            continue
+        near = placed(unique.mesh.body, turned @ in_joint @ instance.world)
+        if _boxes_meet(near.bounding_box(), half):
+            members.append((instance, near ^ around))
+    return _section([(i, body) for i, body in members if not body.is_empty()], width=width, height=height)
 
 
-def _to_section_frame() -> NDArray[np.float64]:
+def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -> Scene:
+    """All parts of the robot pulled apart along the joints' axis, the units in their own colours."""
+    order = [unit.name for unit in product.robot.units]
+    names = {name: sum(instance.unit == name for instance in product.instances) for name in order}
+    colours = {name: colour(k) for k, name in enumerate(order)}
+    number = {name: k for k, name in enumerate(order, 1)}
+    moves = _pulled_apart(product)
+    bodies = []
+    for (instance, unique), move in zip(product.placed(), moves, strict=True):
+        at = instance.world.copy()
+        at[1, 3] += move
+        bodies.append(_body(unique.mesh, at, colours[instance.unit], number[instance.unit]))
+    view = View(towards=(-1.0, 0.62, -0.42))
+    rows = tuple(numbered(names, colours))
+    return Scene(bodies=tuple(bodies), view=view, width=width, height=height, legend=rows)
+
+
+def _pulled_apart(product: Product) -> list[float]:
+    """How far each instance moves along y so that parts that lie behind each other come apart."""
+    boxes = np.array([placed(u.mesh.body, i.world).bounding_box() for i, u in product.placed()])
+    low, high = boxes[:, 1], boxes[:, 4]
+    order = np.argsort(0.5 * (low + high), kind="stable")
+    moved = np.zeros(len(boxes))
+    middle = float(np.median(0.5 * (low + high)))
+    right = [k for k in order.tolist() if 0.5 * (low[k] + high[k]) >= middle]
+    left = [k for k in reversed(order.tolist()) if 0.5 * (low[k] + high[k]) < middle]
+    for side, sign in ((right, 1.0), (left, -1.0)):
+        done: list[int] = []
+        for k in side:
+            front = float(low[k] if sign > 0.0 else high[k])
+            for other in done:
+                if _beside(boxes[k], boxes[other]):
+                    continue
+                back = float((high if sign > 0.0 else low)[other] + moved[other])
+                moved[k] = sign * max(sign * moved[k], sign * (back - front) + _APART_MM)
+            done.append(k)
+    return [float(move) for move in moved]
+
+
+_APART_MM = 6.0
+
+
+def _beside(one: Floats, other: Floats) -> bool:
+    """Whether two boxes do not lie behind each other along y."""
+    return bool(one[0] >= other[3] or other[0] >= one[3] or one[2] >= other[5] or other[2] >= one[5])
+
+
+def _section(members: Sequence[tuple[Instance, m3.Manifold]], *, width: int, height: int) -> Scene:
+    """Placed instances with a quarter cut away, one colour and number per kind of part."""
+    names = Counter(instance.part.name for instance, _ in members)
+    colours = {name: colour(k) for k, name in enumerate(names)}
+    number = {name: k for k, name in enumerate(names, 1)}
+    bodies = []
+    for instance, body in members:
+        kept = _without_quarter(body)
+        if not kept.is_empty():
+            bodies.append(_body(mesh_from(kept), np.eye(4), colours[instance.part.name], number[instance.part.name]))
+    rows = tuple(numbered(names, colours))
+    return Scene(bodies=tuple(bodies), view=_ALONG_X, width=width, height=height, legend=rows)
+
+
+def _body(mesh: Mesh, at: Floats, hue: tuple[float, float, float], number: int = 0) -> Body:
+    points = mesh.points_mm @ at[:3, :3].T + at[:3, 3]
+    return Body(points_mm=points, triangles=mesh.triangles, colour=hue, number=number)
+
+
+def _axis_to_the_left() -> Floats:
     """The actuator's axis along -x of the picture's scene, output to the left; the first planet on top."""
     matrix = np.zeros((4, 4))
     matrix[0, 2], matrix[1, 1], matrix[2, 0], matrix[3, 3] = -1.0, 1.0, 1.0, 1.0
     return matrix
+
+
+def _boxes_meet(box: Iterable[float], half: float) -> bool:
+    x0, y0, z0, x1, y1, z1 = box
+    return max(x0, y0, z0) < half and min(x1, y1, z1) > -half
 
 
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:
@@ -88,27 +172,3 @@ def _without_quarter(body: m3.Manifold) -> m3.Manifold:
     far = body.trim_by_plane((0.0, 1.0, 0.0), 0.0)
     near_low = body.trim_by_plane((0.0, -1.0, 0.0), 0.0).trim_by_plane((0.0, 0.0, -1.0), 0.0)
     return m3.Manifold.compose([far, near_low])
-
-
-def _colour(k: int, count: int) -> tuple[float, float, float]:
-    """The k-th of ``count`` colours; neighbours in the list differ clearly."""
-    hue = (k * 0.381966) % 1.0  # golden section
-    return colorsys.hsv_to_rgb(hue, 0.34 if k % 2 else 0.52, 0.95 if k % 3 else 0.80)
-
-
-def _legend(rows: Sequence[tuple[str, int, tuple[float, float, float]]], width: int, height: int) -> Image:
-    from PIL import Image as Pillow
-    from PIL import ImageDraw, ImageFont
-
-    canvas = Pillow.new("RGB", (width, height), "white")
-    pen = ImageDraw.Draw(canvas)
-    step = min(34, (height - 40) // max(len(rows), 1))
-    font = ImageFont.load_default(size=0.5 * step + 3)
-    for k, (name, count, colour) in enumerate(rows):
-        top = 20 + k * step
-        pen.rectangle(
-            (10, top + 4, 10 + step - 10, top + step - 6), fill=tuple(round(255 * c) for c in colour), outline="black"
-        )
-        label = name.replace("_", " ") + (f" ({count})" if count > 1 else "")
-        pen.text((step + 12, top + 0.12 * step), label, fill="black", font=font)
-    return np.asarray(canvas, dtype=np.uint8)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
@@ -98,7 +99,9 @@ def pictures(product: Product, threads: Executor) -> dict[str, Future[bytes]]:
     """PNG files by name, which threads draw from now on."""
     shown = {
         "assembly.png": scenes.assembly_scene(product),
-        "knee_actuator_section.png": scenes.section_scene(product, "knee_actuator"),
+        "exploded.png": scenes.exploded_scene(product),
+        **{f"{unit}_section.png": scenes.section_scene(product, unit) for unit in ACTUATOR_UNITS},
+        "knee_joint_section.png": scenes.knee_scene(product),
     }
     return {name: threads.submit(_drawing, scene) for name, scene in shown.items()}
 

@@ -21,7 +21,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
     "png": (
         ("assembly.png", "the robot in its start pose"),
-        ("knee_actuator_section.png", "the knee actuator cut along its axis"),
+        ("exploded.png", "the robot pulled apart along the joints' axis"),
+        ("hip_actuator_section.png", "the hip actuator cut along its axis, with numbers and names of its parts"),
+        ("knee_actuator_section.png", "the knee actuator, likewise"),
+        ("knee_joint_section.png", "the knee joint, likewise"),
     ),
 }
 """Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
