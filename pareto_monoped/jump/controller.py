@@ -101,6 +101,7 @@ RECORD = np.dtype(
         ("peak_beyond_stop_rad", _BOTH),  # by which a joint goes beyond an end of its range
         ("stop_energy_j", _ONE),
         ("peak_foot_force_n", _ONE),
+        ("peak_knee_force_n", _ONE),
         ("drift_m", _ONE),
         ("speed_rad_per_s", _BOTH),  # at the start of the current step
         ("motor_torque_n_m", _BOTH),  # during the current step, at the joint before losses
@@ -473,6 +474,7 @@ def _loads(v: Floats, jump: Any) -> None:
     below = jump.link_inertia_kg_m2[1] * below_spin_up + shank_mass * _moment(shank, at_shank) - _moment(at_sole, floor)
     whole = below + jump.link_inertia_kg_m2[0] * spin_up + thigh_mass * _moment(thigh, at_thigh)
     pull = (shank_mass * at_shank[0] - floor[0], shank_mass * at_shank[1] - floor[1])
+    jump.peak_knee_force_n = max(jump.peak_knee_force_n, math.sqrt(pull[0] * pull[0] + pull[1] * pull[1]))
     whole += _moment(to_knee, pull) + jump.coupling_kg_m2 * knee_spin_up
     turning = jump.armature_kg_m2[KNEE] * knee_spin_up + jump.coupling_kg_m2 * spin_up
     needed = (whole + jump.armature_kg_m2[HIP] * spin_up, below + turning)

@@ -27,7 +27,7 @@ _LEAST = np.array([_SHORTEST_LINK_M if name in LENGTHS else 0.0 for name in NAME
 # Beyond this value of any variable, numbers overflow.
 _MOST = 1e9
 # Measures that the controller's records hold under their own names.
-_LOADS = ("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "drift_m")
+_LOADS = ("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "drift_m", "peak_knee_force_n")
 # Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
@@ -78,6 +78,7 @@ class Evaluations:
     peak_stop_torque_knee_n_m: Floats
     stop_compression_hip: Floats
     stop_compression_knee: Floats
+    peak_knee_force_n: Floats
     gear_safety: Floats
     chain_safety: Floats
     stop_safety: Floats

@@ -52,7 +52,8 @@ class LegDimensions:
         play_mm: lateral distance between thigh and shank, for the spacers on the knee's axle.
         hip_play_mm: lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.
         thigh_half_width_mm, thigh_window_half_width_mm: the bar of the thigh's plates.
-        thigh_core_half_width_mm: the thigh's printed core, at least 2.2 mm inside the strands of the chain.
+        thigh_core_half_width_mm, thigh_core_window_half_width_mm: the thigh's printed core, which is
+            at least 2.2 mm inside the strands of the chain.
         knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 30.1 mm.
         shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates.
         shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core.
@@ -89,8 +90,9 @@ class LegDimensions:
     play_mm: float = 2.0
     hip_play_mm: float = 3.0
     thigh_half_width_mm: float = 24.0
-    thigh_window_half_width_mm: float = 16.0
+    thigh_window_half_width_mm: float = 13.0
     thigh_core_half_width_mm: float = 19.5
+    thigh_core_window_half_width_mm: float = 16.0
     knee_radius_mm: float = 31.0
     shank_top_radius_mm: float = 24.0
     shank_bottom_radius_mm: float = 18.0

@@ -76,3 +76,12 @@ def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple
         rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=WINDOW_CORNER)
         for high, low in pairwise(heights)
     )
+
+
+def with_rungs(heights: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
+    """The bridges of a plate, with a rung as high as these in the middle between every two of them.
+
+    The higher a window, the more its sides bend under a force across the link (``strength.links``).
+    """
+    halves = tuple(height for high, low in pairwise(heights) for height in (high, 0.5 * (high + low)))
+    return (*halves, heights[-1])

@@ -33,6 +33,12 @@ _BLOCK_BOLT = 6.5  # from the ends of the block to its bolts: 3.9 mm of metal
 _TONGUE_WIDTH, _TONGUE_DEPTH, _TONGUE_HALF_THICKNESS = 16.0, 15.0, 5.0  # of the block's tongue in the foot
 
 
+def bridges_of(length_mm: Numbers, d: LegDimensions) -> tuple[Numbers, Numbers]:
+    """Heights of the bridges at either end of the core, mm from the knee axis."""
+    core_end = d.foot_flat_mm - length_mm + _BLOCK_HEIGHT + _FOOT_GAP
+    return -d.fork_mm - BRIDGE, core_end + BRIDGE
+
+
 def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """The shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block, fasteners.
 
@@ -41,13 +47,12 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         d: dimensions.
     """
     flat = d.foot_flat_mm - 1000.0 * shank_length_m
-    core_end = flat + _BLOCK_HEIGHT + _FOOT_GAP
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
-    bridges = (-d.fork_mm - BRIDGE, core_end + BRIDGE)
+    bridges = bridges_of(1000.0 * shank_length_m, d)
     foot_bolts = tuple((0.0, flat + up, 0.0) for up in (_BLOCK_BOLT, _BLOCK_HEIGHT - _BLOCK_BOLT))
     return (
         *_plates(flat, bridges, foot_bolts, d),
-        _core(core_end, bridges, d),
+        _core(bridges[1] - BRIDGE, bridges, d),
         sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges)),
         *axle_parts(d),
         _foot_block(flat, foot_bolts, d),
@@ -125,7 +130,7 @@ def _core(end_mm: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Pa
                 ),
             ),
         ),
-        note="print lying on a plate side, solid",
+        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 
 

@@ -14,7 +14,16 @@ from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.leg.knee import cup_holes, knee_bearings
-from pareto_monoped.leg.sandwich import BRIDGE, Place, bolts_at, holes_at, sleeve_bolt, sleeve_hole, windows_between
+from pareto_monoped.leg.sandwich import (
+    BRIDGE,
+    Place,
+    bolts_at,
+    holes_at,
+    sleeve_bolt,
+    sleeve_hole,
+    windows_between,
+    with_rungs,
+)
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
 from pareto_monoped.leg.thigh_outline import thigh_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS
@@ -75,7 +84,7 @@ def _plates(
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bolted, cups = holes_at(bolts, sleeve_hole(M3)), cup_holes(-length, M25.hole, d)
     common = (
-        *windows_between(bridges, d.thigh_window_half_width_mm),
+        *windows_between(with_rungs(bridges), d.thigh_window_half_width_mm),
         *bolted,
         Circle(radius_mm=d.bearing_outer_radius_mm - LIP, y_mm=-length),
         cups,
@@ -164,12 +173,12 @@ def _core(length: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Pa
                 z0_mm=-0.5 * d.gap_mm,
                 z1_mm=0.5 * d.gap_mm,
                 holes=(
-                    *windows_between(bridges, d.thigh_window_half_width_mm),
+                    *windows_between(bridges, d.thigh_core_window_half_width_mm),
                     *holes_at(bolts_at(bridges), sleeve_hole(M3)),
                 ),
             ),
         ),
-        note="print lying on a plate side, solid",
+        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 
 

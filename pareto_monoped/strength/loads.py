@@ -25,6 +25,7 @@ class Loads:
         stop_compression_hip, stop_compression_knee: of the bumpers, as shares of their travel.
         stop_energy_j: into all end stops.
         peak_foot_force_n: of the floor on the foot.
+        peak_knee_force_n: between thigh and shank, by bearings, chain and end stop together.
         thigh_length_m, shank_length_m: of the links.
     """
 
@@ -39,6 +40,7 @@ class Loads:
     stop_compression_knee: Floats
     stop_energy_j: Floats
     peak_foot_force_n: Floats
+    peak_knee_force_n: Floats
     thigh_length_m: Floats
     shank_length_m: Floats
 

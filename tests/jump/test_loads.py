@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -23,9 +24,28 @@ def designs():
     return np.vstack([paper, complete(np.random.default_rng(5).uniform(LOWER, UPPER, (6, len(LOWER))))])
 
 
+def shank_jacobian(moment, qpos):
+    """Of the velocity of the shank's centre of mass."""
+    data, jacobian = moment.scratch, np.zeros((3, moment.model.nv))
+    data.qpos[:] = qpos
+    mujoco.mj_kinematics(moment.model, data)
+    mujoco.mj_comPos(moment.model, data)
+    mujoco.mj_jacBodyCom(moment.model, data, jacobian, None, moment.model.body("shank").id)
+    return jacobian
+
+
+def knee_force(moment, floor):
+    """What accelerates the shank besides its weight and the floor, as MuJoCo steps: with the speeds at the start."""
+    qpos, qvel, tick = moment.qpos, moment.qvel, 1e-6
+    bend = (shank_jacobian(moment, qpos + tick * qvel) - shank_jacobian(moment, qpos - tick * qvel)) / (2.0 * tick)
+    change = (moment.after.qvel - qvel) / STEP
+    acceleration = shank_jacobian(moment, qpos) @ change + bend @ qvel + [0.0, 0.0, 9.81]
+    return acceleration[[0, 2]] * moment.model.body("shank").mass[0] - np.asarray(floor)[:2]
+
+
 def loads_by_mujoco(robots, control, calibration):
     """Stop torque, stop energy, foot force, gear torques and chain pull of one jump, from a plain loop."""
-    foot = energy = pull = 0.0
+    foot = energy = pull = knee = 0.0
     stop, gear, beyond = np.zeros(2), np.zeros(2), np.zeros(2)
     ends = [(stop.lower_rad, stop.upper_rad) for stop in (robots.stops.hip, robots.stops.knee)]
     rotor, ratio = robots.rotor_inertia_kg_m2[0], robots.ratio[0]
@@ -34,6 +54,7 @@ def loads_by_mujoco(robots, control, calibration):
         if moment.last:
             break
         _, limits, force = constraint_forces(moment.data)
+        knee = max(knee, np.linalg.norm(knee_force(moment, force)))
         limits = limits[2:]
         change = (moment.after.qvel - moment.qvel) / STEP
         stop, foot = np.maximum(stop, np.abs(limits)), max(foot, np.hypot(force[0], force[1]))
@@ -57,6 +78,7 @@ def loads_by_mujoco(robots, control, calibration):
         "stop_compression_knee": beyond[1] * robots.stops.knee.lever_mm / (0.5 * robots.stops.knee.bumper.diameter_mm),
         "stop_energy_j": energy,
         "peak_foot_force_n": foot,
+        "peak_knee_force_n": knee,
         "peak_gear_torque_hip_n_m": gear[0],
         "peak_gear_torque_knee_n_m": gear[1],
         "peak_chain_tension_n": pull,
