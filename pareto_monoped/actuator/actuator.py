@@ -25,11 +25,13 @@ class OutputInterface:
     Attributes:
         flange_radius_mm: of the turning face.
         bolts: M3 threads in the flange, the first on the x axis.
+        dowels: holes for dowels in every second gap of the bolts, as deep as the threads.
         thread_depth_mm: depth of these threads.
     """
 
     flange_radius_mm: float
     bolts: HolePattern
+    dowels: HolePattern
     thread_depth_mm: float
 
 
@@ -40,6 +42,7 @@ class MountInterface:
     Attributes:
         housing_radius_mm: largest radius of the housing.
         bolts: M3 threads in the face at z = 0, the first on the x axis.
+        dowels: holes for dowels in every gap of the bolts, as deep as the threads.
         thread_depth_mm: depth of these threads.
         back_bolts: the motor's own mounting pattern in the backplate: threads in an ISSPG; in an ESSPG, clearance holes
             for the screws that reach the motor's base.
@@ -48,6 +51,7 @@ class MountInterface:
 
     housing_radius_mm: float
     bolts: HolePattern
+    dowels: HolePattern
     thread_depth_mm: float
     back_bolts: HolePattern
     back_depth_mm: float
@@ -206,7 +210,7 @@ def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iter
 
 
 def output_interface(settings: ActuatorSettings) -> OutputInterface:
-    """The output flange's bolt pattern."""
+    """The output flange's patterns of bolts and dowels."""
     data = settings.parts
     return OutputInterface(
         flange_radius_mm=data.carrier.flange_radius_mm,
@@ -215,12 +219,17 @@ def output_interface(settings: ActuatorSettings) -> OutputInterface:
             diameter_mm=2.0 * M3.shank,
             count=data.interface.output_bolt_count,
         ),
+        dowels=HolePattern(
+            pitch_circle_mm=data.interface.output_bolt_circle_mm,
+            diameter_mm=data.interface.output_dowel_mm,
+            count=data.interface.output_bolt_count // 2,
+        ),
         thread_depth_mm=data.carrier.thread_depth_mm,
     )
 
 
 def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) -> MountInterface:
-    """The housing's bolt patterns."""
+    """The housing's patterns of bolts and dowels."""
     body = motor.frameless if family == "ISSPG" else motor.framed
     assert body is not None
     assert motor.mount_holes is not None
@@ -231,6 +240,11 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
         bolts=HolePattern(
             pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
             diameter_mm=2.0 * M3.shank,
+            count=settings.parts.interface.mount_bolt_count,
+        ),
+        dowels=HolePattern(
+            pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
+            diameter_mm=settings.parts.interface.mount_dowel_mm,
             count=settings.parts.interface.mount_bolt_count,
         ),
         thread_depth_mm=casing.rim_mm,

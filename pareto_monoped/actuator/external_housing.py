@@ -4,6 +4,7 @@ from pareto_monoped.actuator.external_layout import ExternalLayout
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     RING_GROOVE_MM,
+    casing_dowel_holes,
     casing_holes,
     motor_holes,
     note_with,
@@ -45,14 +46,15 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
     casing, materials = settings.parts.casing, settings.materials
     z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
+    dowels = casing_dowel_holes(at, settings)
     return (
         Part(
             name="ring_housing",
             role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
-                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount),
-                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount),
+                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels),
+                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount, dowels),
                 *tube(at.z_bearing_front, -casing.plate_mm, shell.r_boss, at.r_open),
                 *tube(at.z_bearing_back, at.z_bearing_front, shell.r_boss, at.r_seat),
                 *tube(z_groove_back, at.z_bearing_back, shell.r_boss, at.r_seat + RING_GROOVE_MM),
@@ -68,6 +70,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
+                Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"),
             ),
         ),
         Part(

@@ -6,6 +6,7 @@ from pareto_monoped.actuator.bearings import Bearing
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.screws import M3
@@ -76,6 +77,20 @@ def output_holes(settings: ActuatorSettings, radius_mm: float = M3.core) -> Patt
     """Bolt pattern of the output flange."""
     data = settings.parts.interface
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
+
+
+def output_dowel_holes(settings: ActuatorSettings) -> Pattern:
+    """Holes for dowels in the output flange, in every second gap of its bolts."""
+    data = settings.parts.interface
+    gap = np.pi / data.output_bolt_count
+    return Dowel(diameter_mm=data.output_dowel_mm).holes(data.output_bolt_circle_mm, data.output_bolt_count // 2, gap)
+
+
+def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
+    """Holes for dowels in the mounting face, in every gap of its bolts."""
+    data = settings.parts.interface
+    gap = np.pi / data.mount_bolt_count
+    return Dowel(diameter_mm=data.mount_dowel_mm).holes(2.0 * at.r_bolts, data.mount_bolt_count, gap)
 
 
 def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:

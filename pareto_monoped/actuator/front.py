@@ -9,6 +9,7 @@ from pareto_monoped.actuator.features import (
     gear_grade,
     gear_note,
     note_with,
+    output_dowel_holes,
     output_holes,
     slab,
     tube,
@@ -166,7 +167,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Carrier with output flange, retaining ring, main and end bearing, secondary carrier."""
     data, materials = settings.parts, settings.materials
     carrier = data.carrier
-    threads = output_holes(settings)
+    threads, dowels = output_holes(settings), output_dowel_holes(settings)
     z_diaphragm = -carrier.thread_depth_mm
     z_pins = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
     pins = Pattern(radius_mm=0.5 * carrier.pin_diameter_mm, pitch_radius_mm=at.r_pins, count=at.gears.planets)
@@ -176,9 +177,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     z_split = at.z_secondary_front - carrier.pin_depth_mm
     r_groove = at.r_bore - RING_GROOVE_MM
     body = (
-        *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads),
-        *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads),
-        *slab(z_diaphragm, z_ring, r_groove, seat, threads),
+        *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
+        *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
+        *slab(z_diaphragm, z_ring, r_groove, seat, threads, dowels),
         *slab(at.z_bearing_front, z_diaphragm, r_groove, seat - data.casing.lip_mm),
         *slab(z_pins, at.z_bearing_front, at.r_bore, seat - data.casing.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
@@ -197,6 +198,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 Fit(diameter_mm=2.0 * at.r_bore, zone="h6", seat=True),
                 Fit(diameter_mm=2.0 * seat, zone="J7", seat=True),
                 Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
+                Fit(diameter_mm=data.interface.output_dowel_mm, zone="H7"),
             ),
         ),
         Part(

@@ -7,6 +7,7 @@ from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
     bought_bearing,
+    casing_dowel_holes,
     casing_holes,
     gear_accuracy,
     gear_grade,
@@ -24,7 +25,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
-from pareto_monoped.geometry.dowels import dowel_part
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
@@ -32,6 +33,8 @@ from pareto_monoped.geometry.screws import M3, clearance, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import ALLOYS
 
+FLANGE_DOWEL = Dowel(diameter_mm=2.5)
+"""Between ring housing and casing; our own choice: the thinnest sold whose length is that of both flanges."""
 BACK_THREAD_MM = 6.0
 """Depth of the motor's own pattern in the backplate: M5 screws need more than the casing's M3."""
 _HUB_WALL_MM = 1.2
@@ -55,6 +58,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
         *carrier_parts(at, settings),
         *_turning_parts(at, shell, settings),
         *_casing_and_ring_housing(at, shell, settings),
+        _flange_dowels(shell, settings),
         _backplate(at, shell, motor, settings),
         *_screws(at, shell, motor, settings),
         bought_bearing(
@@ -154,9 +158,16 @@ def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: 
     )
 
 
+def _flange_dowel_holes(shell: InternalLayout, settings: ActuatorSettings) -> Pattern:
+    """Holes for dowels in every second gap of these bolts: they carry the ring's torque."""
+    bolts = settings.parts.interface.mount_bolt_count
+    return FLANGE_DOWEL.holes(2.0 * shell.r_flange_bolts, bolts // 2, np.pi / bolts)
+
+
 def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
     casing, aluminium = settings.parts.casing, settings.materials.aluminium
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
+    dowels, flange_dowels = casing_dowel_holes(at, settings), _flange_dowel_holes(shell, settings)
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
     return (
@@ -165,9 +176,9 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             role=Role.HOUSING,
             material=aluminium,
             prisms=(
-                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, screws, *front_vents),
+                *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels, screws, flange_dowels, *front_vents),
                 *tube(at.z_bearing_front, -casing.plate_mm, at.r_seat, at.r_open),
-                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount),
+                *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount, dowels),
                 *tube(z_plate + casing.flange_mm, -casing.rim_mm, at.r_casing + casing.wall_mm, at.r_casing),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
@@ -175,6 +186,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             group=Group.HOUSING,
             grade=ALLOYS["aw_6082_t6"],
             features=(clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),),
+            fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
             note="bore and faces in one clamping",
         ),
         Part(
@@ -182,7 +194,14 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             role=Role.HOUSING,
             material=aluminium,
             prisms=(
-                *tube(z_flange, -casing.plate_mm, shell.r_flange, at.r_seat, _flange_holes(shell, settings, M3.core)),
+                *tube(
+                    z_flange,
+                    -casing.plate_mm,
+                    shell.r_flange,
+                    at.r_seat,
+                    _flange_holes(shell, settings, M3.core),
+                    flange_dowels,
+                ),
                 *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
                 *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
                 *tube(at.z_gear_front, z_lip, at.r_stator_in, at.r_ring - 0.5 * casing.ring_lip_mm),
@@ -200,9 +219,29 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
+                FLANGE_DOWEL.hole_fit,
             ),
             note=note_with("{} mm outside to fit the stator", 2.0 * at.r_stator_in),
         ),
+    )
+
+
+def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
+    """The dowels between ring housing and casing."""
+    casing, holes = settings.parts.casing, _flange_dowel_holes(shell, settings)
+    return dowel_part(
+        "ring_housing_dowel",
+        FLANGE_DOWEL,
+        end_mm=shell.z_flange,
+        room_mm=casing.plate_mm + casing.flange_mm,
+        direction=1.0,
+        material=settings.materials.steel,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
+        group=Group.HOUSING,
+        partner="ring_housing",
+        note="flush with the mounting face",
     )
 
 

@@ -144,13 +144,15 @@ class SplineData:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InterfaceData:
-    """Bolt patterns towards the links."""
+    """Patterns of bolts and dowels towards the links."""
 
     __pydantic_config__ = _STRICT
 
     output_bolt_circle_mm: Positive
     output_bolt_count: int
+    output_dowel_mm: Positive
     mount_bolt_count: int
+    mount_dowel_mm: Positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,12 +10,16 @@ is bolted to the thigh's outer plate on the same axis; its output turns a sprock
 the knee, one to one. The far cheek carries the knee actuator's free end in a bearing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+
+import numpy as np
 
 from pareto_monoped.actuator.bearings import small_bearing
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
 from pareto_monoped.leg.motor_drivers import MotorDriver, motor_driver_for
 
@@ -36,9 +40,11 @@ class LegDimensions:
     Attributes:
         mount_pitch_radius_mm, mount_holes: bolts between the actuator's housing and a plate (M3).
         mount_thread_mm: usable depth of their threads in the housing.
+        mount_dowel_mm, mount_dowels: dowels in gaps between these bolts, as deep as their threads.
         housing_radius_mm: of the actuator's case.
         output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3).
         output_thread_mm: usable depth of their threads in the flange.
+        output_dowel_mm, output_dowels: dowels in gaps between these bolts, as deep as their threads.
         coupler_radius_mm: of the output flange.
         back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
             their diameter.
@@ -68,10 +74,14 @@ class LegDimensions:
     mount_pitch_radius_mm: float
     mount_holes: int
     mount_thread_mm: float
+    mount_dowel_mm: float
+    mount_dowels: int
     housing_radius_mm: float
     output_pitch_radius_mm: float
     output_holes: int
     output_thread_mm: float
+    output_dowel_mm: float
+    output_dowels: int
     coupler_radius_mm: float
     back_pitch_radius_mm: float
     back_holes: int
@@ -109,6 +119,23 @@ class LegDimensions:
     def thigh_face_mm(self) -> float:
         """Height of the thigh plates' outer faces above the middle plane."""
         return 0.5 * self.gap_mm + self.plate_mm
+
+    @property
+    def output_dowel(self) -> Pattern:
+        """Holes of the dowels between the hip's output flange and its coupling, as they are in the actuator's frame."""
+        gap = np.pi / self.output_holes
+        return Dowel(diameter_mm=self.output_dowel_mm).holes(2.0 * self.output_pitch_radius_mm, self.output_dowels, gap)
+
+    @property
+    def drive_dowel(self) -> Pattern:
+        """The same between the knee's output flange, whose actuator is turned over, and the drive sprocket."""
+        return replace(self.output_dowel, phase_rad=-self.output_dowel.phase_rad)
+
+    @property
+    def mount_dowel(self) -> Pattern:
+        """Holes of the dowels between the actuator's housing and a plate, likewise."""
+        gap = np.pi / self.mount_holes
+        return Dowel(diameter_mm=self.mount_dowel_mm).holes(2.0 * self.mount_pitch_radius_mm, self.mount_dowels, gap)
 
     @property
     def rim_radius_mm(self) -> float:
@@ -188,10 +215,14 @@ def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
         mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
         mount_holes=mount.bolts.count,
         mount_thread_mm=mount.thread_depth_mm - _THREAD_SPARE_MM,
+        mount_dowel_mm=mount.dowels.diameter_mm,
+        mount_dowels=mount.dowels.count,
         housing_radius_mm=mount.housing_radius_mm,
         output_pitch_radius_mm=0.5 * output.bolts.pitch_circle_mm,
         output_holes=output.bolts.count,
         output_thread_mm=output.thread_depth_mm - _THREAD_SPARE_MM,
+        output_dowel_mm=output.dowels.diameter_mm,
+        output_dowels=output.dowels.count,
         coupler_radius_mm=output.flange_radius_mm,
         back_pitch_radius_mm=0.5 * mount.back_bolts.pitch_circle_mm,
         back_holes=mount.back_bolts.count,

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
@@ -13,24 +14,26 @@ from pareto_monoped.materials import ALLOYS, MATERIALS
 # Our own layout of the couplings, mm.
 _RADIUS = 15.0  # 3 mm outside the circle of their screws
 _BORE_RADIUS = 6.75  # covers the outer ring of the bearing in the output flange, 15 mm wide
-_RELIEF_RADIUS = 2.2  # of a hole between every two screws: 0.8 mm to the rim, 2.4 mm to the screws' holes
+_RELIEF_RADIUS = 2.2  # of a hole in the gaps without dowels: 0.8 mm to the rim, 2.4 mm to the screws' holes
+_DOWEL_STANDS_OUT = 1.0  # of the outer plate's inner face at most, between the heads of the screws
 
 
 def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
     """What joins the thigh to both actuators, whose output flanges are flush with their mounting faces."""
-    return (*_hip_coupling(d), _knee_mount_screw(d), *_knee_drive(d))
+    return (*_hip_coupling(d), _knee_mount_screw(d), _knee_mount_dowels(d), *_knee_drive(d))
 
 
-def _coupling_holes(d: LegDimensions) -> tuple[Shape, ...]:
-    """Bore, clearance holes for the screws into the output flange, and lightening holes between these."""
+def _coupling_holes(d: LegDimensions, dowels: Pattern) -> tuple[Shape, ...]:
+    """Bore, holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
     return (
         Circle(radius_mm=_BORE_RADIUS),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+        dowels,
         Pattern(
             radius_mm=_RELIEF_RADIUS,
             pitch_radius_mm=d.output_pitch_radius_mm,
-            count=d.output_holes,
-            phase_rad=np.pi / d.output_holes,
+            count=dowels.count,
+            phase_rad=dowels.phase_rad + 2.0 * np.pi / d.output_holes,
         ),
     )
 
@@ -45,10 +48,25 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             material=MATERIALS.aluminium,
             process="machined",
             prisms=(
-                Prism(outline=Circle(radius_mm=_RADIUS), z0_mm=d.hip_mount_mm, z1_mm=-face, holes=_coupling_holes(d)),
+                Prism(
+                    outline=Circle(radius_mm=_RADIUS),
+                    z0_mm=d.hip_mount_mm,
+                    z1_mm=-face,
+                    holes=_coupling_holes(d, d.output_dowel),
+                ),
             ),
             grade=ALLOYS["aw_6082_t6"],
-            note="between hip output and inner plate; friction joint, dry",
+            fits=(_output_dowel(d).hole_fit,),
+            note="between hip output and inner plate",
+        ),
+        _output_dowels(
+            "hip_coupling_dowel",
+            d,
+            d.output_dowel,
+            end_mm=-half_gap,
+            room_mm=-half_gap - d.hip_mount_mm + d.output_thread_mm,
+            direction=-1.0,
+            partner="hip_coupling",
         ),
         screw_part(
             "hip_coupling_screw",
@@ -64,6 +82,57 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             grade="12.9",
             note="from inside the thigh into the hip's output flange",
         ),
+    )
+
+
+def _output_dowel(d: LegDimensions) -> Dowel:
+    """Between an output flange and what it turns: these dowels carry its torque, the screws only clamp."""
+    return Dowel(diameter_mm=d.output_dowel_mm)
+
+
+def _output_dowels(
+    name: str,
+    d: LegDimensions,
+    holes: Pattern,
+    *,
+    end_mm: float,
+    room_mm: float,
+    direction: float,
+    partner: str,
+    group: Group = Group.FIXED,
+) -> Part:
+    """The dowels into an output flange, from the face at ``end_mm``."""
+    return dowel_part(
+        name,
+        _output_dowel(d),
+        end_mm=end_mm,
+        room_mm=room_mm,
+        direction=direction,
+        material=MATERIALS.steel,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
+        group=group,
+        partner=partner,
+        note="ream its holes together",
+    )
+
+
+def _knee_mount_dowels(d: LegDimensions) -> Part:
+    """The dowels between the outer plate and the knee actuator's case: they carry its torque and the chain's pull."""
+    holes = d.mount_dowel
+    return dowel_part(
+        "knee_mount_dowel",
+        Dowel(diameter_mm=d.mount_dowel_mm),
+        end_mm=d.knee_mount_mm + d.mount_thread_mm,
+        room_mm=d.mount_thread_mm + d.plate_mm + _DOWEL_STANDS_OUT,
+        direction=-1.0,
+        material=MATERIALS.steel,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
+        partner="thigh_plate_outer",
+        note="ream its holes together",
     )
 
 
@@ -109,12 +178,23 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
                     outline=Circle(radius_mm=_RADIUS),
                     z0_mm=half_tooth,
                     z1_mm=d.knee_mount_mm,
-                    holes=_coupling_holes(d),
+                    holes=_coupling_holes(d, d.drive_dowel),
                 ),
             ),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["aw_6082_t6"],
+            fits=(_output_dowel(d).hole_fit,),
             note="between knee output and drive sprocket",
+        ),
+        _output_dowels(
+            "drive_dowel",
+            d,
+            d.drive_dowel,
+            end_mm=-half_tooth,
+            room_mm=d.knee_mount_mm + half_tooth + d.output_thread_mm,
+            direction=1.0,
+            partner="drive_coupling",
+            group=Group.KNEE_DRIVE,
         ),
         screw_part(
             "drive_screw",

@@ -62,7 +62,7 @@ def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
 
 
 def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
-    """The sprocket, with clearance holes for its screws.
+    """The sprocket, with holes for its screws and dowels.
 
     A wide one is counterbored at -z, so that screws of the same length suit any width.
 
@@ -80,6 +80,7 @@ def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
             holes=(
                 Circle(radius_mm=BORE_RADIUS),
                 sprocket_screws(d, screw_radius_mm),
+                d.drive_dowel,
                 Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=_RELIEF_COUNT),
             ),
         )

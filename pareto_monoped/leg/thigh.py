@@ -141,6 +141,7 @@ def _inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     return (
         Circle(radius_mm=_INNER_BORE_RADIUS),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+        d.output_dowel,
         Pattern(radius_mm=_INNER_RELIEF_RADIUS, pitch_radius_mm=_INNER_RELIEF_PITCH_RADIUS, count=6),
     )
 
@@ -153,6 +154,7 @@ def _outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     return (
         Circle(radius_mm=d.coupler_radius_mm + _OUTER_BORE_PLAY),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes),
+        d.mount_dowel,
         Pattern(radius_mm=relief, pitch_radius_mm=outside_mm - relief, count=6),
     )
 

@@ -1,5 +1,6 @@
 """Every actuator of every map can be put together: nothing overlaps, nothing rubs, bolts meet their holes."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -73,14 +74,21 @@ def test_interfaces_are_where_the_parts_have_their_holes(vt_map):
     for ratio in (4.0, 6.0, 7.9, 8.7):
         actuator = vt_map.lookup(ratio)
         front = "casing" if actuator.family == "ISSPG" else "ring_housing"
-        for bolts, name in ((actuator.mount.bolts, front), (actuator.output.bolts, "carrier")):
-            found = [
-                hole
-                for hole in patterns(actuator, name)
-                if hole.count == bolts.count and abs(2.0 * hole.pitch_radius_mm - bolts.pitch_circle_mm) < 1e-9
-            ]
-            assert found
-            assert all(2.0 * hole.radius_mm == pytest.approx(2.5) for hole in found)  # M3 tapping holes
+        for interface, name in ((actuator.mount, front), (actuator.output, "carrier")):
+            # M3 tapping holes from the x axis on, and dowels in the gaps between them.
+            gap = math.pi / interface.bolts.count
+            dowels = interface.dowels
+            for bolts, diameter_mm, phase_rad in (
+                (interface.bolts, 2.5, 0.0),
+                (dowels, dowels.diameter_mm, gap),
+            ):
+                assert any(
+                    hole.count == bolts.count
+                    and 2.0 * hole.pitch_radius_mm == pytest.approx(bolts.pitch_circle_mm)
+                    and 2.0 * hole.radius_mm == pytest.approx(diameter_mm)
+                    and hole.phase_rad == pytest.approx(phase_rad)
+                    for hole in patterns(actuator, name)
+                )
         back = actuator.mount.back_bolts
         assert any(
             hole.count == back.count and abs(2.0 * hole.pitch_radius_mm - back.pitch_circle_mm) < 1e-9
