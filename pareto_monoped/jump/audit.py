@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
-from pareto_monoped.jump.balance import energy_balance
 from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
+from pareto_monoped.jump.closure import balance_errors
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import measure
 from pareto_monoped.robot.population import robot_arrays
@@ -181,9 +181,9 @@ def audit(
     energy = np.abs(spread.energy_j.reshape(n, perturbations) / base.energy_j[:, None] - 1.0)
     balance = np.full(n, np.nan)
     ok = np.flatnonzero(base.ok)
-    for i in ok:
-        robots = robot_arrays(values[i : i + 1], actuator_map, calibration.mass)
-        balance[i] = energy_balance(robots, columns(values[i : i + 1], CONTROL), calibration).error
+    if len(ok):
+        robots = robot_arrays(values[ok], actuator_map, calibration.mass)
+        balance[ok] = balance_errors(robots, columns(values[ok], CONTROL), calibration, workers)
     measured = {
         "energy_balance_error": balance,
         **_changes("half_step", base, half),

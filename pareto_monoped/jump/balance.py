@@ -154,13 +154,17 @@ def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
     return np.divide(1.0 - mesh, lost, out=np.zeros(2), where=lost > 0.0)
 
 
+def back_s(calibration: Calibration) -> float:
+    """How long before a state's speeds its positions are taken, see ``Simulation.positions_read``."""
+    return 0.5 * calibration.simulation.timestep_s if calibration.simulation.positions_read != "state" else 0.0
+
+
 def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> Floats:
     """Kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
     import mujoco
 
     model, data = moment.model, moment.scratch
-    back_s = 0.5 * calibration.simulation.timestep_s if calibration.simulation.positions_read != "state" else 0.0
-    data.qpos[:], data.qvel[:] = moment.qpos - back_s * moment.qvel, moment.qvel
+    data.qpos[:], data.qvel[:] = moment.qpos - back_s(calibration) * moment.qvel, moment.qvel
     mujoco.mj_forward(model, data)
     mujoco.mj_energyPos(model, data)
     mujoco.mj_energyVel(model, data)

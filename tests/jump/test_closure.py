@@ -1,0 +1,57 @@
+"""The energy balances of many jumps at once against that of one jump after the other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import CONTROL, LOWER, UPPER, columns, complete
+from pareto_monoped.jump.balance import energy_balance
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.closure import balance_errors
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.robot.population import robot_arrays
+
+MAP = map_for("VT8020")
+RANDOM = complete(np.random.default_rng(11).uniform(LOWER, UPPER, (30, len(LOWER))))
+
+
+def one_by_one(designs, calibration):
+    return [
+        energy_balance(robot_arrays(design, MAP, calibration.mass), columns(design[None], CONTROL), calibration).error
+        for design in designs
+    ]
+
+
+def jumping(calibration):
+    return RANDOM[Evaluator(MAP, calibration)(RANDOM).ok]
+
+
+@pytest.mark.parametrize("name", ["reference", "ideal", "paper", "reference-1"])
+def test_every_balance_is_that_of_the_jump_alone(name):
+    calibration = load_calibration(name)
+    designs = jumping(calibration)
+    assert len(designs) >= 20
+    errors = balance_errors(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration)
+    np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("integrator", "read"), [("implicitfast", "half_step_back"), ("RK4", "state")])
+def test_so_it_is_with_other_integrators(integrator, read):
+    calibration = load_calibration()
+    simulation = replace(calibration.simulation, integrator=integrator, positions_read=read)
+    calibration = replace(calibration, simulation=simulation)
+    designs = jumping(calibration)[:5]
+    errors = balance_errors(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration)
+    np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
+
+
+def test_a_balance_does_not_depend_on_the_other_jumps_nor_on_the_workers():
+    calibration = load_calibration()
+    designs = jumping(calibration)
+    robots, control = robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL)
+    errors = balance_errors(robots, control, calibration)
+    np.testing.assert_array_equal(errors, balance_errors(robots, control, calibration, workers=2))
+    last = robot_arrays(designs[-3:], MAP, calibration.mass)
+    np.testing.assert_array_equal(errors[-3:], balance_errors(last, control[-3:], calibration))
