@@ -18,6 +18,7 @@ from pareto_monoped.geometry.features import Feature
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
+from pareto_monoped.geometry.tightening import Fastening
 from pareto_monoped.materials import Alloy, GearGrade, Material
 
 
@@ -220,6 +221,7 @@ class Part:
         note: what else the maker should know (standard, catalogue number).
         grade: alloy or steel grade with its condition, where the maker must keep to one.
         fits: tolerances of its round faces.
+        fastening: size, preload, tightening torque and lock of a screw.
         accuracy_class: of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters.
         joint: what holds it where its shape does not.
         visibility: where it is drawn.
@@ -242,6 +244,7 @@ class Part:
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)
     accuracy_class: int | None = field(default=None, compare=False)
+    fastening: Fastening | None = field(default=None, compare=False)
     joint: Joint | None = None
     visibility: Visibility = Visibility.OUTSIDE
     features: tuple[Feature, ...] = ()

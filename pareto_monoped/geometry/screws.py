@@ -10,6 +10,7 @@ from pareto_monoped.geometry.features import COARSE_PITCHES_MM, Cone, Countersun
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
+from pareto_monoped.geometry.tightening import Fastening, thread_size
 from pareto_monoped.materials import Material
 
 Head = Literal["cap", "countersunk", "hexagon"]
@@ -53,6 +54,16 @@ class Screw:
     def name(self) -> str:
         """Such as ``M3``."""
         return f"M{2.0 * self.shank:g}"
+
+    def fastening(self, head: Head, property_class: str) -> Fastening:
+        """How it is tightened and locked."""
+        return Fastening(
+            thread=thread_size(2.0 * self.shank),
+            property_class=property_class,
+            head=head,
+            head_mm=2.0 * self.head,
+            hole_mm=2.0 * self.hole,
+        )
 
     @property
     def thread(self) -> Thread:
@@ -252,6 +263,7 @@ def screw_part(
         group=group,
         visibility=visibility,
         features=features,
+        fastening=screw.fastening(head, grade),
         note=f"{screw.name}{long} {standard} {grade}{', ' + note if note else ''}",
     )
     return part if places_mm is None else replace(part, places_mm=places_mm)

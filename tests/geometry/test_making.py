@@ -6,6 +6,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
 from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.roles import FASTENERS, SCREWS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 from pareto_monoped.robot.build import build_robot
@@ -36,6 +37,18 @@ def test_every_made_metal_part_names_its_alloy(parts):
     made = [part for part in parts if part.process in ("machined", "laser cut") and part.material.name in METALS]
     assert len(made) > 20
     assert [part.name for part in made if part.grade is None] == []
+
+
+def test_every_screw_says_how_tight_and_what_locks_it(parts):
+    screws = [part for part in parts if part.role in SCREWS]
+    assert len(screws) > 20
+    for part in screws:
+        fastening = part.fastening
+        assert part.note.startswith(f"M{fastening.thread.diameter_mm:g} x ")
+        assert f" {fastening.property_class}" in part.note
+        assert 0.2 < fastening.torque_n_m < 10.0
+        assert fastening.lock
+    assert all(part.fastening is None or part.role in FASTENERS for part in parts)
 
 
 def test_alloys_are_those_of_their_standards():

@@ -16,6 +16,8 @@ _COLUMNS = (
     "made_or_bought",
     "size_mm",
     "used_in",
+    "torque_n_m",
+    "lock",
     "note",
 )
 
@@ -39,6 +41,8 @@ def parts_list(product: Product) -> str:
                 "bought" if part.process == "bought" else "made",
                 " x ".join(f"{size:.1f}" for size in extent_mm(unique.mesh)),
                 " ".join(unique.units),
+                f"{part.fastening.torque_n_m:.1f}" if part.fastening else "",
+                part.fastening.lock if part.fastening else "",
                 _note(part),
             )
         )

@@ -155,6 +155,14 @@ def test_parts_list_sizes_and_units_are_those_of_the_files(exported):
         assert row["used_in"].split() == units
         assert row["made_or_bought"] == ("bought" if row["process"] == "bought" else "made")
         assert float(row["total_g"]) == pytest.approx(int(row["count"]) * float(row["mass_g"]), abs=0.01 * 50)
+    # M3 of 10.9: 1.9 N m (VDI 2230); every screw has a torque and a lock, what is no fastener has neither.
+    (screw,) = (row for row in rows if row["part"] == "hip_mount_screw")
+    assert (screw["torque_n_m"], screw["lock"]) == ("1.9", "medium-strength thread locker")
+    for row in rows:
+        if "_screw" in row["part"]:
+            assert row["torque_n_m"] and row["lock"]
+        elif "bolt" not in row["part"] and "turnbuckle" not in row["part"]:
+            assert row["torque_n_m"] == row["lock"] == ""
 
 
 def test_step_files_have_the_colour_of_each_part_s_material(exported, product):

@@ -1,0 +1,120 @@
+"""Tightening of metric screws after VDI 2230-1 in its short form: assembly preload, tightening torque, thread locking."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from pareto_monoped.errors import DesignError
+from pareto_monoped.geometry.features import COARSE_PITCHES_MM
+
+PropertyClass = Literal["8.8", "10.9", "12.9"]
+YIELD_MPA: dict[str, float] = {"8.8": 640.0, "10.9": 940.0, "12.9": 1100.0}
+"""0.2 % proof stress by property class (ISO 898-1, up to M16)."""
+TENSILE_MPA: dict[str, float] = {"8.8": 800.0, "10.9": 1040.0, "12.9": 1220.0}
+"""Tensile strength by property class (ISO 898-1, up to M16)."""
+FRICTION = 0.12
+"""Of thread and head: the middle of class B of VDI 2230-1, table A5, in which screws wet with a thread locker lie."""
+_UTILISATION = {"cap": 0.9, "hexagon": 0.9, "countersunk": 0.75}
+"""Share of the proof stress used (VDI 2230-1: 0.9). Countersunk heads carry 80 percent of a screw (ISO 10642) and their
+key is smaller."""
+_BEARING_SHARE = 0.94
+"""Outer diameter of a head's bearing face over that of the head: 5.07 to 5.5 mm for M3, 12.33 to 13 for M8 (ISO 4762)."""
+_COUNTERSINK_RAD = 0.25 * np.pi
+"""Half the angle of a countersunk head."""
+LOCKER = "medium-strength thread locker"
+"""On every screw: jumps shake, and most grips are shorter than the three diameters that lock by themselves. Anaerobic,
+for instance Loctite 243."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThreadSize:
+    """A metric coarse thread of a screw (ISO 724).
+
+    Attributes:
+        diameter_mm, pitch_mm: nominal.
+    """
+
+    diameter_mm: float
+    pitch_mm: float
+
+    @property
+    def flank_diameter_mm(self) -> float:
+        """d2."""
+        return self.diameter_mm - 0.75 * np.tan(np.pi / 3.0) * 0.5 * self.pitch_mm
+
+    @property
+    def core_diameter_mm(self) -> float:
+        """d3."""
+        return self.diameter_mm - 17.0 / 24.0 * np.sqrt(3.0) * self.pitch_mm
+
+    @property
+    def stress_diameter_mm(self) -> float:
+        """Of the circle with the stress area: mean of d2 and d3."""
+        return 0.5 * (self.flank_diameter_mm + self.core_diameter_mm)
+
+    @property
+    def stress_area_mm2(self) -> float:
+        """A_s (ISO 898-1)."""
+        return 0.25 * np.pi * self.stress_diameter_mm**2
+
+    @property
+    def core_area_mm2(self) -> float:
+        """A_d3."""
+        return 0.25 * np.pi * self.core_diameter_mm**2
+
+
+def thread_size(diameter_mm: float) -> ThreadSize:
+    """The coarse thread of a diameter; between the standard ones, which only a user's motor has, interpolated."""
+    sizes = sorted(COARSE_PITCHES_MM)
+    if not sizes[0] <= diameter_mm <= sizes[-1]:
+        raise DesignError(
+            f"screw of {diameter_mm:g} mm: must be M{sizes[0]:g} to M{sizes[-1]:g}; choose another diameter"
+        )
+    pitch = np.interp(diameter_mm, sizes, [COARSE_PITCHES_MM[size] for size in sizes])
+    return ThreadSize(diameter_mm=diameter_mm, pitch_mm=float(pitch))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fastening:
+    """How a screw is tightened and locked.
+
+    Attributes:
+        thread: its size.
+        property_class: after ISO 898-1.
+        head: shape of the head.
+        head_mm: outer diameter of the head.
+        hole_mm: diameter of the clearance hole.
+        lock: what keeps it from turning loose.
+    """
+
+    thread: ThreadSize
+    property_class: str
+    head: Literal["cap", "countersunk", "hexagon"]
+    head_mm: float
+    hole_mm: float
+    lock: str = LOCKER
+
+    @property
+    def preload_n(self) -> float:
+        """Assembly preload F_M: torsion and tension together reach the share of the proof stress used (eq. R8/1)."""
+        thread = self.thread
+        slope = thread.pitch_mm / (np.pi * thread.flank_diameter_mm) + 1.155 * FRICTION
+        torsion = 1.5 * thread.flank_diameter_mm / thread.stress_diameter_mm * slope
+        stress = _UTILISATION[self.head] * YIELD_MPA[self.property_class] / np.sqrt(1.0 + 3.0 * torsion**2)
+        return float(stress * thread.stress_area_mm2)
+
+    @property
+    def bearing_mm(self) -> float:
+        """Outer diameter of the head's bearing face."""
+        return _BEARING_SHARE * self.head_mm
+
+    @property
+    def torque_n_m(self) -> float:
+        """Tightening torque M_A for this preload (eq. R13/1); a cone's friction acts on its slanted face."""
+        thread = self.thread
+        under_head = 0.25 * (self.bearing_mm + self.hole_mm) * FRICTION
+        if self.head == "countersunk":
+            under_head /= np.sin(_COUNTERSINK_RAD)
+        in_thread = 0.16 * thread.pitch_mm + 0.58 * thread.flank_diameter_mm * FRICTION
+        return float(1e-3 * self.preload_n * (in_thread + under_head))
