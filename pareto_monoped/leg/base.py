@@ -16,7 +16,7 @@ from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the rods, mm. They stand above the hip, see ``LegDimensions.lower_rod_mm``.
-_ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
+ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
 # Our own layout of the cheeks, mm.
 _TOP_RADIUS, _TOP_RISE = 40.0, 6.0  # round upper end, its centre above the lower rods: 5 mm outside the upper ones
 _FAR_WALL = 10.0  # of the far cheek around its bearing
@@ -175,7 +175,7 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 head="cap",
                 seat_mm=seat_mm - direction * under_mm,
                 grip_mm=grip_mm + under_mm,
-                room_mm=_ROD_THREAD,
+                room_mm=ROD_THREAD,
                 direction=direction,
                 material=MATERIALS.steel,
                 places_mm=where,

@@ -13,6 +13,7 @@ from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf
 from pareto_monoped.cad.write.folder import safe, write
 from pareto_monoped.cad.write.jump_record import jump_record, replay_script
+from pareto_monoped.cad.write.stand import stand_files
 from pareto_monoped.cad.write.visuals import METRES, Visual, colliders
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration
@@ -57,10 +58,14 @@ def write_meshes(
 
 
 def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> None:
-    """Write the laser drawings of the flat parts."""
+    """Write the laser drawings of the flat parts, and the arms of the test stand."""
+    if "dxf" not in formats:
+        return
     for unique in product.unique:
-        if "dxf" in formats and dxf.is_flat(unique.part):
+        if dxf.is_flat(unique.part):
             write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
+    for path, content in stand_files(product.robot.leg).items():
+        write(folder, path, content)
 
 
 def write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> None:

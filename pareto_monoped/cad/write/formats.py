@@ -11,7 +11,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
     "stl": (("parts/stl/", "each part as triangles, mm"),),
     "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
-    "dxf": (("laser/", "the plates for the laser cutter: true outline without kerf, one layer, mm"),),
+    "dxf": (
+        ("laser/", "the plates for the laser cutter: true outline without kerf, one layer, mm"),
+        ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
+    ),
     "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
     "mjcf": (
         ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
