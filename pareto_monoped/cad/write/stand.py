@@ -1,18 +1,14 @@
 """The folder ``test_stand/`` of an export: the arms that hang the base on two vertical rails."""
 
-from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.cad.write.dxf import dxf
-from pareto_monoped.cad.write.triangles import stl
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.stand import MGN12H, arm, carriage_places, carriage_screw, rod_screws
 
 
-def stand_files(d: LegDimensions) -> dict[str, bytes | str]:
-    """Content by path in the export's folder: the arm as DXF for the laser and as STL, and how it is used."""
-    part = arm(d)
+def stand_files(d: LegDimensions) -> dict[str, str]:
+    """Content by path in the export's folder: the arm for the laser, and how it is used."""
     return {
-        "test_stand/arm.dxf": dxf(part),
-        "test_stand/arm.stl": stl(mesh_of(part)),
+        "test_stand/arm.dxf": dxf(arm(d)),
         "test_stand/README.md": _readme(d),
     }
 
