@@ -1,4 +1,8 @@
-"""The chain of the thigh: two pieces of whole links around the sprockets, joined by a turnbuckle in each strand."""
+"""The chain of the thigh: a piece of whole links around each sprocket, joined by a turnbuckle in each strand.
+
+The knee turns by less than half a turn, so that only the links near a sprocket ever run onto it. Between them each
+strand is a bar of aluminium, which is lighter than the chain and can be adjusted.
+"""
 
 import math
 
@@ -6,60 +10,63 @@ import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
+from pareto_monoped.geometry.screws import M5
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.stops import knee_stop
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
-# Our own layout, mm along the strand. From the straight leg to the end of the knee's stop each strand moves by 68 mm:
-# 0.2 m between the axes is the least at which no turnbuckle reaches a sprocket.
-TURNBUCKLE = 48.0  # between its pins, in the middle of its travel: room for studs and forks at either end
-_BARREL, _BARREL_WIDTH = 28.0, 7.0  # a square bar with 1.5 mm of wall around its M4 threads
-_STUD = 3.2  # side of a square of the area of an M4 thread (ISO 724: 9.8 mm2 at the pitch diameter)
-_STUD_DEPTH = 10.0  # in the barrel, in the middle of the travel; 1.25 diameters are left at its long end
-_FORK_BOTTOM, _FORK_ROOT = 4.0, 7.0  # from the pin to the bottom of the fork's slot and to the stud
+# Our own layout, mm along the strand.
+_STRAIGHT = 4  # pitches of a piece beside its sprocket, with the knee in the middle of its range
+_FORK_BOTTOM, _FORK_ROOT = 6.5, 10.0  # from the pin to the bottom of the fork's slot and to the stud
+_HALF_FORK, _CHEEK = 4.0, 1.6  # half width of a fork, and thickness of its cheeks
+_STUD_DEPTH = 10.5  # in the bar, in the middle of the travel
+TRAVEL = 4.0  # of either end to either side, for assembly and wear: 1.3 diameters of thread are left
+_TAPPED = 16.0  # depth of the bar's threads
+_NUT, _NUT_FLATS = 2.7, 8.0  # height and width across flats of a thin nut M5 (ISO 4035)
+_SPARE = 0.3  # between nut and fork at the short end of the travel
+# Our own layout across the strand, mm.
+BAR_WIDTH = 8.0  # of the bar's square ends: 1.5 mm of metal around the thread
+BAR_FLAT = 3.0  # thickness of the bar between its ends
+THREAD = M5
+_STUD = 3.97  # side of a square of the area of an M5 thread (ISO 724: 15.8 mm2 at the pitch diameter)
+_NUT_SIDE = 7.44  # side of a square of the nut's area
 _SLOT_PLAY = 0.1  # of the chain's link in the fork, to either side
 _PIN_PLAY = 0.05  # radial, of the turnbuckle's pin in the chain
 _GAP = 0.45  # between the fork and the next link's plates
-_SPARE_TRAVEL = 1.0  # beyond half a pitch, to either side, for tightening
+
+_Place = tuple[Numbers, Numbers, Numbers]
 
 
-def links_of(length_mm: float, d: LegDimensions) -> tuple[int, int, float]:
-    """Numbers of links of the pieces at hip and knee, and the length in mm to which both turnbuckles are set.
+def links_of(d: LegDimensions) -> int:
+    """Number of links of either piece; it begins and ends with an inner link, so that the number is odd."""
+    return d.chain.teeth // 2 + 2 * _STRAIGHT
 
-    A piece begins and ends with an inner link, so that its number of links is odd. That of both together is even, and
-    each turnbuckle, measured between its pins, takes up at most half a pitch more or less than ``TURNBUCKLE``.
-    """
-    pitch = d.chain.pitch_mm
-    around = 2.0 * length_mm + d.chain.teeth * pitch
-    both = 2 * math.floor((around - 2.0 * (TURNBUCKLE - 0.5 * pitch)) / (2.0 * pitch) + 1e-9)
-    half = both // 2
-    first = half if half % 2 else half + 1
-    return first, both - first, 0.5 * (around - both * pitch)
+
+def reach_mm(d: LegDimensions) -> float:
+    """From a sprocket's axis to the last pins of its piece, with the knee in the middle of its range."""
+    return _STRAIGHT * d.chain.pitch_mm
+
+
+def stroke_mm(d: LegDimensions) -> float:
+    """By which a strand moves from the end of the range of the knee's stops to the other, bumpers squeezed."""
+    stop = knee_stop(d)
+    return (stop.upper_rad - stop.lower_rad + 2.0 * stop.travel_rad) * d.chain.pitch_radius_mm
 
 
 def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Both pieces of the chain and the turnbuckles.
 
-    The parts are drawn and weighed with the turnbuckles in the middle of the strands and of their travel, so that mass
-    is a smooth function of length. A real chain has whole links: a turnbuckle then stands up to 6 mm beside the middle
-    and is set up to half a pitch shorter or longer, and both pieces together weigh up to 1.5 g (05B-1) more or less.
+    They are drawn with the turnbuckles in the middle of the strands, where they are with the knee in the middle of its
+    range. The chain's pieces are the same for every thigh; the bars are cut to length.
 
     Args:
         length_mm: between the axes, float or shape (n,).
         d: dimensions.
     """
-    radius = d.chain.pitch_radius_mm
-    metres = 1e-3 * (length_mm + 0.5 * d.chain.teeth * d.chain.pitch_mm - TURNBUCKLE)
+    radius, links = d.chain.pitch_radius_mm, links_of(d)
     places = tuple((side * radius, -0.5 * length_mm, 0.0) for side in (-1.0, 1.0))
-    if np.ndim(length_mm) == 0:
-        at_hip, at_knee, pins = links_of(float(length_mm), d)
-        count = {"hip": f"{at_hip} links", "knee": f"{at_knee} links"}
-        setting = f"set to {pins:.1f} mm between pins"
-    else:  # many lengths at once: notes are used only for single robots
-        count, setting = {"hip": "cut", "knee": "cut"}, "set"
-    reach = 0.5 * (length_mm - TURNBUCKLE)
-    half_travel = 0.5 * d.chain.pitch_mm + _SPARE_TRAVEL
-    travel = f"{TURNBUCKLE - half_travel:g} to {TURNBUCKLE + half_travel:g} mm"
+    reach = reach_mm(d)
     return (
         *(
             Part(
@@ -68,38 +75,74 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 material=MATERIALS.steel,
                 process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
-                catalogue_mass_kg=d.chain.kg_per_m * metres,
+                catalogue_mass_kg=d.chain.kg_per_m * 1e-3 * links * d.chain.pitch_mm + 0.0 * length_mm,
                 joint=Joint(kind=JointKind.ENGAGED, how="around the teeth of", partner=sprocket),
-                note=f"{d.chain.name} (ISO 606), {count[end]} of {d.chain.pitch_mm:g} mm, an inner link at both ends",
+                note=f"{d.chain.name} (ISO 606), {links} links of {d.chain.pitch_mm:g} mm, an inner link at both ends; "
+                "put on with the knee in the middle of its range",
             )
             for end, y_mm, sign, sprocket in (
                 ("hip", 0.0, 1.0, "drive_sprocket"),
                 ("knee", -length_mm, -1.0, "knee_sprocket"),
             )
         ),
+        *_turnbuckles(length_mm - 2.0 * reach, places, d),
+    )
+
+
+def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions) -> tuple[Part, ...]:
+    """The turnbuckles of both strands, ``pins_mm`` long between their pins."""
+    half_bar = 0.5 * pins_mm - _FORK_ROOT - TRAVEL - _NUT - _SPARE
+    cut = f", {2.0 * float(half_bar):.1f} mm long" if np.ndim(half_bar) == 0 else ""
+    return (
         Part(
-            name="turnbuckle_barrel",
+            name="turnbuckle_bar",
             role=Role.TURNBUCKLE,
             material=MATERIALS.aluminium,
             process="machined",
-            prisms=_barrel(),
+            prisms=_bar(half_bar),
             places_mm=places,
-            joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end"),
+            joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
             grade=ALLOYS["aw_7075_t6"],
-            note=f"7 mm square, tapped M4 right-hand and left-hand; {setting}, travel {travel}",
+            note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped {THREAD.name} "
+            f"right-hand and left-hand, {_TAPPED:g} mm deep; travel {TRAVEL:g} mm at either end to either side",
         ),
+        *(
+            part
+            for side, end in ((1.0, "hip"), (-1.0, "knee"))
+            for part in _fastened(end, side, pins_mm, half_bar, places, d)
+        ),
+    )
+
+
+def _fastened(
+    end: str, side: float, pins_mm: Numbers, half_bar_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions
+) -> tuple[Part, Part]:
+    """Fork and locknut at the upper (side 1) or lower end (-1) of both turnbuckles."""
+    hand = "right-hand" if side > 0.0 else "left-hand"
+
+    def shifted(by_mm: Numbers) -> tuple[_Place, ...]:
+        return tuple((x, y + side * by_mm, z) for x, y, z in places)
+
+    return (
         Part(
-            name="turnbuckle_end",
+            name=f"turnbuckle_end_{end}",
             role=Role.TURNBUCKLE,
             material=MATERIALS.steel,
             process="machined",
-            prisms=_end(d),
-            count=2,
-            pitch_radius_mm=0.5 * TURNBUCKLE,
-            phase_rad=0.5 * math.pi,
-            places_mm=places,
+            prisms=_end(side, d),
+            places_mm=shifted(0.5 * pins_mm),
             grade=ALLOYS["c45_qt"],
-            note="fork with M4 stud and pin for the chain's inner link; one of each two with left-hand thread",
+            note=f"fork with {hand} {THREAD.name} stud and pin for the chain's inner link",
+        ),
+        Part(
+            name=f"turnbuckle_nut_{end}",
+            role=Role.TURNBUCKLE,
+            material=MATERIALS.steel,
+            process="bought",
+            prisms=_nut(side),
+            places_mm=shifted(half_bar_mm),
+            joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner=f"turnbuckle_end_{end}"),
+            note=f"thin nut {THREAD.name} {hand} (ISO 4035) 05, locks the bar",
         ),
     )
 
@@ -163,42 +206,72 @@ def _around(y_mm: Numbers, sign: float, reach_mm: Numbers, inner_mm: float, oute
     )
 
 
-def _barrel() -> tuple[Prism, ...]:
-    """A square bar along y with the bore that its studs fill."""
-    half, stud = 0.5 * _BARREL_WIDTH, 0.5 * _STUD
-    whole = rectangle(width_mm=_BARREL_WIDTH, height_mm=_BARREL)
+def _bar(half_mm: Numbers) -> tuple[Prism, ...]:
+    """A bar along y with square ends, whose threads are drawn as square bores."""
+    half, stud = 0.5 * BAR_WIDTH, 0.5 * _STUD
     wall = half - stud
+    middle = half_mm - _TAPPED
+    ends = tuple(side * (half_mm - 0.5 * _TAPPED) for side in (-1.0, 1.0))
+    return (
+        Prism(
+            outline=rectangle(width_mm=BAR_WIDTH, height_mm=2.0 * middle),
+            z0_mm=-0.5 * BAR_FLAT,
+            z1_mm=0.5 * BAR_FLAT,
+        ),
+        *(
+            Prism(
+                outline=rectangle(width_mm=wall, height_mm=_TAPPED, x_mm=side * (half - 0.5 * wall), y_mm=y_mm),
+                z0_mm=-stud,
+                z1_mm=stud,
+            )
+            for y_mm in ends
+            for side in (-1.0, 1.0)
+        ),
+        *(
+            Prism(outline=rectangle(width_mm=BAR_WIDTH, height_mm=_TAPPED, y_mm=y_mm), z0_mm=low, z1_mm=high)
+            for y_mm in ends
+            for low, high in ((-half, -stud), (stud, half))
+        ),
+    )
+
+
+def _across(low_mm: float, high_mm: float, side: float, half_width_mm: float) -> Path:
+    """A rectangle across the strand, from ``low_mm`` to ``high_mm`` along it, away from the turnbuckle's middle."""
+    return rectangle(width_mm=2.0 * half_width_mm, height_mm=high_mm - low_mm, y_mm=side * 0.5 * (low_mm + high_mm))
+
+
+def _nut(side: float) -> tuple[Prism, ...]:
+    """A nut from the bar's end on; its hexagon is drawn as a square of the same area."""
+    half, stud = 0.5 * _NUT_SIDE, 0.5 * _STUD
+    wall = half - stud
+    whole = _across(0.0, _NUT, side, half)
     return (
         Prism(outline=whole, z0_mm=-half, z1_mm=-stud),
         *(
             Prism(
-                outline=rectangle(width_mm=wall, height_mm=_BARREL, x_mm=side * (half - 0.5 * wall)),
+                outline=rectangle(
+                    width_mm=wall, height_mm=_NUT, x_mm=sign * (half - 0.5 * wall), y_mm=side * 0.5 * _NUT
+                ),
                 z0_mm=-stud,
                 z1_mm=stud,
             )
-            for side in (-1.0, 1.0)
+            for sign in (-1.0, 1.0)
         ),
         Prism(outline=whole, z0_mm=stud, z1_mm=half),
     )
 
 
-def _end(d: LegDimensions) -> tuple[Prism, ...]:
-    """A fork around the chain's last link, around its pin; the turnbuckle's middle lies on the -x side."""
-    half_pin, half_plate, stud = 0.5 * d.chain.pin_mm, 0.5 * d.chain.plate_mm, 0.5 * _STUD
+def _end(side: float, d: LegDimensions) -> tuple[Prism, ...]:
+    """A fork around the chain's last link, around its pin, with a stud towards the turnbuckle's middle."""
+    stud = 0.5 * _STUD
     half_slot = 0.5 * d.chain.inner_link_mm + _SLOT_PLAY
-    bottom, root = _FORK_BOTTOM, _FORK_ROOT
-    tip = 0.5 * TURNBUCKLE - 0.5 * _BARREL + _STUD_DEPTH
-    cheek = rectangle(width_mm=bottom + half_plate, height_mm=2.0 * half_plate, x_mm=0.5 * (half_plate - bottom))
+    half_fork = half_slot + _CHEEK
+    tip = _FORK_ROOT + TRAVEL + _NUT + _SPARE + _STUD_DEPTH
+    cheek = _across(-_FORK_BOTTOM, _HALF_FORK, side, _HALF_FORK)
     return (
-        Prism(outline=cheek, z0_mm=-half_pin, z1_mm=-half_slot),
+        Prism(outline=cheek, z0_mm=-half_fork, z1_mm=-half_slot),
         Prism(outline=Circle(radius_mm=0.5 * d.chain.pin_diameter_mm), z0_mm=-half_slot, z1_mm=half_slot),
-        Prism(outline=cheek, z0_mm=half_slot, z1_mm=half_pin),
-        Prism(
-            outline=rectangle(width_mm=root - bottom, height_mm=2.0 * half_plate, x_mm=-0.5 * (root + bottom)),
-            z0_mm=-half_pin,
-            z1_mm=half_pin,
-        ),
-        Prism(
-            outline=rectangle(width_mm=tip - root, height_mm=_STUD, x_mm=-0.5 * (tip + root)), z0_mm=-stud, z1_mm=stud
-        ),
+        Prism(outline=cheek, z0_mm=half_slot, z1_mm=half_fork),
+        Prism(outline=_across(-_FORK_ROOT, -_FORK_BOTTOM, side, _HALF_FORK), z0_mm=-half_fork, z1_mm=half_fork),
+        Prism(outline=_across(-tip, -_FORK_ROOT, side, stud), z0_mm=-stud, z1_mm=stud),
     )

@@ -26,7 +26,7 @@ from pareto_monoped.leg.motor_drivers import MotorDriver, motor_driver_for
 _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into the axle, cables through the journal
 _LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
-_LEAST_ROD_CIRCLE_MM = 66.5  # 1.7 mm from a rod to an ear
+_LEAST_ROD_CIRCLE_MM = 70.0  # 0.9 mm from a rod to an ear with the bumper fully squeezed
 _UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0  # from the middle, and above the lower rods
 
 
@@ -59,8 +59,8 @@ class LegDimensions:
         hip_play_mm: lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.
         thigh_half_width_mm, thigh_window_half_width_mm: the bar of the thigh's plates.
         thigh_core_half_width_mm, thigh_core_window_half_width_mm: the thigh's printed core, which is
-            at least 2.2 mm inside the strands of the chain.
-        knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 30.1 mm.
+            at least 3.4 mm inside the strands of the chain.
+        knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 34.1 mm.
         shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates.
         shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core.
         fork_mm: free depth of the shank's fork below the knee axis, enough for the thigh at the end of
@@ -103,13 +103,13 @@ class LegDimensions:
     thigh_window_half_width_mm: float = 13.0
     thigh_core_half_width_mm: float = 19.5
     thigh_core_window_half_width_mm: float = 16.0
-    knee_radius_mm: float = 31.0
+    knee_radius_mm: float = 35.5
     shank_top_radius_mm: float = 24.0
     shank_bottom_radius_mm: float = 18.0
     shank_window_half_width_mm: float = 7.5
     shank_core_half_width_mm: float = 17.0
     shank_core_window_half_width_mm: float = 12.5
-    fork_mm: float = 100.0
+    fork_mm: float = 113.0
     foot_radius_mm: float = 33.0
     rod_radius_mm: float = 5.0
     cheek_mm: float = 6.0
@@ -151,9 +151,9 @@ class LegDimensions:
     def rod_circle_mm(self) -> float:
         """Distance of the base's lower rods from the hip axis.
 
-        8 mm from the rods to the thigh's round hip end, and enough for its ears at the end of the stops' travel.
+        10.5 mm from the rods to the thigh's round hip end, and enough for its ears at the end of the stops' travel.
         """
-        return max(self.rim_radius_mm + 13.0, _LEAST_ROD_CIRCLE_MM)
+        return max(self.rim_radius_mm + 15.5, _LEAST_ROD_CIRCLE_MM)
 
     @property
     def lower_rod_mm(self) -> tuple[float, float]:

@@ -14,10 +14,11 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 
 # Our own layout.
-FACE_OUT = 41.5  # of a stop on the thigh's edge, mm from its axis: 1.4 mm and a foot of 10 mm outside the chain
-_FLEXION_TILT = np.radians(6.0)  # of the knee's seat for flexion: brings the striker closer to the knee
-_FLEXION_OUT = 42.3  # of that seat's middle from the thigh's axis, mm
-_EXTENSION_STRIKER = np.radians(22.0)  # in front of the shank's axis; its face lies in a plane through the knee's axis
+FACE_OUT = 45.5  # of a stop on the thigh's edge, mm from its axis: 1.4 mm and a foot of 10 mm outside the chain
+_FLEXION_TILT = np.radians(-3.0)  # of the knee's seat for flexion: brings the striker between the shank's plates
+_FLEXION_OUT = 46.5  # of that seat's middle from the thigh's axis, mm
+# In front of the shank's axis, so that the folded leg's chain passes; the face lies in a plane through the knee's axis.
+_EXTENSION_STRIKER = np.radians(57.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -161,11 +161,11 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="drive_sprocket",
             role=Role.SPROCKET,
-            material=MATERIALS.steel,
+            material=MATERIALS.aluminium,
             process="machined",
             prisms=sprocket_prisms(d, M3.head + HEAD_PLAY),
             group=Group.KNEE_DRIVE,
-            grade=ALLOYS["c45_n"],
+            grade=ALLOYS["aw_7075_t6"],
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
         Part(

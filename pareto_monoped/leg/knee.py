@@ -175,9 +175,9 @@ def _sprocket(d: LegDimensions) -> tuple[Part, ...]:
         Part(
             name="knee_sprocket",
             role=Role.SPROCKET,
-            material=MATERIALS.steel,
+            material=MATERIALS.aluminium,
             process="machined",
-            grade=ALLOYS["c45_n"],
+            grade=ALLOYS["aw_7075_t6"],
             prisms=prisms,
             features=(
                 clearance(

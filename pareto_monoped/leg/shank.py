@@ -5,7 +5,8 @@ from typing import Literal
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, clearance
-from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, hull, rectangle
+from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Shape, rectangle
+from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.knee import axle_holes, axle_parts
 from pareto_monoped.leg.outlines import rounded
@@ -25,6 +26,9 @@ from pareto_monoped.materials import ALLOYS, MATERIALS
 # Our own layout of the fork, mm below the knee axis.
 _FORK_WINDOW_TOP = 28.0  # below the round end of the plates
 _FORK_WINDOW_END = 4.0  # from the window to the core: metal above the first bridge
+# Our own layout of the ear for the striker, mm.
+_EAR_RADIUS = 6.5  # 3.9 mm of metal around its bolt
+_EAR_FILLET, _EAR_FOOT = 12.0, -72.0  # radius of the fillet below it, and height of its middle
 # Our own layout of the foot, mm.
 _FOOT_GAP = 1.0  # from the foot's flat to the plates, and from the foot's block to the core
 _BLOCK_WIDTH, _BLOCK_HEIGHT = 24.0, 34.0  # of the block between the plates, above the foot's flat
@@ -74,11 +78,7 @@ def _plates(
     )
     bolted = holes_at(bolts_at(bridges), sleeve_hole(M3))
     thick = holes_at((*foot_bolts, *shank_stop_bolts(d)), sleeve_hole(M4))
-    outline = hull(
-        top_radius_mm=d.shank_top_radius_mm,
-        bottom_radius_mm=d.shank_bottom_radius_mm,
-        length_mm=-flat_mm - _FOOT_GAP - d.shank_bottom_radius_mm,
-    )
+    outline = _outline(flat_mm, d)
     holes: tuple[Shape, ...] = (
         axle_holes(),
         fork_window,
@@ -105,6 +105,20 @@ def _plates(
             note=f"{d.shank_plate_mm:g} mm sheet",
         )
         for side, low, outside in sides
+    )
+
+
+def _outline(flat_mm: Numbers, d: LegDimensions) -> Path:
+    """Two round ends joined by straight edges, with an ear in front for the striker's upper bolt."""
+    (x, y, _), _ = shank_stop_bolts(d)
+    bottom = Pulley(x_mm=0.0, y_mm=flat_mm + _FOOT_GAP + d.shank_bottom_radius_mm, radius_mm=d.shank_bottom_radius_mm)
+    return belt(
+        (
+            Pulley(x_mm=0.0, y_mm=0.0, radius_mm=d.shank_top_radius_mm),
+            bottom,
+            Pulley(x_mm=d.shank_top_radius_mm + _EAR_FILLET, y_mm=_EAR_FOOT, radius_mm=_EAR_FILLET, inside=False),
+            Pulley(x_mm=x, y_mm=y, radius_mm=_EAR_RADIUS),
+        )
     )
 
 

@@ -13,7 +13,7 @@ from pareto_monoped.leg.dimensions import LegDimensions
 
 # Our own layout, mm.
 BORE_RADIUS = 8.5  # takes the neck of the knee's axle; countersinks of its screws stay 0.1 mm outside
-_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS, _RELIEF_COUNT = 2.85, 18.45, 15  # between screws and teeth: 1.4 mm to the roots
+_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS = 3.3, 19.0  # one to a tooth, between screws and teeth: 2.3 mm to the roots
 HEAD_PLAY = 0.1  # around a sunk screw head
 
 
@@ -81,7 +81,7 @@ def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
                 Circle(radius_mm=BORE_RADIUS),
                 sprocket_screws(d, screw_radius_mm),
                 d.drive_dowel,
-                Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=_RELIEF_COUNT),
+                Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=d.chain.teeth),
             ),
         )
 

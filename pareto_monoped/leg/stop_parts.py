@@ -28,16 +28,16 @@ from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of all faces, mm: along the face, behind it, or along the joint's axis.
-HALF_FACE = 9.0  # half length of a face: a bumper of 20 mm squeezed to 15 mm touches 12 mm
 LIP, LIP_THICKNESS = 3.0, 1.5  # of a seat at either end of its bumper, above its floor
 # Our own layout of seats and strikers on the thigh, mm.
 WING = 2.5  # from the face to the edges of the plates
 BOLT_DEPTH = 6.5  # of the bolt's axis: 1.9 mm of plate around its hole, which carries nothing
 _FOOT_DEPTH, _HALF_FOOT = 10.0, 4.5
 # Our own layout of the shank's striker, mm.
-_SPINE = 9.0  # behind the face for extension
-_TOE, _BASE = 7.0, 11.0  # behind the face for flexion: at its end, and in its middle
-_SPINE_BOLT, _BASE_BOLT = (0.0, 5.0), (1.0, 6.0)  # along and behind the faces for extension and flexion
+_HEAD, _HALF_HEAD = 11.0, 5.0  # depth behind a face, and half width there
+_TOE = 3.0  # depth at a face's ends
+_HALF_SPINE = 3.0  # half thickness of the web between the heads
+_HEAD_BOLT = (0.0, 5.5)  # along and behind either face
 # Our own layout of the base's seats, mm.
 _FLOOR = 6.0  # thickness of a seat under the bumper: beside the web 11 N m on 18 mm x 6 mm are 100 MPa
 _HALF_WEB = 3.0  # 5 kN at 25 mm from the rods are 125 N m on 6 mm x 45 mm: 60 MPa
@@ -78,18 +78,19 @@ def _both_sides(outline: Path, one_mm: float, other_mm: float) -> tuple[Prism, P
 def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: JointStop) -> Part:
     """A seat or striker on the edges of the thigh's plates; a seat has lips."""
     face, half_gap, half = placed.centred, 0.5 * d.gap_mm, _half_length_mm(stop)
+    end = stop.half_face_mm
     foot = face.polygon(
-        (-HALF_FACE, 0.0),
-        (HALF_FACE, 0.0),
-        (HALF_FACE, WING),
+        (-end, 0.0),
+        (end, 0.0),
+        (end, WING),
         (_HALF_FOOT, _FOOT_DEPTH),
         (-_HALF_FOOT, _FOOT_DEPTH),
-        (-HALF_FACE, WING),
+        (-end, WING),
     )
     x, y = face.point(0.0, BOLT_DEPTH)
     hole = Circle(radius_mm=sleeve_hole(M3), x_mm=x, y_mm=y)
-    wings = _both_sides(_strip(face, 0.0, WING), half_gap, half)
-    ends = _both_sides(_strip(face, -LIP, WING), half, half + LIP_THICKNESS) if role is not Role.STRIKER else ()
+    wings = _both_sides(_strip(face, end, 0.0, WING), half_gap, half)
+    ends = _both_sides(_strip(face, end, -LIP, WING), half, half + LIP_THICKNESS) if role is not Role.STRIKER else ()
     return Part(
         name=name,
         role=role,
@@ -102,8 +103,9 @@ def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: Joi
     )
 
 
-def _strip(face: Face, front_mm: float, back_mm: float) -> Path:
-    return face.polygon((-HALF_FACE, front_mm), (HALF_FACE, front_mm), (HALF_FACE, back_mm), (-HALF_FACE, back_mm))
+def _strip(face: Face, end_mm: float, front_mm: float, back_mm: float) -> Path:
+    """A strip along a face, from ``front_mm`` to ``back_mm`` behind it."""
+    return face.polygon((-end_mm, front_mm), (end_mm, front_mm), (end_mm, back_mm), (-end_mm, back_mm))
 
 
 def thigh_stop_faces(length_mm: Numbers, d: LegDimensions) -> tuple[Face, ...]:
@@ -137,11 +139,23 @@ def thigh_stop_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
     """The knee's striker between the plates of the shank's fork, with its bolts.
 
-    It has a face for either end of the range. Its bolts carry 5 kN on two plates of 3 mm: 175 MPa of bearing stress on
-    an M4's sleeve nut if one bolt carries all.
+    It has a head behind the face for either end of the range, each on a bolt, and a web that joins them, so that
+    neither turns on its bolt.
     """
     half_gap = 0.5 * d.shank_gap_mm
-    hole = sleeve_hole(M4)
+    extension, flexion = knee_strikers(d)
+    end = knee_stop(d).half_face_mm
+    holes = tuple(Circle(radius_mm=sleeve_hole(M4), x_mm=x, y_mm=y) for x, y, _ in shank_stop_bolts(d))
+
+    def head(face: Face, hole: Circle) -> tuple[Prism, ...]:
+        outline = face.polygon(
+            (-end, 0.0), (end, 0.0), (end, _TOE), (_HALF_HEAD, _HEAD), (-_HALF_HEAD, _HEAD), (-end, _TOE)
+        )
+        return tuple(
+            Prism(outline=outline, z0_mm=low, z1_mm=high, holes=(hole,))
+            for low, high in ((-half_gap, -_HALF_SPINE), (_HALF_SPINE, half_gap))
+        )
+
     return (
         Part(
             name="knee_striker",
@@ -149,12 +163,9 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
             material=MATERIALS.aluminium,
             process="machined",
             prisms=(
-                Prism(
-                    outline=_striker_outline(d),
-                    z0_mm=-half_gap,
-                    z1_mm=half_gap,
-                    holes=tuple(Circle(radius_mm=hole, x_mm=x, y_mm=y) for x, y, _ in shank_stop_bolts(d)),
-                ),
+                *head(extension, holes[0]),
+                Prism(outline=_striker_outline(d), z0_mm=-_HALF_SPINE, z1_mm=_HALF_SPINE, holes=holes),
+                *head(flexion, holes[1]),
             ),
             grade=ALLOYS["aw_6082_t6"],
             note="meets the bumpers of extension and flexion",
@@ -166,20 +177,25 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
 def shank_stop_bolts(d: LegDimensions) -> tuple[Place, ...]:
     """Where bolts hold the shank's striker."""
     extension, flexion = knee_strikers(d)
-    return (*extension.point(*_SPINE_BOLT), 0.0), (*flexion.point(*_BASE_BOLT), 0.0)
+    return (*extension.point(*_HEAD_BOLT), 0.0), (*flexion.point(*_HEAD_BOLT), 0.0)
 
 
 def _striker_outline(d: LegDimensions) -> Path:
-    """A spine behind the face for extension, which runs down to a base behind the face for flexion."""
+    """Both heads of the knee's striker and the web between them."""
     extension, flexion = knee_strikers(d)
+    end = knee_stop(d).half_face_mm
     points = (
-        extension.point(-HALF_FACE, 0.0),
-        extension.point(HALF_FACE, 0.0),
-        extension.point(HALF_FACE, _SPINE),
-        flexion.point(-HALF_FACE, 0.0),
-        flexion.point(HALF_FACE, 0.0),
-        flexion.point(HALF_FACE, _TOE),
-        flexion.point(0.0, _BASE),
+        extension.point(-end, 0.0),
+        extension.point(end, 0.0),
+        extension.point(end, _TOE),
+        extension.point(_HALF_HEAD, _HEAD),
+        flexion.point(-end, 0.0),
+        flexion.point(end, 0.0),
+        flexion.point(end, _TOE),
+        flexion.point(_HALF_HEAD, _HEAD),
+        flexion.point(-end, _HEAD),
+        extension.point(-_HALF_HEAD, _HEAD),
+        extension.point(-end, _TOE),
     )
     return polygon(points)
 
@@ -236,9 +252,14 @@ def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: Join
         material=MATERIALS.aluminium,
         process="machined",
         prisms=(
-            Prism(outline=_web(seat, mirror, rods, boss), z0_mm=-_HALF_WEB, z1_mm=_HALF_WEB, holes=(*bores, thread)),
-            *_both_sides(_strip(seat, 0.0, _FLOOR), _HALF_WEB, half),
-            *_both_sides(_strip(seat, -LIP, _FLOOR), half, half + LIP_THICKNESS),
+            Prism(
+                outline=_web(seat, stop.half_face_mm, mirror, rods, boss),
+                z0_mm=-_HALF_WEB,
+                z1_mm=_HALF_WEB,
+                holes=(*bores, thread),
+            ),
+            *_both_sides(_strip(seat, stop.half_face_mm, 0.0, _FLOOR), _HALF_WEB, half),
+            *_both_sides(_strip(seat, stop.half_face_mm, -LIP, _FLOOR), half, half + LIP_THICKNESS),
             *(
                 Prism(
                     outline=Circle(radius_mm=hole.radius_mm + _BOSS_WALL, x_mm=hole.x_mm, y_mm=hole.y_mm),
@@ -254,7 +275,7 @@ def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: Join
     )
 
 
-def _web(seat: Face, mirror: bool, rods: tuple[tuple[float, float], ...], boss_mm: float) -> Path:
+def _web(seat: Face, end_mm: float, mirror: bool, rods: tuple[tuple[float, float], ...], boss_mm: float) -> Path:
     """Around the seat's floor and both rods; of the seat in front, or of the one behind, which is its mirror image."""
     inner = 1.0 if mirror else -1.0  # along the face towards the rods
 
@@ -263,12 +284,12 @@ def _web(seat: Face, mirror: bool, rods: tuple[tuple[float, float], ...], boss_m
         return Pulley(x_mm=x, y_mm=y, radius_mm=radius_mm, inside=inside)
 
     lower, upper = (Pulley(x_mm=x, y_mm=y, radius_mm=boss_mm) for x, y in rods)
-    edge = -inner * (HALF_FACE - _WEB_CORNER)
+    edge = -inner * (end_mm - _WEB_CORNER)
     pulleys = (
         lower,
         upper,
         corner(edge, _FLOOR - _WEB_CORNER, _WEB_CORNER),
         corner(edge, _WEB_CORNER, _WEB_CORNER),
-        corner(inner * (HALF_FACE + _WEB_FILLET), -_WEB_FILLET, _WEB_FILLET, inside=False),
+        corner(inner * (end_mm + _WEB_FILLET), -_WEB_FILLET, _WEB_FILLET, inside=False),
     )
     return belt(pulleys if mirror else tuple(reversed(pulleys)))

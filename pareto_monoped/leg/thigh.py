@@ -29,8 +29,8 @@ from pareto_monoped.leg.thigh_outline import thigh_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
-_KNEE_END = 32.0  # from the knee axis to the core above it, clear of the sprocket's teeth
-_STANDOFF_RADIUS, _STANDOFF_PITCH_RADIUS = 3.5, 36.5  # around the hip: 2.9 mm or more outside the chain
+_KNEE_END = 34.0  # from the knee axis to the core above it, clear of the sprocket's teeth
+_STANDOFF_RADIUS, _STANDOFF_PITCH_RADIUS = 3.5, 39.5  # around the hip: 1.8 mm or more outside the chain
 _STANDOFF_ANGLES = (np.pi / 6, np.pi / 2, 5 * np.pi / 6)  # on top of the hip, where no strand runs down to the knee
 _STANDOFF_RIM = 5.5  # of the inner plate outside the standoffs' axes: 3.4 mm around their bolts
 _INNER_BORE_RADIUS = 7.5  # lightens the inner plate within its ring of screws: 2.9 mm to their holes

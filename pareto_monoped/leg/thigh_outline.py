@@ -1,12 +1,15 @@
 """The outline of the thigh's plates: two round ends joined by a bar, with ears and a heel for the end stops."""
 
+import math
+
 import numpy as np
 
 from pareto_monoped.geometry.shapes import Numbers, Path
 from pareto_monoped.leg.belt import Pulley, belt, mirrored
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.faces import Face
-from pareto_monoped.leg.stop_parts import HALF_FACE, WING, thigh_stop_faces
+from pareto_monoped.leg.stop_parts import WING, thigh_stop_faces
+from pareto_monoped.leg.stops import hip_stop, knee_stop
 
 # Our own layout, mm.
 _CORNER = 2.0  # radius of the ears' corners
@@ -14,9 +17,9 @@ _FILLET = 8.0  # between an ear and the bar
 _FILLET_GAP = 0.5  # from where a fillet would touch the round end
 _EAR_FOOT = 14.0  # from an ear's end along the bar to the middle of its fillet
 _SPARE = 1.0  # of an edge beyond the seat or striker that stands on it
-_REAR_FILLET, _FRONT_FILLET = 28.0, 37.0  # of the middles of the fillets behind and before the knee above its axis
+_FRONT_FILLET = 31.0  # of the middle of the fillet before the knee above its axis, next to the round end
 _HEEL_WIDTH = 22.0  # of the heel's tip: 5 kN at 18 mm from where it is 23 mm wide are 200 MPa in both plates
-_HEEL_FILLET, _HEEL_FILLET_UP = 5.0, 8.0  # between heel and knee: its radius, and its middle above the seat's end
+_HEEL_FILLET = 5.0  # radius, between heel and knee
 
 
 def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) -> Path:
@@ -28,26 +31,25 @@ def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) ->
         d: dimensions.
     """
     hip_front, _, extension, flexion = thigh_stop_faces(length_mm, d)
+    at_hip, at_knee = hip_stop(d).half_face_mm, knee_stop(d).half_face_mm
     hip = Pulley(x_mm=0.0, y_mm=0.0, radius_mm=top_radius_mm)
     knee = Pulley(x_mm=0.0, y_mm=-length_mm, radius_mm=d.knee_radius_mm)
     # From the bar up to the hip on the front, in the order of the belt; behind it is the same.
     ear = (
-        _fillet(hip_front.y_mm - HALF_FACE - _EAR_FOOT, d),
-        _corner(hip_front, -1.0),
+        _fillet(hip_front.y_mm - at_hip - _EAR_FOOT, d),
+        _corner(hip_front, -at_hip),
         _hip_fillet(hip_front, top_radius_mm),
     )
-    rear_fillet, front_fillet = (_fillet(height - length_mm, d) for height in (_REAR_FILLET, _FRONT_FILLET))
     return belt(
         (
             hip,
             *mirrored(ear),
-            _fillet(flexion.y_mm + HALF_FACE + _EAR_FOOT, d).mirrored,
-            _corner(flexion, -1.0),
-            _corner(flexion, 1.0),
-            rear_fillet.mirrored,
+            _fillet(flexion.y_mm + at_knee + _EAR_FOOT, d).mirrored,
+            _corner(flexion, -at_knee),
+            _corner(flexion, at_knee),
             knee,
-            *_heel(extension),
-            front_fillet,
+            *_heel(extension, d),
+            _fillet(_FRONT_FILLET - length_mm, d),
             *ear,
         )
     )
@@ -58,9 +60,10 @@ def _fillet(y_mm: Numbers, d: LegDimensions) -> Pulley:
     return Pulley(x_mm=d.thigh_half_width_mm + _FILLET, y_mm=y_mm, radius_mm=_FILLET, inside=False)
 
 
-def _corner(face: Face, end: float, width_mm: float = 0.0) -> Pulley:
-    """A corner of the edge on which a seat or striker stands, ``width_mm`` behind it."""
-    x, y = face.point(end * (HALF_FACE + _SPARE - _CORNER), WING + _CORNER + width_mm)
+def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
+    """A corner of the edge on which a seat or striker stands that ends at ``end_mm``, ``width_mm`` behind the edge."""
+    spare = math.copysign(_SPARE - _CORNER, end_mm)
+    x, y = face.point(end_mm + spare, WING + _CORNER + width_mm)
     return Pulley(x_mm=x, y_mm=y, radius_mm=_CORNER)
 
 
@@ -75,8 +78,13 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
     )
 
 
-def _heel(face: Face) -> tuple[Pulley, ...]:
+def _heel(face: Face, d: LegDimensions) -> tuple[Pulley, ...]:
     """The heel with the seat for extension, from behind to the front; its front runs straight up past the knee."""
-    x, y = face.point(-HALF_FACE - _HEEL_FILLET_UP, WING - _HEEL_FILLET)
+    stop = knee_stop(d)
+    # The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
+    high = stop.bumper.diameter_mm + WING - _HEEL_FILLET
+    out = float(np.sqrt((d.knee_radius_mm + _HEEL_FILLET + _FILLET_GAP) ** 2 - high**2))
+    x, y = face.point(out - stop.lever_mm, WING - _HEEL_FILLET)
     root = Pulley(x_mm=x, y_mm=y, radius_mm=_HEEL_FILLET, inside=False)
-    return root, _corner(face, 1.0), _corner(face, 1.0, _HEEL_WIDTH - 2.0 * _CORNER)
+    end = stop.half_face_mm
+    return root, _corner(face, end), _corner(face, end, _HEEL_WIDTH - 2.0 * _CORNER)

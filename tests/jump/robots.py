@@ -7,10 +7,15 @@ from pareto_monoped.leg.stops import Bumper, JointStop
 from pareto_monoped.materials import MATERIALS
 from pareto_monoped.robot.population import JointStops, RobotArrays
 
-_BUMPER = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
+_HIP = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
+_KNEE = Bumper(diameter_mm=28.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
 _STOPS = JointStops(
-    hip=JointStop(lower_rad=-np.radians(100.0), upper_rad=np.radians(100.0), lever_mm=67.0, bumper=_BUMPER),
-    knee=JointStop(lower_rad=np.radians(15.0), upper_rad=np.radians(140.0), lever_mm=60.0, bumper=_BUMPER),
+    hip=JointStop(
+        lower_rad=-np.radians(100.0), upper_rad=np.radians(100.0), lever_mm=67.0, half_face_mm=9.0, bumper=_HIP
+    ),
+    knee=JointStop(
+        lower_rad=np.radians(15.0), upper_rad=np.radians(133.0), lever_mm=51.0, half_face_mm=13.0, bumper=_KNEE
+    ),
 )
 
 

@@ -83,15 +83,15 @@ def part_energies(robot, leg, q, v):
 
 
 def chain_energies(robot, leg, base, angle, v):
-    """The chain as a line of mass that runs around both sprockets, with a turnbuckle in the middle of each strand."""
+    """The chain as a line of mass around both sprockets and 4 pitches beside them, joined by a bar in each strand."""
     length, radius = robot.design.thigh_length_m, 1e-3 * leg.chain.pitch_radius_mm
     parts = {part.name: part for unit in robot.units if unit.name == "thigh" for part in unit.parts}
     chain = [part for part in parts.values() if part.role is Role.CHAIN]
     buckles = [part for part in parts.values() if part.role is Role.TURNBUCKLE]
-    density, gap = leg.chain.kg_per_m, 2.0 * 1e-3 * 24.0  # a turnbuckle is 48 mm long
+    density, straight = leg.chain.kg_per_m, 2.0 * 4.0 * 1e-3 * leg.chain.pitch_mm  # of a strand, both ends
     own = sum(float(part.mass_kg()) for part in chain)
     around = density * 0.5e-3 * leg.chain.teeth * leg.chain.pitch_mm  # links lie on a polygon around the teeth
-    assert own == pytest.approx(2.0 * (density * (length - gap) + around), rel=1e-9)
+    assert own == pytest.approx(2.0 * (density * straight + around), rel=1e-9)
     # How the parts are drawn decides what of their mass turns rigidly with the thigh: take that as it is.
     rigid = next(replace(unit, parts=(*chain, *buckles)) for unit in robot.units if unit.name == "thigh")
     drawn = rigid.mass_properties()
@@ -107,7 +107,7 @@ def chain_energies(robot, leg, base, angle, v):
         return mass * (carried @ against + 0.5 * against @ against)
 
     for side in (-1.0, 1.0):
-        strand = density * (length - gap)
+        strand = density * straight
         yield element(strand, side * radius, -0.5 * length, 0.0, -side)
         yield element(0.5 * sum(float(p.mass_kg()) for p in buckles), side * radius, -0.5 * length, 0.0, -side)
     for top, first in ((0.0, 0.0), (-length, np.pi)):

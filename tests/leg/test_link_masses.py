@@ -17,24 +17,25 @@ def mass_kg(parts, like):
     return sum(part.mass_kg() + 0.0 * like for part in parts)
 
 
-# What the end stops add to the thigh, 41 g of it ears and heel of its plates, and to the shank.
-THIGH_STOPS_KG, SHANK_STOPS_KG = 0.123, 0.043
+# What the end stops and narrower windows add to the thigh, 95 g of it its plates, and to the shank.
+THIGH_STOPS_KG, SHANK_STOPS_KG = 0.2200, 0.0724
 
 
-def test_links_without_their_stops_together_weigh_what_the_reference_links_do(leg):
+def test_links_without_their_stops_are_like_the_reference_links(leg):
+    """The links of version 0.1.0 weighed the same; a chain that holds five times its pull made the thigh heavier."""
     # The reference link: 0.235 kg and 0.828 g/mm, fitted to the authors' table from 150 to 350 mm.
     reference = 0.235 + 0.828 * LENGTHS
     thigh = mass_kg(thigh_parts(LENGTHS, leg), LENGTHS) - THIGH_STOPS_KG
     shank = mass_kg(shank_parts(LENGTHS, leg), LENGTHS) - SHANK_STOPS_KG
-    assert (thigh + shank) / (2.0 * reference) == pytest.approx(1.0, abs=0.02)
     # Only the thigh carries the chain and the drive sprocket.
     assert np.all(thigh > reference)
     assert np.all(shank < reference)
-    assert thigh / reference == pytest.approx(1.0, abs=0.17)
-    assert shank / reference == pytest.approx(1.0, abs=0.17)
-    for mass in (thigh, shank):
-        slope = np.polyfit(LENGTHS, mass, 1)[0]
-        assert slope == pytest.approx(0.828, rel=0.07)
+    assert np.all(thigh < 1.6 * reference)
+    assert shank / reference == pytest.approx(0.85, abs=0.06)
+    # The chain's strands are bars, which weigh less per length than the chain of the reference.
+    slopes = [np.polyfit(LENGTHS, mass, 1)[0] for mass in (thigh, shank)]
+    assert slopes[0] == pytest.approx(0.67, abs=0.03)
+    assert slopes[1] == pytest.approx(0.828, rel=0.07)
 
 
 @pytest.mark.parametrize("parts_of", [thigh_parts, shank_parts, base_parts, journal_parts])
@@ -74,7 +75,7 @@ def test_centres_of_mass_lie_on_the_link(leg):
     """But for the knee's stops, whose seats and striker stand to one side."""
     for parts in (thigh_parts(0.4, leg), shank_parts(0.4, leg)):
         x, y, z = total(part.mass_properties() for part in parts).com_m
-        assert abs(x) < 0.002
+        assert abs(x) < 0.004
         assert -0.3 < y < -0.1
         assert abs(z) < 0.004
 

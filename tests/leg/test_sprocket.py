@@ -10,34 +10,34 @@ from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
 from pareto_monoped.leg.sprocket import sprocket_outline, sprocket_prisms
 from tests.leg.polygons import polygon
 
-LIGHT, HEAVY = CHAIN_DRIVES
+LIGHT, _, HEAVY = CHAIN_DRIVES
 
 
 def test_sprocket_keeps_the_limits_of_iso_606():
-    # 05B-1 with 20 teeth: d = 51.14 mm, tip between d + p (1 - 1.6/z) - d1 = 53.50 and d + 1.25 p - d1 = 56.14.
-    assert 2.0 * LIGHT.pitch_radius_mm == pytest.approx(51.14, abs=0.005)
+    # 14 teeth: d = 57.07 mm, tip between d + p (1 - 1.6/z) - d1 = 60.57 and d + 1.25 p - d1 = 65.20.
+    assert 2.0 * LIGHT.pitch_radius_mm == pytest.approx(57.07, abs=0.005)
     points = np.array(polygon(sprocket_outline(LIGHT)).exterior.coords)
     radius = np.hypot(points[:, 0], points[:, 1])
-    assert 53.50 <= 2.0 * radius.max() <= 56.14
+    assert 60.57 <= 2.0 * radius.max() <= 65.20
     # Root diameter d - 2 ri with ri = 0.505 d1.
-    assert 2.0 * radius.min() == pytest.approx(51.14 - 2.0 * 0.505 * 5.0, abs=0.01)
+    assert 2.0 * radius.min() == pytest.approx(57.07 - 2.0 * 0.505 * 7.75, abs=0.01)
 
 
 def test_rollers_lie_in_the_sprockets_gaps_without_cutting_into_it():
     drawn = polygon(sprocket_outline(LIGHT))
     radius = LIGHT.pitch_radius_mm
-    for tooth in range(20):
-        angle = 2.0 * np.pi * tooth / 20
-        roller = shapely.Point(radius * np.cos(angle), radius * np.sin(angle)).buffer(2.5, quad_segs=64)
+    for tooth in range(14):
+        angle = 2.0 * np.pi * tooth / 14
+        roller = shapely.Point(radius * np.cos(angle), radius * np.sin(angle)).buffer(3.875, quad_segs=64)
         assert drawn.intersection(roller).area < 1e-3
 
 
 def test_heads_are_sunk_in_a_wide_sprocket_only(leg):
-    light, heavy = (sprocket_prisms(dataclasses.replace(leg, chain=drive), 2.85) for drive in CHAIN_DRIVES)
+    light, heavy = (sprocket_prisms(dataclasses.replace(leg, chain=drive), 2.85) for drive in (LIGHT, HEAVY))
     (whole,) = light
-    assert (whole.z0_mm, whole.z1_mm) == (-1.4, 1.4)
+    assert (whole.z0_mm, whole.z1_mm) == (-1.525, 1.525)
     counterbored, rest = heavy
-    assert (counterbored.z0_mm, rest.z1_mm) == (-2.65, 2.65)
-    assert counterbored.z1_mm == rest.z0_mm == pytest.approx(-2.65 + 1.25)
+    assert (counterbored.z0_mm, rest.z1_mm) == (-2.275, 2.275)
+    assert counterbored.z1_mm == rest.z0_mm == pytest.approx(-2.275 + 0.5)
     # A cap head of M3 is 5.5 mm wide (ISO 4762).
     assert 2.0 * counterbored.holes[1].radius_mm > 5.5 > 2.0 * rest.holes[1].radius_mm > 3.0

@@ -16,7 +16,7 @@ from pareto_monoped.materials import MATERIALS
 from tests.leg.polygons import polygon
 
 BAR = Bumper(diameter_mm=20.0, length_mm=28.0, elastomer=MATERIALS.fluoroelastomer)
-STOP = JointStop(lower_rad=-1.0, upper_rad=1.0, lever_mm=60.0, bumper=BAR)
+STOP = JointStop(lower_rad=-1.0, upper_rad=1.0, lever_mm=60.0, half_face_mm=9.0, bumper=BAR)
 
 
 @pytest.mark.parametrize(
@@ -116,6 +116,6 @@ def test_the_lever_is_the_change_of_the_gap_with_the_angle(joint, motor):
 
 def test_the_ranges_are_those_of_the_docs(leg):
     knee, hip = knee_stop(leg), hip_stop(leg)
-    assert np.degrees([knee.lower_rad, knee.upper_rad]) == pytest.approx([15.0, 140.0])
+    assert np.degrees([knee.lower_rad, knee.upper_rad]) == pytest.approx([15.0, 133.0])
     assert np.degrees([hip.lower_rad, hip.upper_rad]) == pytest.approx([-100.0, 100.0])
-    assert (knee.lever_mm, hip.lever_mm) == (60.0, pytest.approx(66.93, abs=0.01))
+    assert (knee.lever_mm, hip.lever_mm) == (51.0, pytest.approx(68.47, abs=0.02))

@@ -23,7 +23,7 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 
 _TURNING = (Group.OUTPUT, Group.ROTOR, Group.PLANET, Group.KNEE_DRIVE)
-_STEP_RAD = np.radians(15.0)
+_STEP_RAD = np.radians(16.0)  # the travel of the knee's stops is 15.7 degrees
 _SEARCH_RAD = np.radians(2.0)  # a bumper that is met at all stays met for longer
 _EXACT_RAD = np.radians(0.01)
 _NEVER_DEG = 180.0
@@ -190,17 +190,22 @@ def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: flo
 def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
     """How far the shank stays from the base at any hip angle, negative if they can meet.
 
-    The base lies within the circle about the hip axis that its farthest part reaches. The clearance is the distance of
-    the shank from that circle, the least over the knee's range.
+    A part of the base lies within the circle about the hip axis that it reaches. The clearance is the distance of the
+    shank's parts from that circle, the least over the knee's range and over all pairs that have a common stretch along
+    the axis: what lies beside the shank, such as the motors' drivers outside of the cheeks, is passed at any angle.
     """
     base = [PlacedMesh.of(i.name, body, i.world) for i, body in by_body["base"]]
-    reach = max(radii_mm(mesh)[1] for mesh in base)
-    distance = np.inf
+    low, high = np.array([mesh.low[1] for mesh in base]), np.array([mesh.high[1] for mesh in base])
+    reach = np.array([radii_mm(mesh)[1] for mesh in base])
+    clearance = np.inf
     for angle in _angles(knee_stop(product.robot.leg)):
         frame = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=float(angle)))["shank"]
         for instance, body in by_body["shank"]:
-            distance = min(distance, radii_mm(PlacedMesh.of(instance.name, body, frame @ instance.in_body))[0])
-    return float(distance - reach)
+            mesh = PlacedMesh.of(instance.name, body, frame @ instance.in_body)
+            beside = (low < mesh.high[1] - TOUCH_MM) & (mesh.low[1] < high - TOUCH_MM)
+            if np.any(beside):
+                clearance = min(clearance, radii_mm(mesh)[0] - np.max(reach[beside]))
+    return float(clearance)
 
 
 def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:

@@ -24,15 +24,15 @@ def bearings(actuator_map, ratio, service=SERVICE, settings=None):
 
 
 def test_the_tilting_moment_is_that_of_the_design_notes(vt_map):
-    """About 31 N m on the single 40x52x7 row at 6:1 and 45 to 47 N m at the strongest, found by hand."""
+    """About 27 N m on the single 40x52x7 row at 6:1 and 41 N m at the strongest, found by hand."""
     found = bearings(vt_map, 6.0)["main, knee"]
     assert found.bearing.designation == "6808"
-    assert found.force_n == pytest.approx(1291.0, abs=1.0)
-    assert found.tilt_n_m == pytest.approx(30.3, abs=0.1)
+    assert found.force_n == pytest.approx(1156.3, abs=1.0)
+    assert found.tilt_n_m == pytest.approx(27.1, abs=0.1)
     tilts = [
         service_sheet(entry.actuator, vt_map.settings).output_tilt_n_m for entry in vt_map.entries if entry.actuator
     ]
-    assert max(tilts) == pytest.approx(46.0, abs=0.5)
+    assert max(tilts) == pytest.approx(41.2, abs=0.5)
 
 
 def test_life_is_miner_s_sum_of_iso_281(vt_map):
@@ -51,7 +51,7 @@ def test_life_is_miner_s_sum_of_iso_281(vt_map):
             turns = 60.0 * SERVICE.jumps_per_minute * angle / (2.0 * np.pi)
             used_per_hour += turns / (1e6 * (found.bearing.dynamic_rating_n / load.equivalent_n[0]) ** 3)
         assert found.life_h == pytest.approx(1.0 / used_per_hour, rel=1e-6)
-        assert actuator.peak_torque_n_m == pytest.approx(found.force_n * 25.57e-3)
+        assert actuator.peak_torque_n_m == pytest.approx(found.force_n * 28.54e-3)
 
 
 def test_small_bearings_turn_with_the_rotor(vt_map):

@@ -47,9 +47,9 @@ def test_all_four_ends_meet_within_a_twentieth_of_a_degree(product):
 @pytest.mark.parametrize(
     ("unit", "names", "shift", "end", "least_deg"),
     [
-        ("thigh", ("knee_seat_extension", "knee_bumper_extension"), {"x": -1.0}, "knee at 15.0", 0.9),
-        ("thigh", ("knee_seat_flexion", "knee_bumper_flexion"), {"x": 1.0}, "knee at 140.0", 0.9),
-        ("shank", ("knee_striker",), {"x": 1.0}, "knee at 15.0", 0.8),
+        ("thigh", ("knee_seat_extension", "knee_bumper_extension"), {"x": -1.0}, "knee at 15.0", 0.8),
+        ("thigh", ("knee_seat_flexion", "knee_bumper_flexion"), {"x": 1.0}, "knee at 133.0", 0.9),
+        ("shank", ("knee_striker",), {"x": 1.0}, "knee at 133.0", 0.7),
         ("base_frame", ("hip_seat_front", "hip_bumper_front"), {"y": -1.0}, "hip at -100.0", 0.8),
         ("thigh", ("hip_striker_rear",), {"x": -1.0}, "hip at 100.0", 0.8),
     ],
@@ -58,16 +58,16 @@ def test_a_seat_or_striker_that_is_1_mm_off_is_found(product, unit, names, shift
     check = stops_of(with_unit(product, unit, moved_parts(names, **shift)))
     assert not check.passed
     assert check.failures[0].startswith(f"{end} deg: bumper and striker meet at ")
-    # 1 mm on a lever of 60 mm is 0.95 degrees, across the face; the worst of a part with two faces is reported.
-    assert least_deg < check.measured < 1.1
+    # 1 mm on a lever of 51 mm is 1.12 degrees, across the face; the worst of a part with two faces is reported.
+    assert least_deg < check.measured < 1.2
 
 
 @pytest.mark.parametrize(
     ("unit", "role", "ends"),
     [
-        ("shank", Role.STRIKER, ("knee at 15.0", "knee at 140.0")),
+        ("shank", Role.STRIKER, ("knee at 15.0", "knee at 133.0")),
         ("thigh", Role.STRIKER, ("hip at -100.0", "hip at 100.0")),
-        ("thigh", Role.BUMPER, ("knee at 15.0", "knee at 140.0")),
+        ("thigh", Role.BUMPER, ("knee at 15.0", "knee at 133.0")),
         ("base_frame", Role.BUMPER, ("hip at -100.0", "hip at 100.0")),
     ],
 )

@@ -49,7 +49,10 @@ def test_a_shank_that_reaches_the_base_is_found(failing, examine, monkeypatch):
 
 
 def test_the_shank_s_clearance_is_the_least_distance_of_its_points_from_the_reach_of_the_base(product):
-    """Slowly: all corners, the knee in small steps; corners alone may miss the nearest point by a facet's depth."""
+    """Slowly: all corners, the knee in small steps; corners alone may miss the nearest point by a facet's depth.
+
+    Parts that have no common stretch along the axis pass each other at any distance from it.
+    """
     robot = bare(product.robot)
     small = build_product(robot, product.pose)
     _, clearance = free_motion.in_working_range(small)
@@ -58,14 +61,18 @@ def test_the_shank_s_clearance_is_the_least_distance_of_its_points_from_the_reac
         if instance.body in bodies:
             points = small.unique[kind].mesh.points_mm
             bodies[instance.body].append(points @ instance.in_body[:3, :3].T + instance.in_body[:3, 3])
-    reach = np.hypot(*np.concatenate(bodies["base"])[:, [0, 2]].T).max()
-    points, nearest = np.concatenate(bodies["shank"]), np.inf
+    least = np.inf
     stop = knee_stop(robot.leg)
     for knee in np.linspace(stop.lower_rad - stop.travel_rad, stop.upper_rad + stop.travel_rad, 22):
         frame = body_frames(robot, Pose(hip_rad=0.0, knee_rad=float(knee)))["shank"]
-        nearest = min(nearest, np.hypot(*(points @ frame[:3, :3].T + frame[:3, 3])[:, [0, 2]].T).min())
-    assert clearance == pytest.approx(nearest - reach, abs=1.5)
-    assert clearance <= nearest - reach + 1e-9
+        for shank in bodies["shank"]:
+            placed = shank @ frame[:3, :3].T + frame[:3, 3]
+            nearest = np.hypot(*placed[:, [0, 2]].T).min()
+            for base in bodies["base"]:
+                if base[:, 1].min() < placed[:, 1].max() - 1e-6 and placed[:, 1].min() < base[:, 1].max() - 1e-6:
+                    least = min(least, nearest - np.hypot(*base[:, [0, 2]].T).max())
+    assert clearance == pytest.approx(least, abs=1.5)
+    assert clearance <= least + 1e-9
 
 
 def test_a_frame_in_the_thigh_s_way_is_found(product):
@@ -107,10 +114,10 @@ def test_the_reach_of_a_block_is_from_its_nearest_to_its_farthest_point(low, siz
 
 
 @pytest.mark.parametrize("stop_of", [hip_stop, knee_stop])
-def test_a_joint_is_looked_at_through_its_range_and_its_stops_in_steps_of_15_degrees(product, stop_of):
+def test_a_joint_is_looked_at_through_its_range_and_its_stops_in_steps_of_16_degrees(product, stop_of):
     stop = stop_of(product.robot.leg)
     angles = free_motion._angles(stop)
     assert (angles[0], angles[-1]) == (stop.lower_rad - stop.travel_rad, stop.upper_rad + stop.travel_rad)
     assert (angles[1], angles[-2]) == (stop.lower_rad, stop.upper_rad)
     assert np.all(np.diff(angles) > 0.0)
-    assert np.diff(angles).max() <= np.radians(15.0) + 1e-12
+    assert np.diff(angles).max() <= np.radians(16.0) + 1e-12

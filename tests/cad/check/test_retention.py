@@ -52,7 +52,7 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
         ("hip_actuator/backplate_screw", {"hip_actuator/backplate", "hip_actuator/motor_rotor"}),
         ("base_frame/hip_mount_screw", {"hip_actuator/casing", "hip_actuator/motor_stator"}),
         ("journal/journal_screw", {"knee_actuator/motor_stator"}),
-        ("thigh/turnbuckle_end", {"thigh/turnbuckle_barrel"}),
+        ("thigh/turnbuckle_end_hip", {"thigh/turnbuckle_bar", "thigh/turnbuckle_nut_hip"}),
         ("thigh/drive_sprocket", {"thigh/drive_coupling"}),
         ("thigh/knee_bearing", {"shank/knee_axle", "foot/foot"}),
         ("shank/knee_bolt", {"shank/shank_plate_far", "foot/foot"}),
