@@ -98,6 +98,18 @@ def export_design(
         # The kernel builds and writes solids in its process, threads draw, and the rest is done here.
         solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in wanted else None
         pictures = files.pictures(product, threads) if "png" in wanted else {}
+        record = design_record(
+            searched=design,
+            built=built,
+            robot=robot,
+            actuator_map=actuator_map,
+            pose=pose,
+            jumps={},
+            calibration=calibration,
+            source=source,
+            formats=wanted,
+        )
+        sheets = files.part_sheets(product, record, threads) if "pdf" in wanted else None
         progress("simulating")
         jumps = simulated_jumps({"searched": design, "as_built": built}, actuator_map, calibration)
         progress("checking")
@@ -107,21 +119,13 @@ def export_design(
             product, robot_arrays(built.as_array(), actuator_map), part_files=part_files, other_files=other_files
         )
         _require_passed(checks, out_dir)
-        record = design_record(
-            searched=design,
-            built=built,
-            robot=robot,
-            actuator_map=actuator_map,
-            pose=pose,
-            jumps=jumps,
-            calibration=calibration,
-            source=source,
-            formats=wanted,
-        )
+        record["jumps"] = jumps
         progress("writing")
         with beside(out_dir) as folder:
             files.write_meshes(folder, part_files, other_files, wanted)
             files.write_drawings(folder, product, wanted)
+            if sheets is not None:
+                files.write_sheets(folder, product, record, sheets.result())
             files.write_models(folder, product, shown, simulated, built, calibration, wanted)
             write(folder, "bom.csv", parts_list(product))
             write(folder, "checks.json", checks_record(checks))

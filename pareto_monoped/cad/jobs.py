@@ -118,7 +118,7 @@ def trial_job(
         folder=folder,
         formats=chosen_formats(formats),
         force=force,
-        source={"study": data.study.name, "trial": int(trial)},
+        source={"study": data.study.name, "trial": int(trial), "date": data.meta.created[:10]},
         hip_rad=hip_rad,
         knee_rad=knee_rad,
     )

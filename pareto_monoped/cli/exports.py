@@ -3,6 +3,7 @@
 import math
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,8 @@ if TYPE_CHECKING:
 @click.option(
     "--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [default: all cores]"
 )
-@click.option("--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,png.  [default: all]")
+@click.option("--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,png.  [default: all]")
+@click.option("--no-drawings", is_flag=True, help="Leave out pdf, the workshop drawings.")
 @click.option("--hip-deg", type=float, metavar="DEG", help="Hip angle of the assembly.  [default: start pose]")
 @click.option("--knee-deg", type=float, metavar="DEG", help="Knee angle of the assembly.  [default: start pose]")
 @click.option("--force", is_flag=True, help="Replace an earlier export in DIR.")
@@ -52,6 +54,7 @@ def export(
     every: int,
     workers: int | None,
     formats: str | None,
+    no_drawings: bool,
     hip_deg: float | None,
     knee_deg: float | None,
     force: bool,
@@ -75,21 +78,22 @@ def export(
         from pareto_monoped.study.reader import read_study
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
+        kept = _without_drawings if no_drawings else lambda job: job
         angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
         if record is not None:
-            _one(record_job(record, folder=output, formats=names, force=force, note=_note))
+            _one(kept(record_job(record, folder=output, formats=names, force=force, note=_note)))
         elif case is not None:
             kit, chosen = motor or PAPER_MOTOR, rules or DEFAULT_RULES
-            _one(case_job(case, motor=kit, rules=chosen, folder=output, formats=names, force=force, **angles))
+            _one(kept(case_job(case, motor=kit, rules=chosen, folder=output, formats=names, force=force, **angles)))
         elif whole_front:
             jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
-            _many(jobs, workers or os.cpu_count() or 1)
+            _many([kept(job) for job in jobs], workers or os.cpu_count() or 1)
         else:
             study, wanted = _given(db), required(selector)
             data = read_study(study)
             picked = pick(data.front(), wanted, data.study.objectives)
             _note(picked.why)
-            _one(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles))
+            _one(kept(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles)))
 
 
 def _refuse_mixed_sources(
@@ -111,6 +115,11 @@ def _refuse_mixed_sources(
         raise click.UsageError("--front takes no selector and no --case; drop one of them")
     if case is not None and (db is not None or selector is not None):
         raise click.UsageError(f"--case {case} takes no DB and no selector; drop one of them")
+
+
+def _without_drawings(job: "Job") -> "Job":
+    """The same job without drawings, whatever formats it names."""
+    return replace(job, formats=tuple(name for name in job.formats if name != "pdf"))
 
 
 def _given(db: Path | None) -> Path:

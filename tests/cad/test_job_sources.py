@@ -28,6 +28,7 @@ def data():
         motor=load_motor("U8"),
         calibration=load_calibration("ideal"),
         study=SimpleNamespace(name="mine", rules="iso6336"),
+        meta=SimpleNamespace(created="2025-03-04T05:06:07+00:00"),
     )
 
 
@@ -35,7 +36,7 @@ def test_a_trial_is_exported_with_its_design_and_the_study_s_motor_and_calibrati
     job = trial_job(data, 4, folder=tmp_path, formats=["stl", "step"], force=True, hip_rad=0.1, knee_rad=0.2)
     assert job.design.as_array() == pytest.approx(data.trials.loc[4, list(NAMES)].to_numpy(float), abs=0.0)
     assert (job.motor, job.calibration, job.rules) == (data.motor, data.calibration, "iso6336")
-    assert job.source == {"study": "mine", "trial": 4}
+    assert job.source == {"study": "mine", "trial": 4, "date": "2025-03-04"}
     assert (job.folder, job.formats, job.force) == (tmp_path, ("step", "stl"), True)
     assert (job.hip_rad, job.knee_rad) == (0.1, 0.2)
 

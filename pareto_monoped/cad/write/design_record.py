@@ -11,6 +11,10 @@ from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
 from pareto_monoped.robot.build import Robot
+from pareto_monoped.study.provenance import digest
+
+_DIGITS = 12
+"""Of a design's hash: two of a million designs share one with a probability of 0.2 percent."""
 
 MADE_BY = f"pareto-monoped {__version__}"
 """Program and version, as written into every record."""
@@ -41,7 +45,7 @@ def design_record(
         source: where the design comes from.
         formats: what was written.
     """
-    rules = actuator_map.settings.rules
+    rules, motor_data = actuator_map.settings.rules, motor_values(robot.hip.motor)
     return {
         "made_by": MADE_BY,
         "motor": robot.hip.motor.name,
@@ -50,6 +54,7 @@ def design_record(
         **({} if rules == "paper" else {"rules": rules}),
         "source": dict(source or {}),
         "searched": searched.as_dict(),
+        "design_hash": digest({"searched": searched.as_dict(), "rules": rules, "motor": motor_data})[:_DIGITS],
         "as_built": built.as_dict(),
         "jumps": {name: dict(jump) for name, jump in jumps.items()},
         "mass_kg": robot.mass_kg,
@@ -62,7 +67,7 @@ def design_record(
             )
         },
         "formats": list(formats),
-        "motor_data": motor_values(robot.hip.motor),
+        "motor_data": motor_data,
         "calibration_data": calibration_values(calibration),
     }
 

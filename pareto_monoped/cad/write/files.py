@@ -3,10 +3,12 @@
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS
+from pareto_monoped.cad.drawing import drawings
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
@@ -66,6 +68,18 @@ def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> 
             write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
     for path, content in stand_files(product.robot.leg).items():
         write(folder, path, content)
+
+
+def part_sheets(product: Product, record: Mapping[str, Any], threads: Executor) -> Future[dict[str, bytes]]:
+    """The drawings of all parts that are made, by their names, which threads draw from now on."""
+    return threads.submit(drawings.part_drawings, product.unique, drawings.origin_of(record))
+
+
+def write_sheets(folder: Path, product: Product, record: Mapping[str, Any], parts: Mapping[str, bytes]) -> None:
+    """Write the drawings of the parts, and that of the assembly."""
+    for name, content in parts.items():
+        write(folder, f"drawings/{safe(name)}.pdf", content)
+    write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
 
 
 def write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> None:

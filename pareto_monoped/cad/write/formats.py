@@ -22,6 +22,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
     ),
     "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
+    "pdf": (
+        ("drawings/assembly.pdf", "the robot with sections, balloons and the list of items, A1"),
+        ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
+    ),
     "png": (
         ("assembly.png", "the robot in its start pose"),
         ("exploded.png", "the robot pulled apart along the joints' axis"),

@@ -1,0 +1,183 @@
+"""The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import manifold3d as m3
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from pareto_monoped.cad.assembly import Pose, body_frames
+from pareto_monoped.cad.drawing.dimension import spread
+from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
+from pareto_monoped.cad.drawing.profile import polygons
+from pareto_monoped.cad.drawing.section import hatch
+from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.shape.meshes import placed
+from pareto_monoped.geometry.roles import SCREWS, Role, Visibility
+
+Floats = NDArray[np.float64]
+
+BALLOON_MM = 4.0
+"""Radius of an item's balloon (ISO 6433)."""
+_BALLOON_PITCH_MM = 9.5
+_TEXT_MM = 2.5
+_COLUMN_MM = 14.0
+_LEAST_MM2 = 0.3  # smaller visible areas on paper are not drawn
+_NOT_CUT = SCREWS | {Role.BOLT, Role.PIN, Role.SHAFT, Role.ROD}
+"""Parts that are drawn uncut where the plane runs along them (ISO 128-3)."""
+# Rows: right, up and towards the viewer of each view, in the assembly's frame.
+_FROM_RIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+_FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Seen:
+    """A part's instance in a view: its visible region on the view's plane in millimetres, and its item."""
+
+    item: int
+    region: BaseGeometry
+    cut: bool
+
+
+def side_view(product: Product) -> list[Seen]:
+    """Visible regions of the robot in its pose, seen from the right, the nearest first."""
+    shown = []
+    for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
+        if instance.part.visibility is Visibility.INSIDE:
+            continue
+        body = placed(unique.mesh.body, _to_view(_FROM_RIGHT) @ instance.world)
+        shown.append((body.bounding_box()[5], item, body))
+    found = []
+    covered: BaseGeometry = shapely.Polygon()
+    for _, item, body in sorted(shown, key=lambda entry: -entry[0]):
+        region = _region(body.project())
+        visible = region.difference(covered)
+        if not visible.is_empty:
+            found.append(Seen(item=item, region=visible, cut=False))
+            covered = covered.union(region)
+    return found
+
+
+def leg_section(product: Product) -> list[Seen]:
+    """Regions of the robot with straight joints on the plane through all joint axes, seen from the front."""
+    frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    found = []
+    for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
+        body = placed(unique.mesh.body, _to_view(_FROM_FRONT) @ frames[instance.body] @ instance.in_body)
+        low, high = body.bounding_box()[2], body.bounding_box()[5]
+        if low >= 0.0 or high <= 0.0:
+            continue
+        region = _region(body.slice(0.0))
+        if not region.is_empty:
+            found.append(Seen(item=item, region=region, cut=instance.part.role not in _NOT_CUT))
+    return found
+
+
+def drawn(seen: Sequence[Seen], scale: float) -> Paper:
+    """The regions on paper, cut ones hatched, neighbouring parts in different directions."""
+    paper = Paper()
+    for one in seen:
+        region = shapely.transform(one.region, lambda points: points * scale)
+        for polygon in polygons(region):
+            if polygon.area < _LEAST_MM2:
+                continue
+            for ring in (polygon.exterior, *polygon.interiors):
+                width = NARROW_MM if polygon.area < 20.0 * _LEAST_MM2 else 0.35
+                paper.line(list(ring.simplify(0.02).coords)[:-1], width_mm=width, closed=True)
+        if one.cut:
+            hatch(paper, region, falling=one.item % 2 == 1)
+    return paper
+
+
+def within(seen: Sequence[Seen], low_mm: float, high_mm: float) -> list[Seen]:
+    """The regions of a view between two heights."""
+    band = shapely.box(-1e5, low_mm, 1e5, high_mm)
+    clipped = [replace(one, region=one.region.intersection(band)) for one in seen]
+    return [one for one in clipped if not one.region.is_empty]
+
+
+def areas(seen: Sequence[Seen]) -> dict[int, float]:
+    """The largest visible region of each item in mm2 of the robot."""
+    found: dict[int, float] = {}
+    for one in seen:
+        found[one.item] = max(found.get(one.item, 0.0), max((p.area for p in polygons(one.region)), default=0.0))
+    return found
+
+
+def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
+    """Balloons in a column on either side of a view, each with a leader into a visible region of its part.
+
+    Args:
+        paper: the view.
+        seen: its regions.
+        scale: paper over robot.
+        items: which items to point at; all of them are seen.
+    """
+    points = {}
+    for item in items:
+        region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
+        point = region.representative_point()
+        points[item] = (point.x * scale, point.y * scale)
+    left, _, right, _ = paper.box()
+    columns: dict[bool, list[int]] = {False: [], True: []}
+    for rank, item in enumerate(sorted(points, key=lambda item: (points[item][0], item))):
+        columns[2 * rank >= len(points)].append(item)
+    for to_right, members in columns.items():
+        x = right + _COLUMN_MM if to_right else left - _COLUMN_MM
+        order = sorted(members, key=lambda item: (points[item][1], item))
+        heights = spread([points[item][1] for item in order], _BALLOON_PITCH_MM)
+        for item, y in zip(_uncrossed(order, heights, x, points), heights, strict=True):
+            _balloon(paper, item, (x, y), points[item])
+
+
+def _uncrossed(
+    order: Sequence[int], heights: Sequence[float], x: float, points: Mapping[int, tuple[float, float]]
+) -> list[int]:
+    """Items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
+    items = list(order)
+
+    def long(k: int, item: int) -> float:
+        return float(np.hypot(points[item][0] - x, points[item][1] - heights[k]))
+
+    shorter = True
+    while shorter:
+        shorter = False
+        for a in range(len(items)):
+            for b in range(a + 1, len(items)):
+                now = long(a, items[a]) + long(b, items[b])
+                if long(a, items[b]) + long(b, items[a]) < now - 1e-9:
+                    items[a], items[b] = items[b], items[a]
+                    shorter = True
+    return items
+
+
+def _balloon(paper: Paper, item: int, at: tuple[float, float], tip: tuple[float, float]) -> None:
+    """An item's number in a circle, with a leader that ends in a dot within the part."""
+    way = np.array(tip) - np.array(at)
+    start = np.array(at) + way / np.hypot(*way) * BALLOON_MM
+    paper.circle(*at, BALLOON_MM, width_mm=0.35)
+    paper.text(f"{item + 1}", at[0], at[1] - 0.5 * _TEXT_MM, height_mm=_TEXT_MM, align="centre")
+    paper.line([tuple(start), tip])
+    angles = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
+    dot = np.stack([tip[0] + 0.5 * np.cos(angles), tip[1] + 0.5 * np.sin(angles)], axis=1)
+    paper.fill(dot)
+
+
+def _to_view(axes: Floats) -> Floats:
+    """From the assembly's frame to a view's."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = axes
+    return matrix
+
+
+def _region(section: m3.CrossSection) -> BaseGeometry:
+    """A region of the plane as a Shapely geometry."""
+    rings = [np.asarray(ring) for ring in section.to_polygons() if len(ring) > 2]
+    # Manifold gives outer boundaries anticlockwise and holes clockwise; even-odd filling needs no order.
+    region: BaseGeometry = shapely.Polygon()
+    for ring in sorted((shapely.Polygon(ring).buffer(0.0) for ring in rings), key=lambda area: -area.area):
+        region = region.symmetric_difference(ring)
+    return region

@@ -1,0 +1,169 @@
+"""Round holes of a part: merged over its prisms, with what is cut into them, and as they are called out."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from pareto_monoped.cad.drawing.lettering import TIMES
+from pareto_monoped.cad.shape.curves import polygon
+from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.geometry.features import Cone, Hole, Mouth
+from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.shapes import Circle, Pattern
+
+_SAME_MM = 1e-6
+
+PLACE_FITTED_MM = 0.02
+"""Diameter of the zone of a fitted pattern's axes: about what ISO 1328-1 class 6 allows the pitch of teeth of this
+size, so that planets share their load (our own choice)."""
+PLACE_SCREWS_MM = 0.1
+"""Likewise of screws: half of the 0.2 mm by which an M3 clearance hole is wider (ISO 273, fine); two parts share it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bore:
+    """Holes of one circle or pattern, from one height to another.
+
+    Attributes:
+        shape: where they are.
+        low, high: heights of their ends.
+        through: whether they go through all of the part's material there.
+        feature: what is cut into them, if the part says so.
+        fit: their tolerance, if they have one.
+    """
+
+    shape: Circle | Pattern
+    low: float
+    high: float
+    through: bool
+    feature: Hole | None
+    fit: Fit | None
+
+    @property
+    def radius(self) -> float:
+        """Of each hole."""
+        return float(self.shape.radius_mm)
+
+    @property
+    def count(self) -> int:
+        """How many they are."""
+        return int(self.shape.count) if isinstance(self.shape, Pattern) else 1
+
+    @property
+    def centres(self) -> list[tuple[float, float]]:
+        """Where their axes are."""
+        if isinstance(self.shape, Pattern):
+            return self.shape.centres_mm()
+        return [(float(self.shape.x_mm), float(self.shape.y_mm))]
+
+    @property
+    def place_mm(self) -> float | None:
+        """Diameter of the zone in which their axes must lie; None where general tolerances do."""
+        if self.fit is not None and self.count > 1:
+            return PLACE_FITTED_MM
+        return PLACE_SCREWS_MM if self.count > 1 and self.feature is not None else None
+
+    @property
+    def mouths(self) -> tuple[Mouth | None, Mouth | None]:
+        """The cones at the lower and the upper end."""
+        return (None, None) if self.feature is None else (self.feature.low, self.feature.high)
+
+    def size(self) -> str:
+        """Thread or diameter with its fit and depth, as on the drawing."""
+        thread = None if self.feature is None else self.feature.thread
+        depth = "" if self.through else f", {number(self.high - self.low)} deep"
+        if thread is not None:
+            usable = self.feature.thread_mm if self.feature is not None else None
+            long = f", {number(float(usable))} deep" if usable is not None else depth
+            drill = f", drill Ø{number(2.0 * self.radius)}{depth}" if long or depth else " through"
+            return f"{thread.text}{long}{drill}"
+        zone = f" {self.fit.zone}" if self.fit is not None else ""
+        return f"Ø{number(2.0 * self.radius)}{zone}{depth or ' through'}"
+
+    def details(self, *, from_above: bool) -> Iterator[str]:
+        """Countersinks, by the side that they are on."""
+        for mouth, above in zip(self.mouths, (False, True), strict=True):
+            if mouth is None or mouth.kind is not Cone.COUNTERSINK:
+                continue
+            side = "" if above == from_above else ", far side"
+            angle = 2.0 * np.degrees(np.arctan2(float(mouth.radius_mm) - self.radius, float(mouth.depth_mm)))
+            yield f"countersink Ø{number(2.0 * float(mouth.radius_mm))} {TIMES} {number(angle)}°{side}"
+
+
+def bores(part: Part, *, on_axis: bool = False) -> tuple[Bore, ...]:
+    """The round holes of a part beside its axis, largest circle first; those on the axis too if asked for."""
+    found: dict[Circle | Pattern, list[tuple[float, float]]] = {}
+    for prism in sorted(part.prisms, key=lambda p: float(p.z0_mm)):
+        for hole in prism.holes:
+            if not isinstance(hole, Circle | Pattern) or (not on_axis and _central(hole)):
+                continue
+            spans = found.setdefault(hole, [])
+            low, high = float(prism.z0_mm), float(prism.z1_mm)
+            if spans and abs(spans[-1][1] - low) < _SAME_MM:
+                spans[-1] = (spans[-1][0], high)
+            else:
+                spans.append((low, high))
+    return tuple(_bore(part, shape, low, high) for shape, spans in found.items() for low, high in spans)
+
+
+def _bore(part: Part, shape: Circle | Pattern, low: float, high: float) -> Bore:
+    feature = _feature(part, shape, low, high)
+    # A tapping drill may have the diameter of a fitted hole.
+    threaded = feature is not None and feature.thread is not None
+    fits = () if threaded else (fit for fit in part.fits if fit.holds(2.0 * float(shape.radius_mm)))
+    return Bore(
+        shape=shape,
+        low=low,
+        high=high,
+        through=_through(part, shape, low, high),
+        feature=feature,
+        fit=next(iter(fits), None),
+    )
+
+
+def number(value: float) -> str:
+    """A length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _central(shape: Circle | Pattern) -> bool:
+    return isinstance(shape, Circle) and abs(float(shape.x_mm)) < _SAME_MM and abs(float(shape.y_mm)) < _SAME_MM
+
+
+def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Hole | None:
+    """The part's feature that these holes belong to."""
+    for feature in part.features:
+        if not isinstance(feature, Hole) or shape not in feature.shapes:
+            continue
+        if float(feature.low_mm) < high - _SAME_MM and float(feature.high_mm) > low + _SAME_MM:
+            return feature
+    return None
+
+
+def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bool:
+    """Whether no material stands before either end of a hole."""
+    (x, y), *_ = shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
+    reach = 0.98 * float(shape.radius_mm)  # a narrower hole beyond leaves a step
+    points = [(x, y), (x + reach, y), (x - reach, y), (x, y + reach), (x, y - reach)]
+    return not any(
+        _covers(prism, *point)
+        for prism in part.prisms
+        if abs(float(prism.z0_mm) - high) < _SAME_MM or abs(float(prism.z1_mm) - low) < _SAME_MM
+        for point in points
+    )
+
+
+def _covers(prism: Prism, x: float, y: float) -> bool:
+    """Whether a prism has material at a point."""
+
+    def within(shape: object) -> bool:
+        return any(
+            shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y)
+            for contour in contours(shape)  # type: ignore[arg-type]
+        )
+
+    return within(prism.outline) and not any(within(hole) for hole in prism.holes)

@@ -1,0 +1,130 @@
+"""The data table of a gear: what its teeth are cut and measured by. Millimetres, radians.
+
+Base tangent length and dimension between pins after ISO 21771-2; x = 0 unless the gear is shifted:
+
+    W_k = m cos a [pi (k - 1/2) + z inv a] + 2 x m sin a + A cos a
+    inv a_M = inv a - d / (z m cos a) + (pi / 2 + 2 x tan a + A / m) / z,   M = z m cos a / cos a_M - d  (even z, ring)
+
+with the allowance A of the tooth's thickness (external) or of the space's width (internal) along the pitch circle.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from pareto_monoped.cad.drawing.bores import number
+from pareto_monoped.geometry.gears import DEDENDUM, FILLET, ExternalGear, InternalGear
+
+_PIN_MODULES = 1.68
+"""Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
+# DIN 3967, tolerance series 24: largest pitch diameter in mm, tolerance of the tooth thickness in mm.
+_THICKNESS_TOLERANCE = ((10.0, 0.012), (50.0, 0.020), (125.0, 0.025), (280.0, 0.030))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Span:
+    """A measure of the teeth with its limits.
+
+    Attributes:
+        count: teeth that it spans; 0 for a measure between pins.
+        pin_mm: diameter of the pins; 0 for a base tangent.
+        least_mm, greatest_mm: limits.
+    """
+
+    count: int
+    pin_mm: float
+    least_mm: float
+    greatest_mm: float
+
+
+def thickness_tolerance_mm(pitch_diameter_mm: float) -> float:
+    """Tolerance of the tooth's thickness.
+
+    Raises:
+        ValueError: a gear larger than the table.
+    """
+    for largest, tolerance in _THICKNESS_TOLERANCE:
+        if pitch_diameter_mm <= largest:
+            return tolerance
+    raise ValueError(f"pitch diameter {pitch_diameter_mm:g} mm: must be at most 280 mm")
+
+
+def spanned_teeth(teeth: int, pressure_angle_rad: float) -> int:
+    """Teeth over which the base tangent touches near the pitch circle: z a / pi + 1/2, rounded."""
+    return max(int(np.floor(teeth * pressure_angle_rad / np.pi + 1.0)), 2)
+
+
+def base_tangent_mm(gear: ExternalGear, count: int, *, allowance_mm: float) -> float:
+    """Length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
+    m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
+    return m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + allowance_mm * float(np.cos(a))
+
+
+def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -> float:
+    """Distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
+    m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
+    angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + (0.5 * np.pi + allowance_mm / m) / z)
+    centres = z * m * np.cos(a) / np.cos(angle)
+    return float(centres * (np.cos(0.5 * np.pi / z) if z % 2 else 1.0) - pin_mm)
+
+
+def measure(gear: ExternalGear | InternalGear, *, hole: bool = False) -> Span:
+    """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
+
+    Args:
+        gear: its teeth.
+        hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
+    """
+    tolerance = thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm))
+    play = float(gear.backlash_mm)
+    if isinstance(gear, ExternalGear):
+        count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad)
+        slack = (0.0, tolerance) if hole else (-tolerance, 0.0)
+        least, greatest = (base_tangent_mm(gear, count, allowance_mm=-play + t) for t in slack)
+        return Span(count=count, pin_mm=0.0, least_mm=least, greatest_mm=greatest)
+    pin = round(_PIN_MODULES * float(gear.module_mm), 2)
+    least, greatest = (between_pins_mm(gear, pin, allowance_mm=play + t) for t in (0.0, tolerance))
+    return Span(count=0, pin_mm=pin, least_mm=least, greatest_mm=greatest)
+
+
+def gear_rows(
+    gear: ExternalGear | InternalGear, *, accuracy_class: int | None, hole: bool = False
+) -> list[tuple[str, str]]:
+    """The rows of the table: what, and its value; for ``hole`` see ``measure``."""
+    spline = hole and isinstance(gear, ExternalGear)
+    span = measure(gear, hole=spline)
+    kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
+    limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
+    measured = (
+        (f"Between pins of Ø{number(span.pin_mm)}", limits)
+        if span.pin_mm
+        else (f"Base tangent length W over {span.count} teeth{' of a plug' if spline else ''}", limits)
+    )
+    return [
+        (f"Teeth, {kind}", f"{int(gear.teeth)}"),
+        ("Module", number(float(gear.module_mm))),
+        ("Pressure angle", f"{number(round(float(np.degrees(gear.pressure_angle_rad)), 3))}°"),
+        ("Helix angle", "0°"),
+        ("Basic rack", f"ISO 53, h {DEDENDUM:g} m, fillet {FILLET:g} m"),
+        ("Profile shift x", number(float(getattr(gear, "profile_shift", 0.0)))),
+        ("Pitch diameter", number(2.0 * float(gear.pitch_radius_mm))),
+        ("Tip diameter", number(2.0 * float(gear.tip_radius_mm))),
+        ("Root diameter", number(2.0 * float(gear.root_radius_mm))),
+        measured,
+        ("Tooth thickness tolerance", "DIN 3967, series 24"),
+        ("Accuracy of the teeth", f"ISO 1328-1 class {accuracy_class}" if accuracy_class else "ISO 1328-1 class 8"),
+        ("Backlash of the pair, at least", number(2.0 * float(gear.backlash_mm))),
+    ]
+
+
+@lru_cache(maxsize=256)
+def _inverse_involute(value: float) -> float:
+    """The angle whose involute function is ``value``, by Newton's method."""
+    angle = float(np.cbrt(3.0 * value))  # inv a = a^3 / 3 + ...
+    for _ in range(30):
+        step = (np.tan(angle) - angle - value) / np.tan(angle) ** 2
+        angle -= float(step)
+        if abs(step) < 1e-15:
+            break
+    return angle

@@ -1,0 +1,185 @@
+"""What stands on a sheet: lines, filled areas and text, in millimetres of paper from the lower left corner.
+
+Line types and widths after ISO 128-2: wide lines of 0.5 mm for visible edges, narrow ones of 0.25 mm for the rest.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.drawing.lettering import CAPITAL, DESCENT, width_mm
+
+Points = NDArray[np.float64]
+Align = Literal["left", "centre", "right"]
+
+WIDE_MM, NARROW_MM = 0.5, 0.25
+SOLID: tuple[float, ...] = ()
+DASHED = (2.5, 1.0)
+CHAIN = (6.0, 1.0, 0.6, 1.0)
+"""Long-dashed dotted: centre lines, pitch circles."""
+LETTER_MM = 2.5
+"""Height of dimensions and notes (ISO 3098-1, nominal size 2.5)."""
+LINE_PITCH = 1.6
+"""Distance of lines of text over their height (ISO 3098-1 asks for at least 1.4 without accents)."""
+ARROW_MM = 2.5
+_ARROW_HALF_MM = 0.4
+_CHORD_MM = 0.01  # a circle on paper is a polygon that stays this close to it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stroke:
+    """A line through points, shape (n, 2)."""
+
+    points: Points
+    width_mm: float = NARROW_MM
+    dashes: tuple[float, ...] = SOLID
+    closed: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fill:
+    """A black area within points, shape (n, 2)."""
+
+    points: Points
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Label:
+    """A line of text.
+
+    Attributes:
+        text: what it says.
+        x, y: on the base line, where ``align`` says.
+        height_mm: of its capitals.
+        align: which end of the text stands at (x, y).
+        upward: whether it runs upward, to be read from the right.
+    """
+
+    text: str
+    x: float
+    y: float
+    height_mm: float = LETTER_MM
+    align: Align = "left"
+    upward: bool = False
+
+    def start(self) -> tuple[float, float]:
+        """Where the first letter begins."""
+        back = {"left": 0.0, "centre": 0.5, "right": 1.0}[self.align] * width_mm(self.text, self.height_mm)
+        return (self.x, self.y - back) if self.upward else (self.x - back, self.y)
+
+    def box(self) -> tuple[float, float, float, float]:
+        """What it covers: least x and y, greatest x and y."""
+        x, y = self.start()
+        long, below = width_mm(self.text, self.height_mm), DESCENT / CAPITAL * self.height_mm
+        if self.upward:
+            return (x - self.height_mm, y, x + below, y + long)
+        return (x, y - below, x + long, y + self.height_mm)
+
+
+@dataclass(slots=True)
+class Paper:
+    """A drawing that grows; views are drawn on papers of their own, which are then laid on the sheet."""
+
+    strokes: list[Stroke] = field(default_factory=list)
+    fills: list[Fill] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+
+    def line(
+        self,
+        points: Sequence[tuple[float, float]] | Points,
+        *,
+        width_mm: float = NARROW_MM,
+        dashes: tuple[float, ...] = SOLID,
+        closed: bool = False,
+    ) -> None:
+        """A line through points."""
+        self.strokes.append(
+            Stroke(points=np.asarray(points, dtype=np.float64), width_mm=width_mm, dashes=dashes, closed=closed)
+        )
+
+    def fill(self, points: Points) -> None:
+        """A black area."""
+        self.fills.append(Fill(points=points))
+
+    def circle(
+        self, x: float, y: float, radius: float, *, width_mm: float = NARROW_MM, dashes: tuple[float, ...] = SOLID
+    ) -> None:
+        """A full circle."""
+        self.line(circle_points(x, y, radius), width_mm=width_mm, dashes=dashes, closed=True)
+
+    def text(
+        self,
+        text: str,
+        x: float,
+        y: float,
+        *,
+        height_mm: float = LETTER_MM,
+        align: Align = "left",
+        upward: bool = False,
+    ) -> None:
+        """A line of text; nothing for an empty one."""
+        if text:
+            self.labels.append(Label(text=text, x=x, y=y, height_mm=height_mm, align=align, upward=upward))
+
+    def arrow(self, x: float, y: float, towards: tuple[float, float]) -> None:
+        """A filled arrow head whose tip is at (x, y) and points along ``towards``."""
+        along = np.asarray(towards, dtype=np.float64)
+        along /= np.hypot(*along)
+        back = np.array([x, y]) - ARROW_MM * along
+        across = _ARROW_HALF_MM * np.array([-along[1], along[0]])
+        self.fills.append(Fill(points=np.array([[x, y], back + across, back - across])))
+
+    def centre_mark(self, x: float, y: float, reach: float) -> None:
+        """The two centre lines of a circle, that reach so far from its centre."""
+        self.line([(x - reach, y), (x + reach, y)], dashes=CHAIN)
+        self.line([(x, y - reach), (x, y + reach)], dashes=CHAIN)
+
+    def lay(self, other: "Paper", dx: float = 0.0, dy: float = 0.0) -> None:
+        """Everything of another paper, moved by (dx, dy)."""
+        by = np.array([dx, dy])
+        self.strokes += [
+            Stroke(points=s.points + by, width_mm=s.width_mm, dashes=s.dashes, closed=s.closed) for s in other.strokes
+        ]
+        self.fills += [Fill(points=f.points + by) for f in other.fills]
+        self.labels += [
+            Label(
+                text=text.text,
+                x=text.x + dx,
+                y=text.y + dy,
+                height_mm=text.height_mm,
+                align=text.align,
+                upward=text.upward,
+            )
+            for text in other.labels
+        ]
+
+    def box(self) -> tuple[float, float, float, float]:
+        """What it covers: least x and y, greatest x and y; zeros for an empty paper."""
+        corners = [*(stroke.points for stroke in self.strokes), *(fill.points for fill in self.fills)]
+        corners += [np.reshape(label.box(), (2, 2)) for label in self.labels]
+        if not corners:
+            return (0.0, 0.0, 0.0, 0.0)
+        low, high = np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)
+        return (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+
+
+def circle_points(x: float, y: float, radius: float) -> Points:
+    """Points around a circle, close enough for the eye."""
+    step = 2.0 * np.arccos(1.0 - min(_CHORD_MM / max(radius, 1e-9), 0.3))
+    angles = np.linspace(0.0, 2.0 * np.pi, int(np.ceil(2.0 * np.pi / step)), endpoint=False)
+    return np.stack([x + radius * np.cos(angles), y + radius * np.sin(angles)], axis=1)
+
+
+def overlapping(labels: Iterable[Label], clearance_mm: float = 0.0) -> list[tuple[Label, Label]]:
+    """Pairs of labels whose boxes come closer than the clearance."""
+    all_labels = list(labels)
+    if len(all_labels) < 2:
+        return []
+    boxes = np.array([label.box() for label in all_labels])
+    low, high = boxes[:, :2] - 0.5 * clearance_mm, boxes[:, 2:] + 0.5 * clearance_mm
+    meet = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
+    first, second = np.nonzero(np.triu(meet, 1))
+    return [(all_labels[a], all_labels[b]) for a, b in zip(first.tolist(), second.tolist(), strict=True)]

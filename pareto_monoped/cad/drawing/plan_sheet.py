@@ -1,0 +1,172 @@
+"""The sheet of a part with layers: view from above, section, tables of holes and of contours."""
+
+from collections.abc import Iterator, Sequence
+from string import ascii_uppercase
+
+import numpy as np
+
+from pareto_monoped.cad.drawing.bores import Bore, number
+from pareto_monoped.cad.drawing.lettering import TIMES
+from pareto_monoped.cad.drawing.paper import Paper
+from pareto_monoped.cad.drawing.plan import Layer, Plan, is_square, nodes, repeats, rounded_rectangle
+from pareto_monoped.cad.drawing.plan_view import Tag, hole_tag, node_tag, plan_view, section_at, section_marks
+from pareto_monoped.cad.drawing.sheet import table
+from pareto_monoped.cad.drawing.tolerances import fit_table
+from pareto_monoped.cad.shape.curves import Contour
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Arc, Pattern
+
+_ROWS = 34
+"""Rows of a table before it goes on beside itself."""
+
+
+def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
+    """The view from above, and a section where the part has more than one thickness."""
+    above = plan_view(plan, scale, tags)
+    if not _has_section(plan):
+        return [above]
+    section_marks(above, plan, scale)
+    return [above, section_at(plan, scale)]
+
+
+def _has_section(plan: Plan) -> bool:
+    """Whether there is more to see across the sheet than one thickness."""
+    flush = all(abs(bore.low - plan.low) < 1e-6 and abs(bore.high - plan.high) < 1e-6 for bore in plan.bores)
+    return not (plan.is_flat and flush)
+
+
+def plan_tables(plan: Plan) -> tuple[list[Paper], list[Tag]]:
+    """Tables of holes, windows and contours, and the names that stand on the view."""
+    hole_rows, tags = _hole_rows(plan)
+    contour_rows, window_rows, node_tags = _contour_rows(plan)
+    tables = []
+    fits = [bore.fit for bore in plan.bores if bore.fit is not None]
+    table_of_fits = fit_table(fits, [bore.count == 1 for bore in plan.bores if bore.fit is not None])
+    if table_of_fits is not None:
+        tables.append(table_of_fits)
+    if hole_rows or window_rows:
+        rows = [*hole_rows, *window_rows]
+        columns = ("Hole", "Size", "X", "Y", "Position")
+        # Without tolerances of position there is no column of them.
+        used = len(columns) if any(row[-1] for row in rows) else len(columns) - 1
+        tables += _tables("Holes, from the origin X Y", columns[:used], [row[:used] for row in rows])
+    if contour_rows:
+        head = ("Node", "X", "Y", "To the next", "Centre X", "Centre Y")
+        tables += _tables("Contours, from the origin X Y", head, contour_rows)
+    return tables, [*tags, *node_tags]
+
+
+def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
+    """What no dimension says."""
+    x0, y0, x1, y1 = plan.bounds
+    if part.balls:
+        for ball in part.balls:
+            yield (
+                f"Ball SØ{number(2.0 * float(ball.radius_mm))}, cut flat {number(float(ball.top_mm))} above its centre."
+            )
+            if ball.pocket is not None:
+                depth = float(ball.pocket.z1_mm) - float(ball.pocket.z0_mm)
+                yield f"The pocket is {number(depth)} wide across the view."
+    elif not _has_section(plan):
+        yield f"Thickness t = {number(plan.high - plan.low)}."
+    yield f"Blank {number(x1 - x0)} {TIMES} {number(y1 - y0)} {TIMES} {number(plan.high - plan.low)}."
+    if part.process == "laser cut" and plan.is_flat:
+        yield "Cut by the file of the same name in laser/, which has the contours above without kerf."
+
+
+def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[Paper]:
+    parts = [rows[k : k + _ROWS] for k in range(0, len(rows), _ROWS)]
+    names = [title if k == 0 else f"{title}, continued" for k in range(len(parts))]
+    return [table(name, head, part) for name, part in zip(names, parts, strict=True)]
+
+
+def _hole_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[Tag]]:
+    """A row for each hole or pattern: holes of one kind share a letter."""
+    kinds: dict[str, list[Bore]] = {}
+    for bore in plan.bores:
+        kinds.setdefault(_kind(bore), []).append(bore)
+    rows: list[tuple[str, ...]] = []
+    tags: list[Tag] = []
+    for letter, (kind, members) in zip(ascii_uppercase, kinds.items(), strict=False):
+        for k, bore in enumerate(members, 1):
+            name = f"{letter}{k}" if len(members) > 1 else letter
+            x, y = float(bore.shape.x_mm), float(bore.shape.y_mm)
+            place = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
+            rows.append((name, kind, number(x), number(y), place))
+            tags.append(hole_tag(name, bore, _rightmost(bore)))
+    return rows, tags
+
+
+def _rightmost(bore: Bore) -> int:
+    return int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
+
+
+def _kind(bore: Bore) -> str:
+    """What the holes of one letter have in common."""
+    text = bore.size()
+    if isinstance(bore.shape, Pattern):
+        turn = 360.0 / bore.count
+        first = round(float(np.degrees(bore.shape.phase_rad)) % turn, 3) % round(turn, 3)
+        beginning = f", first at {number(first)}°" if first > 0.0 else ""
+        text = f"{bore.count} {TIMES} {text} on Ø{number(2.0 * float(bore.shape.pitch_radius_mm))}{beginning}"
+    return ", ".join([text, *bore.details(from_above=True)])
+
+
+def _contour_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:
+    """Rows of nodes, rows of windows and bosses, and the names of both."""
+    rows: list[tuple[str, ...]] = []
+    shapes: list[tuple[str, ...]] = []
+    tags: list[Tag] = []
+    several = len({(layer.low, layer.high) for layer in plan.layers}) > 1
+    for layer in plan.layers:
+        span = f"z {number(layer.low - plan.low)} to {number(layer.high - plan.low)}" if several else ""
+        for contour in (layer.outline, *layer.holes):
+            _add_contour(contour, layer, span, rows, shapes, tags)
+    return rows, shapes, tags
+
+
+def _add_contour(
+    contour: Contour,
+    layer: Layer,
+    span: str,
+    rows: list[tuple[str, ...]],
+    shapes: list[tuple[str, ...]],
+    tags: list[Tag],
+) -> None:
+    """The rows of one contour."""
+    ladders = contour is layer.outline and is_square(contour)
+    rectangle = rounded_rectangle(contour) if contour is not layer.outline else None
+    if contour.circle is not None:
+        name = f"R{1 + sum(row[0].startswith('R') for row in shapes)}"
+        x, y, radius = (float(v) for v in (contour.circle.x_mm, contour.circle.y_mm, contour.circle.radius_mm))
+        shapes.append((name, f"boss Ø{number(2.0 * radius)} {span}".strip(), number(x), number(y), ""))
+        tags.append((name, x, y, radius, 2.5))
+    elif rectangle is not None:
+        width, height, radius, x, y = rectangle
+        name = f"W{1 + sum(row[0].startswith('W') for row in shapes)}"
+        corner = f", corners R{number(radius)}" if radius else ""
+        shapes.append(
+            (name, f"{number(width)} {TIMES} {number(height)}{corner} {span}".strip(), number(x), number(y), "")
+        )
+        tags.append((name, x, y, 0.0, 2.5))
+    elif not ladders:
+        _add_nodes(contour, span, rows, tags)
+
+
+def _add_nodes(contour: Contour, span: str, rows: list[tuple[str, ...]], tags: list[Tag]) -> None:
+    """A row for each node; those of one period where the contour repeats itself."""
+    listed = nodes(contour)
+    times = repeats(contour)
+    first = sum(row[0].isdigit() for row in rows) + 1
+    if span or times > 1:
+        again = f"{times} times around the origin" if times > 1 else ""
+        rows.append(("", "", "", ", ".join(filter(None, (span, again))), "", ""))
+    for k, (point, piece) in enumerate(listed[: len(listed) // times], first):
+        centre = ("", "")
+        onward = "line"
+        if isinstance(piece, Arc):
+            turn = "" if float(piece.end_rad) > float(piece.start_rad) else ", clockwise"
+            onward = f"arc R{number(float(piece.radius_mm))}{turn}"
+            centre = (number(float(piece.x_mm)), number(float(piece.y_mm)))
+        rows.append((f"{k}", number(float(point[0])), number(float(point[1])), onward, *centre))
+        tags.append(node_tag(f"{k}", point))

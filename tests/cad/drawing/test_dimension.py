@@ -1,0 +1,66 @@
+"""Rows of dimensions keep their distance, and stay as near to their features as that allows."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pareto_monoped.cad.drawing.dimension import Mark, across, fits_between, frame, ladder, spread
+from pareto_monoped.cad.drawing.paper import Paper, overlapping
+
+PLACES = st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=12).map(sorted)
+
+
+@given(PLACES)
+def test_places_keep_their_distance_and_order(wanted):
+    found = spread(wanted, 4.2)
+    assert np.all(np.diff(found) >= 4.2 - 1e-9)
+
+
+@given(PLACES, st.integers(0, 11), st.floats(-1.0, 1.0))
+def test_no_small_move_brings_the_places_nearer(wanted, which, move):
+    """The sum of squares is convex, so a minimum along every allowed direction is the minimum."""
+    found = np.array(spread(wanted, 4.2))
+    other = found.copy()
+    other[which % len(found) :] += move
+    if np.all(np.diff(other) >= 4.2 - 1e-12):
+        assert np.sum((found - wanted) ** 2) <= np.sum((other - wanted) ** 2) + 1e-9
+
+
+def test_places_far_enough_apart_stay():
+    assert spread([0.0, 10.0, 20.0], 4.2) == pytest.approx([0.0, 10.0, 20.0])
+    assert spread([0.0, 0.0], 4.0) == pytest.approx([-2.0, 2.0])
+
+
+@given(PLACES, st.sampled_from(["below", "above", "left", "right"]))
+def test_texts_of_a_ladder_never_overlap(wanted, side):
+    paper = Paper()
+    marks = [Mark(at=at, start=0.0, text=f"{at:.3f}") for at in wanted]
+    ladder(paper, marks, side, 10.0 if side in ("above", "right") else -10.0, origin=0.0)
+    assert len(paper.labels) == len(wanted)
+    assert overlapping(paper.labels) == []
+    outside = {"below": lambda b: b[3] < -10.0, "above": lambda b: b[1] > 10.0}
+    outside |= {"left": lambda b: b[2] < -10.0, "right": lambda b: b[0] > 10.0}
+    assert all(outside[side](label.box()) for label in paper.labels)
+
+
+def test_a_diameter_s_text_stands_within_its_arrows_if_it_fits():
+    paper = Paper()
+    across(paper, -9.0, 20.0, "Ø40 h6", edge=0.0)
+    (label,) = paper.labels
+    low, high = label.box()[1], label.box()[3]
+    assert fits_between("Ø40 h6", 40.0)
+    assert not fits_between("Ø40 h6", 10.0)
+    assert -20.0 < low < high < 20.0
+    assert low == pytest.approx(-high)
+
+
+def test_a_frame_is_as_wide_as_its_cells():
+    paper = Paper()
+    wide = frame(paper, ["position", "Ø0.02", "A"], 5.0, 7.0)
+    box = paper.box()
+    assert box[0] == pytest.approx(5.0)
+    assert box[2] == pytest.approx(5.0 + wide)
+    assert box[3] - box[1] == pytest.approx(5.0)
+    with pytest.raises(ValueError, match="no symbol"):
+        frame(paper, ["flat", "0.1"], 0.0, 0.0)

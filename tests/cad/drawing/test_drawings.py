@@ -1,0 +1,79 @@
+"""The drawings of an export: one of each made part, one of the assembly, the same each time."""
+
+import csv
+import io
+
+import pytest
+
+from pareto_monoped.cad.drawing.drawings import assembly_drawing, origin_of, part_drawings
+from pareto_monoped.cad.write.parts_list import parts_list
+from tests.cad.drawing.reader import pages, texts
+
+
+@pytest.fixture(scope="module")
+def origin():
+    return origin_of(
+        {
+            "source": {"study": "mine", "trial": 7, "date": "2025-03-04"},
+            "motor": "VT8020",
+            "rules": "iso6336",
+            "design_hash": "0123456789ab",
+            "made_by": "pareto-monoped 1",
+        }
+    )
+
+
+def test_an_export_draws_the_parts_that_are_made_and_no_others(exported):
+    with (exported.folder / "bom.csv").open(newline="") as stream:
+        made = {row["part"] for row in csv.DictReader(stream) if row["made_or_bought"] == "made"}
+    assert len(made) > 30
+    assert {path.stem for path in (exported.folder / "drawings").iterdir()} == made | {"assembly"}
+    assert {f"drawings/{name}.pdf" for name in (*made, "assembly")} <= set(exported.files)
+
+
+def test_a_title_block_says_what_the_part_is_and_where_it_comes_from(exported):
+    record = exported.record
+    said = texts((exported.folder / "drawings" / "hip_actuator_carrier.pdf").read_bytes())
+    with (exported.folder / "bom.csv").open(newline="") as stream:
+        row = next(row for row in csv.DictReader(stream) if row["part"] == "hip_actuator_carrier")
+    assert "hip actuator carrier" in said
+    assert "EN AW-7075 T6" in said
+    assert "150 HBW" in said
+    assert f"{float(row['mass_g']):.1f} g" in said
+    assert "ISO 2768-mK" in said
+    assert record["design_hash"] in said
+    assert f"case C, {record['motor']}, iso6336" in said
+    assert record["made_by"] in said
+
+
+def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, origin):
+    (page,) = pages(assembly_drawing(product, origin))
+    rows = list(csv.DictReader(io.StringIO(parts_list(product))))
+    heights = {text: y for text, _, y in page.texts}
+    names = [row["part"].replace("_", " ") for row in rows]
+    assert set(names) <= set(heights)
+    column = {text: round(x) for text, x, _ in page.texts}
+    first = [name for name in names if column[name] == column[names[0]]]
+    assert first == sorted(first, key=lambda name: -heights[name])
+    assert (page.width_mm, page.height_mm) == pytest.approx((841.0, 594.0), abs=1e-3)
+
+
+def test_each_item_has_at_most_one_balloon_and_most_have_one(product, origin):
+    (page,) = pages(assembly_drawing(product, origin))
+    numbers = [text for text, x, _ in page.texts if text.isdigit() and x < 500.0]
+    balloons = [text for text in numbers if int(text) <= len(product.unique)]
+    assert len(balloons) == len(set(balloons))
+    # Screws beside the planes of both sections are hidden in every view.
+    assert len(balloons) > 0.55 * len(product.unique)
+
+
+def test_drawings_are_the_same_bytes_each_time(product, origin):
+    parts = product.unique[:12]
+    assert part_drawings(parts, origin) == part_drawings(parts, origin)
+    assert assembly_drawing(product, origin) == assembly_drawing(product, origin)
+
+
+def test_the_date_is_the_design_s_and_nothing_else(product, origin):
+    (content, *_) = part_drawings(product.unique[:3], origin).values()
+    assert "2025-03-04" in texts(content)
+    assert "mine trial 7, VT8020, iso6336" in texts(content)

@@ -1,0 +1,119 @@
+"""The measures on a gear's drawing, against formulas written on their own and against the flanks that are built."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from pareto_monoped.cad.drawing.gear_data import (
+    base_tangent_mm,
+    between_pins_mm,
+    gear_rows,
+    measure,
+    spanned_teeth,
+    thickness_tolerance_mm,
+)
+from pareto_monoped.cad.shape.curves import Contour, Spline, polygon
+from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+
+EXTERNAL = [(18, 0.5, 0.0), (22, 0.6, 0.04), (30, 0.5, 0.04), (44, 0.6, 0.02), (65, 0.8, 0.05)]
+INTERNAL = [(90, 0.5, 0.04), (110, 0.6, 0.04), (95, 0.8, 0.0)]
+
+
+def flank_points(gear):
+    """Points every few micrometres along the flanks that the kernel builds: splines through the outline's points."""
+    (contour,) = contours(gear)
+    rows = []
+    for piece in contour.pieces:
+        if isinstance(piece, Spline):
+            known = np.linspace(0.0, 1.0, len(piece.points_mm))
+            rows.append(CubicSpline(known, piece.points_mm)(np.linspace(0.0, 1.0, 200)))
+        else:
+            rows.append(polygon(Contour(pieces=(piece,)), 1e-5))
+    return np.concatenate(rows)
+
+
+@pytest.mark.parametrize(("teeth", "module", "thinning"), EXTERNAL)
+def test_base_tangent_is_pitches_and_a_tooth_along_the_base_circle(teeth, module, thinning):
+    """K - 1 base pitches and the tooth's thickness on the base circle (Shigley, ch. 13): s_b = cos a (s + d inv a)."""
+    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
+    count = spanned_teeth(teeth, np.radians(20.0))
+    involute = 0.014904383867336446  # tan 20 - 20 pi / 180
+    thickness = 0.5 * np.pi * module - thinning
+    on_base = np.cos(np.radians(20.0)) * (thickness + teeth * module * involute)
+    expected = (count - 1) * np.pi * module * np.cos(np.radians(20.0)) + on_base
+    assert base_tangent_mm(gear, count, allowance_mm=-thinning) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_base_tangent_length_of_a_textbook():
+    """Module 1, 20 degrees, 30 teeth over 4: 10.753 mm, as tables of base tangent lengths have it."""
+    gear = ExternalGear(teeth=30, module_mm=1.0)
+    assert spanned_teeth(30, np.radians(20.0)) == 4
+    assert base_tangent_mm(gear, 4, allowance_mm=0.0) == pytest.approx(10.7526, abs=1e-4)
+
+
+@pytest.mark.parametrize(("teeth", "module", "thinning"), EXTERNAL)
+def test_callipers_over_the_built_flanks_read_the_greatest_base_tangent_length(teeth, module, thinning):
+    """Two parallel jaws across k teeth touch the outline where the drawing says, to a micrometre."""
+    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
+    span = measure(gear)
+    points = flank_points(gear)
+    # The middle of the k teeth lies on the x axis: on a tooth for odd k, on a space for even k.
+    turn = 0.0 if span.count % 2 else np.pi / teeth
+    cos, sin = np.cos(turn), np.sin(turn)
+    points = points @ np.array([[cos, sin], [-sin, cos]])
+    half = np.pi * span.count / teeth
+    angle, radius = np.arctan2(points[:, 1], points[:, 0]), np.hypot(*points.T)
+    # Jaws reach a module below and above where they touch.
+    touch = np.hypot(float(gear.base_radius_mm), 0.5 * span.greatest_mm)
+    across = points[(np.abs(angle) < half) & (np.abs(radius - touch) < 0.6 * module), 1]
+    assert across.max() - across.min() == pytest.approx(span.greatest_mm, abs=1e-3)
+
+
+@pytest.mark.parametrize(("teeth", "module", "widening"), INTERNAL)
+def test_pins_in_the_built_spaces_stand_as_far_apart_as_the_least_measure(teeth, module, widening):
+    """A pin that is pushed outwards in a space touches both flanks where the formula has it, to a micrometre."""
+    gear = InternalGear(teeth=teeth, module_mm=module, backlash_mm=widening)
+    span = measure(gear)
+    points = flank_points(gear)
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    space = points[np.abs(angle) < np.pi / teeth]
+    radius = 0.5 * span.pin_mm
+
+    def fits(x):
+        return np.hypot(space[:, 0] - x, space[:, 1]).min() >= radius
+
+    low, high = float(gear.tip_radius_mm), float(gear.root_radius_mm)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    apart = 2.0 * low * (np.cos(0.5 * np.pi / teeth) if teeth % 2 else 1.0) - span.pin_mm
+    assert apart == pytest.approx(span.least_mm, abs=2e-3)
+
+
+def test_limits_leave_at_least_the_drawn_backlash():
+    outer, inner = measure(ExternalGear(teeth=30, module_mm=0.5)), measure(InternalGear(teeth=90, module_mm=0.5))
+    assert outer.greatest_mm == pytest.approx(
+        base_tangent_mm(ExternalGear(teeth=30, module_mm=0.5), 4, allowance_mm=0.0)
+    )
+    assert outer.greatest_mm - outer.least_mm == pytest.approx(0.020 * np.cos(np.radians(20.0)))
+    assert inner.least_mm == pytest.approx(
+        between_pins_mm(InternalGear(teeth=90, module_mm=0.5), 0.84, allowance_mm=0.0)
+    )
+    assert inner.greatest_mm > inner.least_mm
+
+
+def test_thickness_tolerance_is_that_of_the_size():
+    assert [thickness_tolerance_mm(d) for d in (10.0, 10.1, 50.0, 125.0)] == [0.012, 0.020, 0.020, 0.025]
+    with pytest.raises(ValueError, match="at most 280 mm"):
+        thickness_tolerance_mm(300.0)
+
+
+def test_the_table_names_what_a_gear_cutter_needs():
+    rows = dict(gear_rows(ExternalGear(teeth=30, module_mm=0.5, backlash_mm=0.04), accuracy_class=6))
+    assert rows["Teeth, external"] == "30"
+    assert rows["Module"] == "0.5"
+    assert rows["Pressure angle"] == "20°"
+    assert rows["Accuracy of the teeth"] == "ISO 1328-1 class 6"
+    assert rows["Backlash of the pair, at least"] == "0.08"
+    assert rows["Base tangent length W over 4 teeth"] == "5.320 to 5.339"

@@ -1,0 +1,160 @@
+"""Every drawing of some very different robots: nothing overlaps, and every dimension is there."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.drawing.bores import bores, number
+from pareto_monoped.cad.drawing.dimension import FRAME_MM
+from pareto_monoped.cad.drawing.paper import Paper, overlapping
+from pareto_monoped.cad.drawing.part_sheet import part_sheet
+from pareto_monoped.cad.drawing.plan import plan_of
+from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
+from pareto_monoped.cad.drawing.round_sheet import round_part
+from pareto_monoped.cad.drawing.section import diameter_text
+from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, TITLE_MM, Title, titled
+from pareto_monoped.cad.shape.curves import polygon
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.robot.build import build_robot
+
+ROBOTS = [("A", "VT8020", "iso6336"), ("C", "VT8020", "paper"), ("B", "U12", "iso6336"), ("A", "U8", "iso6336")]
+
+
+@pytest.fixture(params=ROBOTS, ids=" ".join, scope="module")
+def sheets(request):
+    """Every part that a robot's workshop makes, with its sheet."""
+    case, motor, rules = request.param
+    robot = build_robot(PAPER_CASES[case].design, map_for(motor, rules))
+    made = {id(part): part for unit in robot.units for part in unit.parts if part.process != "bought"}
+    return [(part, *part_sheet(part)) for part in made.values()]
+
+
+TITLE = Title(
+    name="knee actuator secondary carrier",
+    number="0123456789ab-99",
+    material="42CrMo4, quenched, tempered and nitrided",
+    hardness="550 to 650 HV",
+    mass="1000.0 g",
+    count=13,
+    process="3D printed",
+    tolerances="ISO 2768-mK",
+    finish="12.5",
+    design="a study of a long name trial 12345, VT8020, iso6336",
+    digest="0123456789ab",
+    date="2025-01-01",
+    maker="pareto-monoped 0.10.0",
+)
+
+
+def test_no_text_stands_on_another_nor_leaves_the_frame(sheets):
+    for part, paper, size, scale in sheets:
+        whole = Paper()
+        whole.lay(paper)
+        titled(whole, size, scale, TITLE)
+        pairs = [(a.text, b.text) for a, b in overlapping(whole.labels)]
+        assert pairs == [], part.name
+        for label in whole.labels:
+            x0, y0, x1, y1 = label.box()
+            inside = x0 > 20.0 and y0 > MARGIN_MM and x1 < size.width_mm - MARGIN_MM and y1 < size.height_mm - MARGIN_MM
+            assert inside, (part.name, label.text)
+
+
+def test_no_line_crosses_the_title_block_or_the_frame(sheets):
+    for part, paper, size, _ in sheets:
+        corner = (size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM + TITLE_MM[1])
+        for stroke in paper.strokes:
+            low, high = stroke.points.min(axis=0), stroke.points.max(axis=0)
+            assert np.all(low > (20.0, MARGIN_MM)), part.name
+            assert np.all(high < (size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM)), part.name
+            assert high[0] < corner[0] or low[1] > corner[1], part.name
+
+
+def test_scales_are_standard_and_readable(sheets):
+    for part, _, _, scale in sheets:
+        assert scale in SCALES
+        if is_round(part):
+            low, _, high, outer = half_section(part).bounds
+            assert scale * max(high - low, 2.0 * outer) >= 60.0 or scale == SCALES[0], part.name
+
+
+def test_every_diameter_of_a_round_part_stands_once_beside_its_section(sheets):
+    for part, paper, _, _ in sheets:
+        if not is_round(part):
+            continue
+        upright = Counter(label.text for label in paper.labels if label.upward and label.text.startswith("Ø"))
+        wanted = {diameter_text(round(c.radius, 6), part.fits) for c in cylinders(half_section(part))}
+        assert upright == Counter(wanted), part.name
+
+
+def test_every_face_of_a_round_part_has_its_length_once(sheets):
+    for part, paper, _, _ in sheets:
+        if not is_round(part):
+            continue
+        drawn = round_part(part)
+        wanted = {number(abs(round(f.z, 6) - drawn.datum)) for f in faces(drawn.body)}
+        found = Counter(label.text for label in paper.labels if label.upward and label.text[0].isdigit())
+        found = Counter({text: count for text, count in found.items() if "°" not in text})
+        assert found == Counter(wanted), part.name
+
+
+def test_every_hole_has_its_size_and_its_place(sheets):
+    for part, paper, _, _ in sheets:
+        said = [label.text for label in paper.labels]
+        holes = bores(part) if is_round(part) else plan_of(part).bores
+        for hole in holes:
+            assert any(hole.size() in text for text in said), (part.name, hole.size())
+            if not is_round(part):
+                assert number(float(hole.shape.x_mm)) in said, part.name
+                assert number(float(hole.shape.y_mm)) in said, part.name
+
+
+def test_a_contour_can_be_drawn_again_from_its_table(sheets):
+    """The polygon through the nodes of a table has the area between the part's own, less and more its arcs."""
+    tables = 0
+    for part, paper, _, _ in sheets:
+        if is_round(part) or part.balls:
+            continue
+        said = Counter(label.text for label in paper.labels)
+        plan = plan_of(part)
+        for layer in plan.layers:
+            if layer.outline.circle is not None:
+                continue
+            tables += 1
+            corners = polygon(layer.outline)
+            assert number(float(corners[0, 0])) in said, part.name
+            assert number(float(corners[0, 1])) in said, part.name
+    assert tables > 10
+
+
+def test_gears_have_their_data_and_fits_their_limits(sheets):
+    gears = 0
+    for part, paper, _, _ in sheets:
+        said = [label.text for label in paper.labels]
+        if not is_round(part):
+            continue
+        for teeth in teeth_of(part):
+            gears += 1
+            assert f"{int(teeth.gear.teeth)}" in said
+            assert any(text.startswith(("Base tangent length W over", "Between pins")) for text in said)
+        for fit in part.fits:
+            assert f"Ø{fit.text}" in said, part.name
+        if part.fits:
+            assert "Fits (ISO 286-2)" in said
+    assert gears >= 5
+
+
+def test_a_fitted_pattern_of_holes_has_a_frame_with_its_position(sheets):
+    frames = 0
+    for part, paper, _, _ in sheets:
+        if not is_round(part):
+            continue
+        placed = [hole for hole in bores(part) if hole.place_mm is not None]
+        values = Counter(label.text for label in paper.labels)
+        squares = [s for s in paper.strokes if s.closed and np.ptp(s.points[:, 1]) == pytest.approx(FRAME_MM)]
+        for hole in placed:
+            frames += 1
+            assert values[f"Ø{number(hole.place_mm)}"] >= 1, part.name
+        assert len(squares) >= len(placed), part.name
+    assert frames >= 2
