@@ -7,7 +7,7 @@ from pareto_monoped.cad.drawing.plan import plan_of
 from pareto_monoped.cad.drawing.plan_sheet import plan_notes, plan_tables, plan_views
 from pareto_monoped.cad.drawing.profile import is_round
 from pareto_monoped.cad.drawing.round_sheet import round_notes, round_part, round_tables, round_views
-from pareto_monoped.cad.drawing.sheet import SCALES, SIZES, Size, compose
+from pareto_monoped.cad.drawing.sheet import SCALES, SIZES, Size, compose, inner_mm
 from pareto_monoped.geometry.parts import Part
 
 _READABLE_MM, _PLAN_MM = 60.0, 120.0
@@ -29,21 +29,22 @@ def part_sheet(part: Part) -> Sheet:
     if is_round(part):
         drawn = round_part(part)
         low, _, high, top = drawn.body.bounds
-        extent = max(high - low, 2.0 * top)
+        bare = (high - low + (2.0 * top if drawn.bores else 0.0), 2.0 * top)
+        readable = _READABLE_MM / max(high - low, 2.0 * top)
         tables = round_tables(part, drawn)
         notes = [*round_notes(drawn), *notes]
-        return placed(extent, _READABLE_MM, lambda scale: round_views(drawn, scale), tables, notes)
+        return placed(bare, readable, lambda scale: round_views(drawn, scale), tables, notes)
     plan = plan_of(part)
     x0, y0, x1, y1 = plan.bounds
     tables, tags = plan_tables(plan)
-    extent = max(x1 - x0, y1 - y0)
+    readable = min(_PLAN_MM / max(x1 - x0, y1 - y0), 2.0)
     notes = [*plan_notes(plan, part), *notes]
-    return placed(extent, min(_PLAN_MM, 2.0 * extent), lambda scale: plan_views(plan, scale, tags), tables, notes)
+    return placed((x1 - x0, y1 - y0), readable, lambda scale: plan_views(plan, scale, tags), tables, notes)
 
 
 def placed(
-    extent_mm: float,
-    readable_mm: float,
+    bare_mm: tuple[float, float],
+    readable: float,
     views: Callable[[float], Sequence[Paper]],
     tables: Sequence[Paper],
     notes: Sequence[str],
@@ -51,8 +52,8 @@ def placed(
     """The smallest sheet on which the views are readable, at the largest scale that it has room for.
 
     Args:
-        extent_mm: longest side of the part.
-        readable_mm: how long that must be on paper, if a sheet allows it.
+        bare_mm: width and height of the views without dimensions, at full size.
+        readable: the least scale, if a sheet allows it.
         views: draws them at a scale.
         tables: beside the views.
         notes: lines of text.
@@ -64,7 +65,8 @@ def placed(
     best: Sheet | None = None
     for size in SIZES:
         for scale in SCALES:
-            if extent_mm * scale > size.width_mm or (best is not None and scale <= best[2]):
+            room = all(bare * scale < side for bare, side in zip(bare_mm, inner_mm(size), strict=True))
+            if not room or (best is not None and scale <= best[2]):
                 continue
             if scale not in drawn:
                 drawn[scale] = views(scale)
@@ -72,8 +74,8 @@ def placed(
             if paper is not None:
                 best = (paper, size, scale)
                 break
-        if best is not None and extent_mm * best[2] >= readable_mm:
+        if best is not None and best[2] >= readable:
             return best
     if best is None:
-        raise ValueError(f"drawing: {extent_mm:g} mm with tables fit no sheet")
+        raise ValueError(f"drawing: {bare_mm[0]:g} mm with tables fit no sheet")
     return best

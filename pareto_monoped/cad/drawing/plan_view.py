@@ -93,6 +93,7 @@ def section_at(plan: Plan, scale: float) -> Paper:
     covered = area
     for _, silhouette in sorted(behind, key=lambda entry: entry[0]):
         _lines(paper, silhouette.boundary.difference(covered.buffer(-1e-6)), WIDE_MM)
+        _lines(paper, silhouette.boundary.intersection(covered.buffer(-1e-6)), NARROW_MM, DASHED)
         covered = covered.union(silhouette)
     for region in polygons(area):
         for ring in (region.exterior, *region.interiors):

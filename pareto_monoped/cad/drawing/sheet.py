@@ -76,6 +76,11 @@ def scale_text(scale: float) -> str:
     return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
 
 
+def inner_mm(size: Size) -> tuple[float, float]:
+    """Width of a sheet within its frame, and height above its title block."""
+    return (size.width_mm - BINDING_MM - MARGIN_MM, size.height_mm - 2.0 * MARGIN_MM - TITLE_MM[1])
+
+
 def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: Sequence[str]) -> Paper | None:
     """A sheet with its views in a row, tables at the right or below, and notes, but without frame and title block.
 
