@@ -124,7 +124,12 @@ def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: Actuato
 
 
 def build_actuator(
-    motor: Motor, family: Family, gears: GearSet, settings: ActuatorSettings, width_mm: float | None = None
+    motor: Motor,
+    family: Family,
+    gears: GearSet,
+    settings: ActuatorSettings,
+    width_mm: float | None = None,
+    rating: Rating | None = None,
 ) -> Actuator:
     """The actuator around one gear set. No constraint is checked.
 
@@ -134,13 +139,13 @@ def build_actuator(
         gears: the gear set.
         settings: of stage 1.
         width_mm: face width, if it is known already; default the least that carries the torque.
+        rating: of these gears at this width, if it is known already.
     """
     width = float(face_width_mm(gears, motor, family, settings)) if width_mm is None else width_mm
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
-    rating = None
     if settings.rules == "iso6336":
-        rating = rate(build_stage(gears, motor, family, settings), width)
+        rating = rating or rate(build_stage(gears, motor, family, settings), width)
         parts = tuple(_with_safeties(part, rating) for part in parts)
     ratio = float(gears.ratio)
     outer, inner = contact_ratios(gears)

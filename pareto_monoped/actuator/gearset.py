@@ -1,23 +1,39 @@
 """Planetary gear sets: teeth, module, planets, and what follows from them alone."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
+from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear, involute
 from pareto_monoped.geometry.shapes import Numbers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearSet:
-    """The paper's design vector X = [Ns, Np, Nr, m, n_p]; plain numbers for one set, arrays for many."""
+    """The paper's design vector X = [Ns, Np, Nr, m, n_p] and its profile shifts; numbers for one set, arrays for many.
+
+    Shifts are in modules, positive outwards. Centre distance and the sun's shift are chosen; those of planets and ring
+    follow from meshing without backlash (ISO 21771): the working pressure angle alpha_w from
+    cos(alpha_w) = cos(alpha) a / a_w, and sum of shifts = (z1 + z2) (inv(alpha_w) - inv(alpha)) / (2 tan(alpha)), for
+    the internal mesh with the differences of teeth and shifts.
+
+    Attributes:
+        sun_teeth, planet_teeth, ring_teeth: Ns, Np, Nr.
+        module_mm: m.
+        planets: n_p.
+        centre_shift: y, by how much the centre distance exceeds m (Ns + Np) / 2.
+        sun_shift: x of the sun.
+    """
 
     sun_teeth: Numbers
     planet_teeth: Numbers
     ring_teeth: Numbers
     module_mm: Numbers
     planets: Numbers
+    centre_shift: Numbers = 0.0
+    sun_shift: Numbers = 0.0
 
     @property
     def ratio(self) -> Numbers:
@@ -27,12 +43,55 @@ class GearSet:
     @property
     def carrier_radius_mm(self) -> Numbers:
         """Centre distance of sun and planet."""
-        return 0.5 * self.module_mm * (self.sun_teeth + self.planet_teeth)
+        return self.module_mm * (0.5 * (self.sun_teeth + self.planet_teeth) + self.centre_shift)
+
+    @property
+    def is_shifted(self) -> bool:
+        """Whether any of the sets has a profile shift."""
+        return bool(np.any(self.centre_shift) or np.any(self.sun_shift))
+
+    @property
+    def working_angle_rad(self) -> Numbers:
+        """Pressure angle at which sun and planet mesh."""
+        return self._working_angle(self.sun_teeth + self.planet_teeth)
+
+    @property
+    def ring_working_angle_rad(self) -> Numbers:
+        """Pressure angle at which planet and ring mesh."""
+        return self._working_angle(self.ring_teeth - self.planet_teeth)
+
+    def _working_angle(self, teeth: Numbers) -> Numbers:
+        """Working pressure angle of a mesh whose reference centre distance is half of ``teeth`` modules."""
+        if not self.is_shifted:
+            return PRESSURE_ANGLE_RAD
+        share = 0.5 * teeth / (0.5 * (self.sun_teeth + self.planet_teeth) + self.centre_shift)
+        return np.where(share == 1.0, PRESSURE_ANGLE_RAD, np.arccos(np.cos(PRESSURE_ANGLE_RAD) * share))[()]
+
+    @property
+    def shift_sum(self) -> Numbers:
+        """Sum of the shifts of sun and planet."""
+        return (self.sun_teeth + self.planet_teeth) * _shift_per_tooth(self.working_angle_rad)
+
+    @property
+    def planet_shift(self) -> Numbers:
+        """Profile shift of the planets."""
+        return self.shift_sum - self.sun_shift
+
+    @property
+    def ring_shift(self) -> Numbers:
+        """Profile shift of the ring."""
+        difference = self.ring_teeth - self.planet_teeth
+        return self.planet_shift + difference * _shift_per_tooth(self.ring_working_angle_rad)
+
+    @property
+    def tip_shortening(self) -> Numbers:
+        """By how much the tips of sun and planets are cut short, to keep the clearance of the basic rack."""
+        return self.shift_sum - self.centre_shift
 
     @property
     def ring_root_radius_mm(self) -> Numbers:
         """Radius of the bottoms of the ring's tooth spaces."""
-        return self.module_mm * (0.5 * self.ring_teeth + DEDENDUM)
+        return self.module_mm * (0.5 * self.ring_teeth + DEDENDUM + self.ring_shift)
 
     @property
     def ring_pitch_radius_mm(self) -> Numbers:
@@ -41,7 +100,13 @@ class GearSet:
 
     def sun(self, backlash_mm: float = 0.0) -> ExternalGear:
         """Cross-section of the sun, a tooth on the x axis."""
-        return ExternalGear(teeth=self.sun_teeth, module_mm=self.module_mm, backlash_mm=backlash_mm)
+        return ExternalGear(
+            teeth=self.sun_teeth,
+            module_mm=self.module_mm,
+            backlash_mm=backlash_mm,
+            shift=self.sun_shift,
+            tip_shortening=self.tip_shortening,
+        )
 
     def planet(self, backlash_mm: float = 0.0) -> ExternalGear:
         """Cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
@@ -50,6 +115,8 @@ class GearSet:
             module_mm=self.module_mm,
             backlash_mm=backlash_mm,
             phase_rad=np.pi - np.pi / self.planet_teeth,
+            shift=self.planet_shift,
+            tip_shortening=self.tip_shortening,
         )
 
     def ring(self, backlash_mm: float = 0.0) -> InternalGear:
@@ -59,6 +126,7 @@ class GearSet:
             module_mm=self.module_mm,
             backlash_mm=backlash_mm,
             phase_rad=np.pi * (self.planet_teeth - 1.0) / self.ring_teeth,
+            shift=self.ring_shift,
         )
 
     def chosen(self, index: int) -> "GearSet":
@@ -69,6 +137,8 @@ class GearSet:
             ring_teeth=int(np.asarray(self.ring_teeth)[index]),
             module_mm=float(np.asarray(self.module_mm)[index]),
             planets=int(np.asarray(self.planets)[index]),
+            centre_shift=float(self._spread(self.centre_shift)[index]),
+            sun_shift=float(self._spread(self.sun_shift)[index]),
         )
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
@@ -79,24 +149,57 @@ class GearSet:
             ring_teeth=np.asarray(self.ring_teeth)[mask],
             module_mm=np.asarray(self.module_mm)[mask],
             planets=np.asarray(self.planets)[mask],
+            centre_shift=self._spread(self.centre_shift)[mask] if self.is_shifted else 0.0,
+            sun_shift=self._spread(self.sun_shift)[mask] if self.is_shifted else 0.0,
         )
 
+    def _spread(self, value: Numbers) -> NDArray[np.float64]:
+        """A shift as an array of the sets' shape."""
+        return np.broadcast_to(np.asarray(value, dtype=np.float64), np.shape(self.sun_teeth))
+
+    def shifted(self, centre_shift: float, sun_shift: float) -> "GearSet":
+        """The same sets with one pair of shifts for all; see the attributes."""
+        shape = np.shape(self.sun_teeth)
+        return replace(self, centre_shift=np.full(shape, centre_shift), sun_shift=np.full(shape, sun_shift))
+
     def __str__(self) -> str:
-        return f"{self.sun_teeth}/{self.planet_teeth}/{self.ring_teeth} m {self.module_mm:g} x{self.planets}"
+        text = f"{self.sun_teeth}/{self.planet_teeth}/{self.ring_teeth} m {self.module_mm:g} x{self.planets}"
+        if not self.is_shifted:
+            return text
+        shifts = (self.sun_shift, self.planet_shift, self.ring_shift)
+        return f"{text}, shifts {'/'.join(f'{float(shift):+.2f}' for shift in shifts)}"
+
+
+def joined(sets: Sequence[GearSet]) -> GearSet:
+    """Several arrays of gear sets as one."""
+    columns = {
+        field.name: np.concatenate(
+            [np.atleast_1d(np.broadcast_to(getattr(one, field.name), np.shape(one.sun_teeth))) for one in sets]
+        ).astype(np.float64)
+        for field in fields(GearSet)
+    }
+    return GearSet(**columns)
+
+
+def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:
+    """Sum of shifts over sum of teeth at a working pressure angle."""
+    wider = involute(working_angle_rad) - involute(PRESSURE_ANGLE_RAD)
+    return wider / (2.0 * np.tan(PRESSURE_ANGLE_RAD))
 
 
 def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
     """Transverse contact ratios of sun with planet and of planet with ring (Shigley, section 13-6; ISO 21771)."""
-    sun, planet, ring = gears.sun(), gears.planet(), gears.ring()
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
-    distance = gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
+    distance = gears.carrier_radius_mm * np.sin(gears.working_angle_rad)
+    ring_distance = gears.carrier_radius_mm * np.sin(gears.ring_working_angle_rad)
+    sun, planet, ring = (_tip_reach_mm(gear) for gear in (gears.sun(), gears.planet(), gears.ring()))
+    return (sun + planet - distance) / pitch, (planet - ring + ring_distance) / pitch
 
-    def reach(gear: ExternalGear | InternalGear) -> Numbers:
-        return np.sqrt(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm))
 
-    outer = (reach(sun) + reach(planet) - distance) / pitch
-    inner = (reach(planet) - reach(ring) + distance) / pitch
-    return outer, inner
+def _tip_reach_mm(gear: ExternalGear | InternalGear) -> Numbers:
+    """Length of the tangent to the base circle that ends on the tip circle."""
+    # The tips of a small ring may lie inside its base circle; the rules refuse such a ring.
+    return np.sqrt(np.maximum(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm), 0.0))
 
 
 def efficiency(gears: GearSet, friction: float) -> Numbers:
@@ -112,16 +215,21 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
     """
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
 
-    def share(gear: ExternalGear | InternalGear) -> Numbers:
-        reach = np.sqrt(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm))
-        return np.abs(reach - gear.pitch_radius_mm * np.sin(PRESSURE_ANGLE_RAD)) / pitch
-
-    sun, planet, ring = share(gears.sun()), share(gears.planet()), share(gears.ring())
+    def share(gear: ExternalGear | InternalGear, working_angle_rad: Numbers) -> Numbers:
+        rolling = gear.pitch_radius_mm * (np.cos(PRESSURE_ANGLE_RAD) / np.cos(working_angle_rad))
+        return np.abs(_tip_reach_mm(gear) - rolling * np.sin(working_angle_rad)) / pitch
 
     def loss(first: Numbers, second: Numbers, curvature: Numbers) -> Numbers:
         return np.pi * friction * curvature * (1.0 - first - second + np.square(first) + np.square(second))
 
-    outer = loss(sun, planet, 1.0 / gears.sun_teeth + 1.0 / gears.planet_teeth)
-    inner = loss(planet, ring, 1.0 / gears.planet_teeth - 1.0 / gears.ring_teeth)
+    planet, angle, ring_angle = gears.planet(), gears.working_angle_rad, gears.ring_working_angle_rad
+    outer = loss(
+        share(gears.sun(), angle), share(planet, angle), 1.0 / gears.sun_teeth + 1.0 / gears.planet_teeth
+    )
+    inner = loss(
+        share(planet, ring_angle),
+        share(gears.ring(), ring_angle),
+        1.0 / gears.planet_teeth - 1.0 / gears.ring_teeth,
+    )
     basic = (1.0 - outer) * (1.0 - inner)
     return (1.0 + (gears.ratio - 1.0) * basic) / gears.ratio

@@ -75,8 +75,10 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
 
 
 def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Outer radius of the ring gear."""
+    """Outer radius of the ring gear: fixed beyond the pitch circle (``paper``), or a rim that grows with the module."""
     data = settings.parts.gears
+    if settings.rules == "iso6336":
+        return gears.ring_root_radius_mm + data.ring_rim_modules * gears.module_mm
     return gears.ring_pitch_radius_mm + (
         data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm
     )

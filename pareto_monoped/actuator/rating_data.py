@@ -33,6 +33,7 @@ class RatingData:
         face_width_min_mm, face_modules_min: least face width.
         face_over_sun_max: largest face width over the sun's reference diameter.
         face_modules_max: largest face width in modules.
+        tip_thickness_modules: least thickness of the teeth of sun and planets at their tips.
         face_step_mm: face widths are multiples of this.
         accuracy_class: of the teeth, ISO 1328-1.
         flank_finish_factor: Z_L Z_v Z_R.
@@ -59,6 +60,7 @@ class RatingData:
     face_modules_min: Positive
     face_over_sun_max: Positive
     face_modules_max: Positive
+    tip_thickness_modules: Positive
     face_step_mm: Positive
     accuracy_class: Annotated[int, Field(ge=3, le=10)]
     flank_finish_factor: Positive

@@ -63,7 +63,22 @@ def _meshing(sets: CandidateSets) -> Numbers:
 def _no_interference(sets: CandidateSets) -> Numbers:
     gears = sets.gears
     reach = 4.0 * gears.carrier_radius_mm * np.sin(np.pi / gears.planets)
-    return reach - 2.0 * gears.module_mm * gears.planet_teeth - sets.settings.planet_gap_mm
+    # Tips that shifts move outwards count like a larger pitch circle.
+    shifted = 4.0 * gears.module_mm * (gears.planet_shift - gears.tip_shortening)
+    return reach - 2.0 * gears.module_mm * gears.planet_teeth - shifted - sets.settings.planet_gap_mm
+
+
+def _teeth_min(sets: CandidateSets) -> Numbers:
+    """Teeth beyond those that undercutting asks for: a profile shift of x makes up for 2 x / sin(alpha)^2 of them."""
+    gears, per_shift = sets.gears, 2.0 / np.square(np.sin(PRESSURE_ANGLE_RAD))
+    sun = gears.sun_teeth + per_shift * gears.sun_shift
+    return np.minimum(sun, gears.planet_teeth + per_shift * gears.planet_shift) - sets.settings.teeth_min
+
+
+def _tip_thickness(sets: CandidateSets) -> Numbers:
+    backlash, gears = sets.settings.parts.gears.backlash_mm, sets.gears
+    thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
+    return thinnest - sets.settings.parts.rating.tip_thickness_modules * gears.module_mm
 
 
 def _sun_rim(sets: CandidateSets) -> Numbers:
@@ -84,7 +99,7 @@ def _ring_rim(sets: CandidateSets) -> Numbers:
 
 def _ring_interference(sets: CandidateSets) -> Numbers:
     ring = sets.gears.ring()
-    reach = sets.gears.carrier_radius_mm * np.sin(PRESSURE_ANGLE_RAD)
+    reach = sets.gears.carrier_radius_mm * np.sin(sets.gears.ring_working_angle_rad)
     return ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
 
 
@@ -144,10 +159,17 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         cures=("a smaller planet_gap_mm", "fewer planets"),
     ),
     "teeth_min": Constraint(
-        says="Ns, Np >= N_min, against undercutting",
-        source="paper, V (eq. 5)",
-        margin=lambda sets: np.minimum(sets.gears.sun_teeth, sets.gears.planet_teeth) - sets.settings.teeth_min,
+        says="Ns, Np >= N_min, against undercutting; less by 2 x / sin(alpha)^2 with a profile shift of x",
+        source="paper, V (eq. 5); ISO 21771 for the shift",
+        margin=_teeth_min,
         cures=("a smaller module", "fewer teeth with profile shift"),
+    ),
+    "tip_thickness": Constraint(
+        says="tips of sun and planets at least 0.4 modules thick",
+        source="Niemann/Winter, Maschinenelemente II; limit in data/actuator_parts.toml, table rating",
+        margin=_tip_thickness,
+        cures=("less profile shift",),
+        rule_sets=("iso6336",),
     ),
     "gearbox_diameter": Constraint(
         says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",

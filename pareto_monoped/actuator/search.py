@@ -1,6 +1,7 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -8,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator, actuator_mass_kg, build_actuator
+from pareto_monoped.actuator.candidates import candidates, interval_tenths
 from pareto_monoped.actuator.face import face_width_mm
-from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.gearset import GearSet, joined
 from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.sheet import ratings
 from pareto_monoped.actuator.rating.width import STRENGTH_RULES
 from pareto_monoped.actuator.ratiomap import (
     RATIO_HIGH,
@@ -26,69 +30,51 @@ from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.design import DEFAULT_RULES, RuleSet
 from pareto_monoped.geometry.shapes import Numbers
 
-_BEYOND_MM = 12.0
-"""How far beyond the room candidates are enumerated, so that the rules can say why a gearbox is missing."""
-_TEETH_LEAST = 12
-"""Fewest teeth enumerated, for the same reason and for searches with ``teeth_min`` off."""
+_FIRST = 8
+"""How many sets of every interval are rated first, the lightest at the least face width."""
 
 
-def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
-    """Every gear set with Nr = Ns + 2 Np, a ratio in the map's range, and m Nr not far beyond the room."""
-    sets = []
-    intervals = (10 * RATIO_LOW, 10 * RATIO_HIGH)
-    for module in settings.modules_mm:
-        ring_most = int((room_mm + _BEYOND_MM) / module)
-        least = min(_TEETH_LEAST, settings.teeth_min)
-        sun, planet = np.meshgrid(
-            np.arange(least, ring_most, dtype=np.int64),
-            np.arange(least, ring_most // 2 + 1, dtype=np.int64),
-            indexing="ij",
-        )
-        ring = sun + 2 * planet
-        tenths = interval_tenths(sun, ring)
-        keep = (ring <= ring_most) & (tenths >= intervals[0]) & (tenths < intervals[1])
-        for planets in range(settings.planets_least, settings.planets_max + 1):
-            shape = int(keep.sum())
-            sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
-    columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
-    return GearSet(
-        sun_teeth=columns[0],
-        planet_teeth=columns[1],
-        ring_teeth=columns[2],
-        module_mm=columns[3],
-        planets=columns[4],
-    )
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Judged:
+    """What the rules say of every gear set of a family; arrays of shape (n,).
 
+    Attributes:
+        gears: the gear sets.
+        tenths: lower end of each set's interval.
+        width_mm, mass_kg: face width and mass; infinite mass for sets that cannot be built, or need not be weighed.
+        names, broken: rules, and which of them each set breaks, shape (names, n).
+        considered: sets that are solutions or are kept out by a single rule, as far as these may be lighter than the
+            two lightest of their interval.
+    """
 
-def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; exact, in integers."""
-    return 10 * (sun_teeth + ring_teeth) // sun_teeth
+    gears: GearSet
+    tenths: NDArray[np.int64]
+    width_mm: NDArray[np.float64]
+    mass_kg: NDArray[np.float64]
+    names: tuple[ConstraintName, ...]
+    broken: NDArray[np.bool_]
+    considered: NDArray[np.bool_]
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
     """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
+    judge = _Judge(motor=motor, family=family, settings=settings)
     gears = candidates(radial_room_mm(motor, family, settings), settings)
-    width, names, broken = _judged(gears, motor, family, settings)
+    judged = judge.by_lewis(gears) if settings.rules == "paper" else judge.by_rating(gears)
+    names, broken, mass = judged.names, judged.broken, judged.mass_kg
     count = broken.sum(axis=0)
     # A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
     weak = np.isin(names, list(STRENGTH_RULES))
     nearness = np.where(broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
-    # Only sets that break at most one rule are weighed: others are neither solutions nor kept out by a single rule.
-    near = np.flatnonzero(count <= 1)
-    mass = np.full(len(count), np.inf)
-    chosen = gears.where(near)
-    mass[near] = actuator_mass_kg(layout(motor, family, chosen, width[near], settings), motor, family, settings)
-    mass[np.isnan(mass)] = np.inf
-    tenths = interval_tenths(np.asarray(gears.sun_teeth, dtype=np.int64), np.asarray(gears.ring_teeth, dtype=np.int64))
     found = {}
-    order = np.argsort(tenths, kind="stable")
-    bounds = np.searchsorted(tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
+    order = np.argsort(judged.tenths, kind="stable")
+    bounds = np.searchsorted(judged.tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
     for low, (start, stop) in enumerate(pairwise(bounds), 10 * RATIO_LOW):
         inside = order[start:stop]
-        allowed = inside[(count[inside] == 0) & np.isfinite(mass[inside])]
+        allowed = inside[judged.considered[inside] & (count[inside] == 0) & np.isfinite(mass[inside])]
         ranked = allowed[np.argsort(mass[allowed], kind="stable")][:2]
         if len(ranked):
-            rivals = inside[(count[inside] == 1) & (mass[inside] < mass[ranked[0]])]
+            rivals = inside[judged.considered[inside] & (count[inside] == 1) & (mass[inside] < mass[ranked[0]])]
         else:
             rivals = inside[nearness[inside] == nearness[inside].min()] if len(inside) else inside
         in_the_way = tuple(name for name, row in zip(names, broken[:, rivals], strict=True) if row.any())
@@ -96,7 +82,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
             Candidate(
                 family=family,
                 gears=gears.chosen(ranked[place]),
-                face_width_mm=float(width[ranked[place]]),
+                face_width_mm=float(judged.width_mm[ranked[place]]),
                 mass_kg=float(mass[ranked[place]]),
             )
             if place < len(ranked)
@@ -107,45 +93,114 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     return found
 
 
-def _judged(
-    gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings
-) -> tuple[NDArray[np.float64], tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    """Face widths, and which rule each set breaks, as ``violations`` returns them.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Judge:
+    """Applies the rules to arrays of gear sets of one motor and family."""
 
-    To rate a gear set costs more than all other rules together. Under ``iso6336``, sets that break more than one of
-    the others at the least face width are neither solutions nor kept out by a single rule, and are not rated.
-    """
-    if settings.rules == "paper":
-        width = np.asarray(face_width_mm(gears, motor, family, settings))
-        return width, *_rules_broken(gears, width, motor, family, settings)
-    unrated = dict.fromkeys(STRENGTH_RULES, np.zeros(np.shape(gears.sun_teeth)))
-    width = settings.parts.rating.face_width_min_mm + unrated["flank_strength"]
-    names, broken = _rules_broken(gears, width, motor, family, settings, unrated)
-    near = np.flatnonzero(broken.sum(axis=0) <= 1)
-    chosen = gears.where(near)
-    width[near] = face_width_mm(chosen, motor, family, settings)
-    broken[:, near] = _rules_broken(chosen, width[near], motor, family, settings)[1]
-    return width, names, broken
+    motor: Motor
+    family: Family
+    settings: ActuatorSettings
+
+    def by_lewis(self, gears: GearSet) -> _Judged:
+        """All sets under the rules ``paper``."""
+        width = np.asarray(face_width_mm(gears, self.motor, self.family, self.settings))
+        names, broken = self._rules_broken(gears, width)
+        near = broken.sum(axis=0) <= 1
+        mass = np.full(len(width), np.inf)
+        mass[near] = self._mass_kg(gears.where(near), width[near])
+        return _Judged(
+            gears=gears,
+            tenths=_tenths_of(gears),
+            width_mm=width,
+            mass_kg=mass,
+            names=names,
+            broken=broken,
+            considered=near,
+        )
+
+    def by_rating(self, gears: GearSet) -> _Judged:
+        """All sets under the rules ``iso6336``.
+
+        To rate a gear set costs more than all other rules together. Sets that break more than one of the others at the
+        least face width are neither solutions nor kept out by a single rule, and are not rated. Nor are sets that are
+        too heavy at the least face width already: first, the lightest of every interval there are rated, then all that
+        may still be lighter than the second of them. Sets that break one rule come last, where a lighter set has been
+        kept out or no other set is near.
+        """
+        data, tenths = self.settings.parts.rating, _tenths_of(gears)
+        width = np.maximum(data.face_width_min_mm, data.face_modules_min * gears.module_mm)
+        unrated = dict.fromkeys(STRENGTH_RULES, np.zeros(len(width)))
+        names, broken = self._rules_broken(gears, width, unrated)
+        count = broken.sum(axis=0)
+        near = np.flatnonzero(count <= 1)
+        least, mass = np.full(len(width), np.inf), np.full(len(width), np.inf)
+        least[near] = self._mass_kg(gears.where(near), width[near])
+        rated = np.zeros(len(width), dtype=bool)
+        fitting, kept_out = near[count[near] == 0], near[count[near] == 1]
+        alone = ~np.isin(tenths, tenths[fitting])
+        for wanted in (fitting[_rank(tenths[fitting], least[fitting]) < _FIRST], fitting, kept_out):
+            # No set is lighter with a wider face.
+            bound = _second_lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf))[tenths[wanted]]
+            heavy = least[wanted] > bound
+            useless = (count[wanted] == 1) & ~alone[wanted] & np.isinf(bound)
+            todo = wanted[~rated[wanted] & ~heavy & ~useless]
+            chosen = gears.where(todo)
+            width[todo] = face_width_mm(chosen, self.motor, self.family, self.settings)
+            broken[:, todo] = self._rules_broken(chosen, width[todo])[1]
+            mass[todo] = self._mass_kg(chosen, width[todo])
+            rated[todo] = True
+        return _Judged(
+            gears=gears,
+            tenths=tenths,
+            width_mm=width,
+            mass_kg=mass,
+            names=names,
+            broken=broken,
+            considered=rated,
+        )
+
+    def _mass_kg(self, gears: GearSet, width_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        at = layout(self.motor, self.family, gears, width_mm, self.settings)
+        mass = np.asarray(actuator_mass_kg(at, self.motor, self.family, self.settings))
+        return np.where(np.isnan(mass), np.inf, mass)
+
+    def _rules_broken(
+        self,
+        gears: GearSet,
+        width_mm: NDArray[np.float64],
+        strength: Mapping[str, Numbers] | None = None,
+    ) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
+        sets = CandidateSets(
+            gears=gears,
+            face_width_mm=width_mm,
+            at=layout(self.motor, self.family, gears, width_mm, self.settings),
+            motor=self.motor,
+            family=self.family,
+            settings=self.settings,
+            strength=strength,
+        )
+        return violations(sets)
 
 
-def _rules_broken(
-    gears: GearSet,
-    width: NDArray[np.float64],
-    motor: Motor,
-    family: Family,
-    settings: ActuatorSettings,
-    strength: Mapping[str, Numbers] | None = None,
-) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    sets = CandidateSets(
-        gears=gears,
-        face_width_mm=width,
-        at=layout(motor, family, gears, width, settings),
-        motor=motor,
-        family=family,
-        settings=settings,
-        strength=strength,
-    )
-    return violations(sets)
+def _tenths_of(gears: GearSet) -> NDArray[np.int64]:
+    return interval_tenths(np.asarray(gears.sun_teeth, dtype=np.int64), np.asarray(gears.ring_teeth, dtype=np.int64))
+
+
+def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Place of each value among those of its group, from 0."""
+    order = np.lexsort((values, groups))
+    first = np.searchsorted(groups[order], groups[order])
+    rank = np.empty(len(order), dtype=np.intp)
+    rank[order] = np.arange(len(order)) - first
+    return rank
+
+
+def _second_lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64]) -> NDArray[np.float64]:
+    """For each interval, by its tenths, the second lightest mass; infinite where there are fewer than two."""
+    found = np.full(10 * RATIO_HIGH, np.inf)
+    second = np.isfinite(mass_kg) & (_rank(tenths, mass_kg) == 1)
+    found[tenths[second]] = mass_kg[second]
+    return found
 
 
 def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> ActuatorMap:
@@ -158,26 +213,37 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
     settings = settings or ActuatorSettings()
     present: dict[Family, bool] = {"ISSPG": motor.frameless is not None, "ESSPG": motor.framed is not None}
     searched = {family: _search(motor, family, settings) for family in FAMILIES if present[family]}
-    entries = []
+    pools = {}
     for low in range(10 * RATIO_LOW, 10 * RATIO_HIGH):
-        families = {family: results[low] for family, results in searched.items()}
-        pool = [c for result in families.values() for c in (result.best, result.runner_up) if c is not None]
-        pool.sort(key=lambda candidate: candidate.mass_kg)
-        entries.append(
-            MapEntry(
-                ratio_low=low / 10.0,
-                actuator=_built(motor, pool[0], settings) if pool else None,
-                runner_up=pool[1] if len(pool) > 1 else None,
-                families=families,
-            )
+        found = [each for results in searched.values() for each in (results[low].best, results[low].runner_up)]
+        pools[low] = sorted((each for each in found if each is not None), key=lambda candidate: candidate.mass_kg)
+    built = _built(motor, {low: pool[0] for low, pool in pools.items() if pool}, settings)
+    entries = tuple(
+        MapEntry(
+            ratio_low=low / 10.0,
+            actuator=built.get(low),
+            runner_up=pool[1] if len(pool) > 1 else None,
+            families={family: results[low] for family, results in searched.items()},
         )
-    return ActuatorMap(motor=motor, settings=settings, entries=tuple(entries))
+        for low, pool in pools.items()
+    )
+    return ActuatorMap(motor=motor, settings=settings, entries=entries)
 
 
-def _built(motor: Motor, found: Candidate, settings: ActuatorSettings) -> Actuator:
-    """The actuator of a candidate. A width after Lewis may differ in its last bit between one gear set and many."""
-    width = None if settings.rules == "paper" else found.face_width_mm
-    return build_actuator(motor, found.family, found.gears, settings, width)
+def _built(motor: Motor, winners: Mapping[int, Candidate], settings: ActuatorSettings) -> dict[int, Actuator]:
+    """The actuators of the winners. A width after Lewis may differ in its last bit between one gear set and many."""
+    if settings.rules == "paper":
+        return {low: build_actuator(motor, won.family, won.gears, settings) for low, won in winners.items()}
+    built = {}
+    for family in FAMILIES:
+        own = {low: won for low, won in winners.items() if won.family == family}
+        if not own:
+            continue
+        stage = build_stage(joined([won.gears for won in own.values()]), motor, family, settings)
+        rated = ratings(stage, np.array([won.face_width_mm for won in own.values()]))
+        for (low, won), rating in zip(own.items(), rated, strict=True):
+            built[low] = build_actuator(motor, family, won.gears, settings, won.face_width_mm, rating)
+    return built
 
 
 def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None = None) -> ActuatorMap:

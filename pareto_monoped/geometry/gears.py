@@ -9,6 +9,9 @@ with t = tan(alpha_r) and d(inv) = tan^2 d(alpha), the tooth's area and polar mo
 
     area   = [psi r^2]     + r_b^2 [t^3 / 3]
     polar  = [psi r^4 / 2] + r_b^4 / 2 [t^3 / 3 + t^5 / 5]
+
+A profile shift of x modules moves the teeth outwards by x m, in an internal gear too; psi grows by 2 x tan(alpha) / z
+(ISO 21771).
 """
 
 from dataclasses import dataclass
@@ -28,15 +31,36 @@ def _array(value: Numbers) -> NDArray[np.float64]:
     return np.asarray(value, dtype=np.float64)
 
 
+def involute(angle_rad: Numbers) -> Numbers:
+    """inv(alpha) = tan(alpha) - alpha."""
+    return np.tan(angle_rad) - angle_rad
+
+
 def half_angle(
-    *, radius_mm: Numbers, teeth: Numbers, module_mm: Numbers, thinning_mm: Numbers = 0.0, pressure_angle_rad: float
+    *,
+    radius_mm: Numbers,
+    teeth: Numbers,
+    module_mm: Numbers,
+    thinning_mm: Numbers = 0.0,
+    shift: Numbers = 0.0,
+    pressure_angle_rad: float,
 ) -> NDArray[np.float64]:
-    """Half angle psi of a tooth at a radius, in rad; the teeth are thinner by ``thinning_mm`` on the pitch circle."""
+    """Half angle psi of a tooth at a radius, in rad.
+
+    Args:
+        radius_mm: where.
+        teeth: number of teeth.
+        module_mm: reference module.
+        thinning_mm: by how much the teeth are thinner on the reference circle.
+        shift: profile shift over module.
+        pressure_angle_rad: on the reference circle.
+    """
     base = 0.5 * _array(module_mm) * _array(teeth) * np.cos(pressure_angle_rad)
     tangent = np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0))
-    involute = tangent - np.arctan(tangent)
+    unwound = tangent - np.arctan(tangent)
     pitch = np.pi / (2.0 * _array(teeth)) - _array(thinning_mm) / (_array(module_mm) * _array(teeth))
-    return np.asarray(pitch + np.tan(pressure_angle_rad) - pressure_angle_rad - involute)
+    pitch = pitch + 2.0 * _array(shift) * np.tan(pressure_angle_rad) / _array(teeth)
+    return np.asarray(pitch + np.tan(pressure_angle_rad) - pressure_angle_rad - unwound)
 
 
 def _teeth_integrals(
@@ -52,6 +76,7 @@ def _teeth_integrals(
             teeth=gear.teeth,
             module_mm=gear.module_mm,
             thinning_mm=thinning_mm,
+            shift=gear.shift,
             pressure_angle_rad=gear.pressure_angle_rad,
         )
         # Below the base circle psi stays what it is there, so psi r^2 is right and the tangent terms vanish.
@@ -101,6 +126,8 @@ class ExternalGear:
         module_mm: reference module.
         backlash_mm: how much thinner each tooth is on the pitch circle.
         phase_rad: angle of the middle of one tooth from the x axis.
+        shift: profile shift x over module, positive outwards.
+        tip_shortening: by how much the tips are cut short, over module.
     """
 
     teeth: Numbers
@@ -108,6 +135,8 @@ class ExternalGear:
     backlash_mm: Numbers = 0.0
     phase_rad: Numbers = 0.0
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
+    shift: Numbers = 0.0
+    tip_shortening: Numbers = 0.0
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -122,12 +151,29 @@ class ExternalGear:
     @property
     def tip_radius_mm(self) -> Numbers:
         """Outermost circle."""
-        return self.pitch_radius_mm + ADDENDUM * self.module_mm
+        return self.pitch_radius_mm + (ADDENDUM + self.shift - self.tip_shortening) * self.module_mm
 
     @property
     def root_radius_mm(self) -> Numbers:
         """Circle at the bottom of the tooth spaces."""
-        return self.pitch_radius_mm - DEDENDUM * self.module_mm
+        return self.pitch_radius_mm - (DEDENDUM - self.shift) * self.module_mm
+
+    @property
+    def tip_thickness_mm(self) -> Numbers:
+        """Thickness of a tooth on the tip circle, along the arc."""
+        tip = self.tip_radius_mm
+        return (
+            2.0
+            * tip
+            * half_angle(
+                radius_mm=tip,
+                teeth=self.teeth,
+                module_mm=self.module_mm,
+                thinning_mm=self.backlash_mm,
+                shift=self.shift,
+                pressure_angle_rad=self.pressure_angle_rad,
+            )
+        )
 
     def moments(self) -> Moments:
         """Exact for the teeth and the root disc; for the fillets see ``_fillets_mm2``."""
@@ -151,6 +197,8 @@ class InternalGear:
         module_mm: reference module.
         backlash_mm: how much wider each space is on the pitch circle.
         phase_rad: angle of the middle of one space of the ring from the x axis.
+        shift: profile shift over module, positive outwards: that of the gear whose teeth are the spaces. ISO 21771
+            counts it negative.
     """
 
     teeth: Numbers
@@ -158,6 +206,7 @@ class InternalGear:
     backlash_mm: Numbers = 0.0
     phase_rad: Numbers = 0.0
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
+    shift: Numbers = 0.0
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -172,12 +221,12 @@ class InternalGear:
     @property
     def tip_radius_mm(self) -> Numbers:
         """Innermost circle, of the ring's teeth."""
-        return self.pitch_radius_mm - ADDENDUM * self.module_mm
+        return self.pitch_radius_mm - (ADDENDUM - self.shift) * self.module_mm
 
     @property
     def root_radius_mm(self) -> Numbers:
         """Outermost circle, at the bottom of the spaces."""
-        return self.pitch_radius_mm + DEDENDUM * self.module_mm
+        return self.pitch_radius_mm + (DEDENDUM + self.shift) * self.module_mm
 
     def moments(self) -> Moments:
         """As of ``ExternalGear``; the fillets at the root make the hole smaller."""

@@ -38,6 +38,10 @@ class Prism:
             total = total - hole.moments()
         return total
 
+    def volume_mm3(self) -> Numbers:
+        """The first of ``integrals``, for searches that weigh thousands of parts."""
+        return self.moments().area * (np.asarray(self.z1_mm, dtype=np.float64) - self.z0_mm)
+
     def integrals(self) -> tuple[Numbers, ...]:
         """Volume integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
         area = self.moments()
@@ -72,6 +76,10 @@ class Ball:
     y_mm: Numbers
     top_mm: Numbers
     pocket: Prism | None = None
+
+    def volume_mm3(self) -> Numbers:
+        """The first of ``integrals``."""
+        return self.integrals()[0]
 
     def integrals(self) -> tuple[Numbers, ...]:
         """As of ``Prism``: integrals over slices of radius sqrt(R^2 - t^2) for t from -R to the cut, in closed form."""
@@ -259,7 +267,7 @@ class Part:
         volume: Numbers = 0.0
         solids: tuple[Prism | Ball | Bevel, ...] = (*self.prisms, *self.balls, *self.bevels)
         for solid in solids:
-            volume = volume + solid.integrals()[0]
+            volume = volume + solid.volume_mm3()
         return volume
 
     def unit_mass_kg(self) -> Numbers:

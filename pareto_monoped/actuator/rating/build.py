@@ -28,7 +28,7 @@ from pareto_monoped.actuator.rating.life import (
 from pareto_monoped.actuator.rating.root import root_limit_mpa, root_load_n_per_mm, static_root_limit_mpa
 from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GearGrade
 
@@ -60,9 +60,9 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
         pinion=partial(_member, gear="sun", steel=steels.sun, rim_factor=sun_rim, passes=sun_passes, settings=settings),
         wheel=planet,
         steels=(steels.sun, steels.planet),
-        teeth=(gears.sun_teeth, gears.planet_teeth),
+        pair=(gears.sun(), gears.planet()),
+        working_angle_rad=gears.working_angle_rad,
         contact_ratio=outer,
-        internal=False,
         settings=settings,
     )
     ring_mesh = meshed(
@@ -71,9 +71,9 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
             _member, gear="ring", steel=steels.ring, rim_factor=ring_rim, passes=ring_passes, settings=settings
         ),
         steels=(steels.planet, steels.ring),
-        teeth=(gears.planet_teeth, gears.ring_teeth),
+        pair=(gears.planet(), gears.ring()),
+        working_angle_rad=gears.ring_working_angle_rad,
         contact_ratio=inner,
-        internal=True,
         settings=settings,
     )
     return Stage(
@@ -115,17 +115,18 @@ def _mesh(
     pinion: Callable[..., Member],
     wheel: Callable[..., Member],
     steels: tuple[GearGrade, GearGrade],
-    teeth: tuple[Numbers, Numbers],
+    pair: tuple[ExternalGear, ExternalGear | InternalGear],
+    working_angle_rad: Numbers,
     module_mm: Numbers,
     contact_ratio: Numbers,
-    internal: bool,
     force_n: Numbers,
     sharing: Numbers,
     speed: Numbers,
     settings: ActuatorSettings,
 ) -> Mesh:
-    single = single_contact_factors(*teeth, contact_ratio, internal=internal)
-    both = flank_factors(settings.materials.gear_steel, contact_ratio_factor(contact_ratio))
+    internal, teeth = isinstance(pair[1], InternalGear), (pair[0].teeth, pair[1].teeth)
+    single = single_contact_factors(*pair, contact_ratio, working_angle_rad)
+    both = flank_factors(settings.materials.gear_steel, contact_ratio_factor(contact_ratio), working_angle_rad)
     diameter = module_mm * teeth[0]
     common = {
         "module_mm": module_mm,
@@ -138,8 +139,8 @@ def _mesh(
     deviation = load.pitch_deviation_um(module_mm * teeth[1], module_mm, settings.parts.rating.accuracy_class)
     return Mesh(
         internal=internal,
-        pinion=pinion(teeth=teeth[0], mate=steels[1], factors=both, single=single[0], ring=False, **common),
-        wheel=wheel(teeth=teeth[1], mate=steels[0], factors=both, single=single[1], ring=internal, **common),
+        pinion=pinion(shape=pair[0], mate=steels[1], factors=both, single=single[0], **common),
+        wheel=wheel(shape=pair[1], mate=steels[0], factors=both, single=single[1], **common),
         pinion_teeth=teeth[0],
         wheel_teeth=teeth[1],
         diameter_mm=diameter,
@@ -147,7 +148,7 @@ def _mesh(
         force_n=force_n,
         sharing=sharing,
         speed_m_per_s=speed,
-        pair_stiffness=load.pair_stiffness(*teeth, internal=internal),
+        pair_stiffness=load.pair_stiffness(*pair),
         pitch_deviation_um=(1.0 - worn) * np.cos(PRESSURE_ANGLE_RAD) * deviation,
     )
 
@@ -157,13 +158,12 @@ def _member(
     gear: str,
     steel: GearGrade,
     mate: GearGrade,
-    teeth: Numbers,
+    shape: ExternalGear | InternalGear,
     module_mm: Numbers,
     contact_ratio: Numbers,
     diameter_mm: Numbers,
     ratio: Numbers,
     internal: bool,
-    ring: bool,
     factors: Numbers,
     single: Numbers,
     rim_factor: Numbers,
@@ -171,9 +171,9 @@ def _member(
     settings: ActuatorSettings,
     bending_factor: float = 1.0,
 ) -> Member:
-    """One gear in one mesh; ``ring`` says whether it is the ring, ``internal`` whether its mesh is the ring's."""
+    """One gear in one mesh; ``internal`` says whether the mesh is the ring's."""
     data, duty = settings.parts.rating, settings.parts.duty
-    form = tooth_form(teeth, contact_ratio, internal=ring)
+    form = tooth_form(shape, contact_ratio)
     flank_curve, root_curve = FLANK_CURVES[steel.treatment], ROOT_CURVES[steel.treatment]
     flank_cycles = equivalent_cycles(passes, duty, flank_curve.exponent, flank=True)
     root_cycles = equivalent_cycles(passes, duty, root_curve.exponent, flank=False)

@@ -53,9 +53,9 @@ def _curvature(ratio: Numbers, *, internal: bool) -> Numbers:
     return (ratio - 1.0) / ratio if internal else (ratio + 1.0) / ratio
 
 
-def flank_factors(material: ElasticMaterial, contact_factor: Numbers) -> Numbers:
+def flank_factors(material: ElasticMaterial, contact_factor: Numbers, working_angle_rad: Numbers) -> Numbers:
     """Z_H Z_E Z_epsilon; Z_beta is 1 for spur gears."""
-    return zone_factor() * elasticity_factor(material) * contact_factor
+    return zone_factor(working_angle_rad) * elasticity_factor(material) * contact_factor
 
 
 def flank_limit_mpa(steel: GearGrade, mate: GearGrade, life_factor: Numbers, finish_factor: float) -> Numbers:

@@ -1,25 +1,34 @@
 """Factors that follow from the teeth alone: zone, contact ratio, single pair contact, tooth form, notch, rim.
 
-Spur gears on standard centres without profile shift, basic rack ISO 53. Every number may be an array of shape (n,).
+Spur gears with or without profile shift, basic rack ISO 53. Every number may be an array of shape (n,).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, FILLET, PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.gears import (
+    ADDENDUM,
+    DEDENDUM,
+    FILLET,
+    PRESSURE_ANGLE_RAD,
+    ExternalGear,
+    InternalGear,
+)
 from pareto_monoped.geometry.shapes import Numbers
 
 _TANGENT = np.tan(PRESSURE_ANGLE_RAD)
 _INVOLUTE = _TANGENT - PRESSURE_ANGLE_RAD
 _NEWTON_STEPS = 5
 """From the start used, four steps reach rounding for 12 teeth or more; one is spare."""
+_LEAST_FILLET = 0.02
+"""Least fillet radius in modules. A rack cannot make rings of very large shift; such roots count as sharply notched."""
 TOOTH_DEPTH = ADDENDUM + DEDENDUM
 
 
-def zone_factor() -> float:
-    """Z_H on standard centres: sqrt(2 / (cos(alpha) sin(alpha))) (ISO 6336-2, clause 6)."""
-    return float(np.sqrt(2.0 / (np.cos(PRESSURE_ANGLE_RAD) * np.sin(PRESSURE_ANGLE_RAD))))
+def zone_factor(working_angle_rad: Numbers) -> Numbers:
+    """Z_H = sqrt(2 cos(alpha_w) / (cos(alpha)^2 sin(alpha_w))) of spur gears (ISO 6336-2, clause 6)."""
+    return np.sqrt(2.0 / np.tan(working_angle_rad)) / np.cos(PRESSURE_ANGLE_RAD)
 
 
 def contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
@@ -36,29 +45,28 @@ def root_contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
     return 0.25 + 0.75 / contact_ratio
 
 
-def _tip_tangent(teeth: Numbers, *, internal: bool) -> Numbers:
+def _tip_tangent(gear: ExternalGear | InternalGear) -> Numbers:
     """Tangent of the pressure angle at the tip circle."""
-    pitch = 0.5 * np.asarray(teeth, dtype=np.float64)
-    tip = pitch - ADDENDUM if internal else pitch + ADDENDUM
-    return np.sqrt(np.square(tip / (pitch * np.cos(PRESSURE_ANGLE_RAD))) - 1.0)
+    return np.sqrt(np.square(gear.tip_radius_mm / gear.base_radius_mm) - 1.0)
 
 
 def single_contact_factors(
-    pinion_teeth: Numbers, wheel_teeth: Numbers, contact_ratio: Numbers, *, internal: bool
+    pinion: ExternalGear, wheel: ExternalGear | InternalGear, contact_ratio: Numbers, working_angle_rad: Numbers
 ) -> tuple[Numbers, Numbers]:
     """Z_B and Z_D: contact stress at the inner point of single pair contact over that at the pitch point.
 
     ISO 6336-2, clause 6.3; not below 1. For an internal mesh z2 counts as negative and Z_D is 1.
     """
-    angle_1, angle_2 = 2.0 * np.pi / pinion_teeth, 2.0 * np.pi / wheel_teeth
+    angle_1, angle_2 = 2.0 * np.pi / pinion.teeth, 2.0 * np.pi / wheel.teeth
+    internal = isinstance(wheel, InternalGear)
     side = -1.0 if internal else 1.0
-    tip_1, tip_2 = _tip_tangent(pinion_teeth, internal=False), _tip_tangent(wheel_teeth, internal=internal)
-    beyond = contact_ratio - 1.0
-    pinion = _TANGENT / np.sqrt((tip_1 - angle_1) * (tip_2 - side * beyond * angle_2))
+    tip_1, tip_2 = _tip_tangent(pinion), _tip_tangent(wheel)
+    beyond, pitch = contact_ratio - 1.0, np.tan(working_angle_rad)
+    of_pinion = pitch / np.sqrt((tip_1 - angle_1) * (tip_2 - side * beyond * angle_2))
     if internal:
-        return np.maximum(pinion, 1.0), np.ones(np.shape(pinion))[()]
-    wheel = _TANGENT / np.sqrt((tip_2 - angle_2) * (tip_1 - beyond * angle_1))
-    return np.maximum(pinion, 1.0), np.maximum(wheel, 1.0)
+        return np.maximum(of_pinion, 1.0), np.ones(np.shape(of_pinion))[()]
+    of_wheel = pitch / np.sqrt((tip_2 - angle_2) * (tip_1 - beyond * angle_1))
+    return np.maximum(of_pinion, 1.0), np.maximum(of_wheel, 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +84,7 @@ class ToothForm:
     notch: Numbers
 
 
-def tooth_form(teeth: Numbers, contact_ratio: Numbers, *, internal: bool) -> ToothForm:
+def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> ToothForm:
     """Y_F and Y_S by method B (ISO 6336-3:2006, clauses 6.2 and 7.2).
 
     The critical section lies where the fillet's tangent makes 30 degrees with the tooth's centre line, 60 degrees in an
@@ -84,22 +92,24 @@ def tooth_form(teeth: Numbers, contact_ratio: Numbers, *, internal: bool) -> Too
     the ring is cut by wire or with a large cutter. Lengths in modules.
 
     Args:
-        teeth: number of teeth, positive.
+        gear: sun, planet or ring.
         contact_ratio: of the mesh in which the tooth is loaded.
-        internal: whether the gear is a ring.
     """
-    z = np.asarray(teeth, dtype=np.float64) * (-1.0 if internal else 1.0)
+    internal = isinstance(gear, InternalGear)
+    sign = -1.0 if internal else 1.0
+    z, shift = np.asarray(gear.teeth, dtype=np.float64) * sign, gear.shift * sign
     # Distance of the centre of the rack's tip rounding from the middle of its tooth (E), and below the pitch line (G).
     distance = (
         0.25 * np.pi - DEDENDUM * _TANGENT - (1.0 - np.sin(PRESSURE_ANGLE_RAD)) * FILLET / np.cos(PRESSURE_ANGLE_RAD)
     )
-    depth = FILLET - DEDENDUM
+    depth = FILLET - DEDENDUM + shift
     theta = _tangent_angle(z, depth, 2.0 / z * (0.5 * np.pi - distance), internal=internal)
     root = depth / np.cos(theta) - FILLET
     radius = FILLET + 2.0 * depth**2 / (np.cos(theta) * (z * np.square(np.cos(theta)) - 2.0 * depth))
-    load_diameter, load_angle = _load_point(z, contact_ratio)
+    radius = np.maximum(radius, _LEAST_FILLET)
+    load_diameter, load_angle = _load_point(gear, contact_ratio)
     # Angle between the force and the normal to the tooth's centre line: alpha_Fen.
-    half_tooth = 0.5 * np.pi / z + _INVOLUTE - (np.tan(load_angle) - load_angle)
+    half_tooth = (0.5 * np.pi + 2.0 * shift * _TANGENT) / z + _INVOLUTE - (np.tan(load_angle) - load_angle)
     force_angle = load_angle - half_tooth
     lever = (np.cos(half_tooth) - np.sin(half_tooth) * np.tan(force_angle)) * load_diameter
     if internal:
@@ -117,7 +127,7 @@ def tooth_form(teeth: Numbers, contact_ratio: Numbers, *, internal: bool) -> Too
     )
 
 
-def _tangent_angle(z: Numbers, depth: float, turned: Numbers, *, internal: bool) -> Numbers:
+def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers, *, internal: bool) -> Numbers:
     """The auxiliary angle theta: theta = (2 G / z) tan(theta) - H, by Newton's method."""
     constant = turned - (np.pi / 6.0 if internal else np.pi / 3.0)
     theta = np.full(np.shape(z), np.pi / 6.0)[()]
@@ -127,14 +137,14 @@ def _tangent_angle(z: Numbers, depth: float, turned: Numbers, *, internal: bool)
     return theta
 
 
-def _load_point(z: Numbers, contact_ratio: Numbers) -> tuple[Numbers, Numbers]:
-    """Diameter d_en of the outer point of single pair contact, in modules with the sign of z, and the angle there."""
-    base = 0.5 * np.abs(z) * np.cos(PRESSURE_ANGLE_RAD)
-    tip = 0.5 * np.abs(z) + np.sign(z) * ADDENDUM
+def _load_point(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> tuple[Numbers, Numbers]:
+    """Diameter d_en of the outer point of single pair contact, in modules, and the angle there; negative for a ring."""
+    sign = -1.0 if isinstance(gear, InternalGear) else 1.0
+    base, tip = gear.base_radius_mm / gear.module_mm, gear.tip_radius_mm / gear.module_mm
     pitch = np.pi * np.cos(PRESSURE_ANGLE_RAD)
-    along = np.sqrt(np.square(tip) - np.square(base)) - np.sign(z) * pitch * (contact_ratio - 1.0)
+    along = np.sqrt(np.square(tip) - np.square(base)) - sign * pitch * (contact_ratio - 1.0)
     radius = np.sqrt(np.square(along) + np.square(base))
-    return 2.0 * np.sign(z) * radius, np.arctan(along / base)
+    return 2.0 * sign * radius, np.arctan(along / base)
 
 
 def external_rim_factor(rim_over_depth: Numbers) -> Numbers:

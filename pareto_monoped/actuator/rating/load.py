@@ -10,7 +10,7 @@ from pareto_monoped.actuator.rating.geometry import (
     contact_ratio_factor,
     root_contact_ratio_factor,
 )
-from pareto_monoped.geometry.gears import DEDENDUM
+from pareto_monoped.geometry.gears import DEDENDUM, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import ElasticMaterial, GearGrade
 
@@ -52,10 +52,18 @@ def dynamic_factor(
     return 1.0 + (_K1[accuracy_class] / np.maximum(load_n_per_mm, LIGHT_LOAD_N_PER_MM) + _K2) * pace * slope
 
 
-def pair_stiffness(pinion_teeth: Numbers, wheel_teeth: Numbers, *, internal: bool) -> Numbers:
-    """Stiffness c' of one tooth pair under full load, method B (ISO 6336-1, clause 9.3.2); a ring counts as a rack."""
-    wheel = 0.0 if internal else 1.0 / wheel_teeth
-    compliance = 0.04723 + 0.15551 / pinion_teeth + 0.25791 * wheel
+def pair_stiffness(pinion: ExternalGear, wheel: ExternalGear | InternalGear) -> Numbers:
+    """Stiffness c' of one tooth pair under full load, method B (ISO 6336-1, clause 9.3.2).
+
+    A ring counts as a rack without shift.
+    """
+    compliance = 0.04723 + 0.15551 / pinion.teeth
+    x = pinion.shift
+    compliance = compliance - 0.00635 * x - 0.11654 * x / pinion.teeth + 0.00529 * np.square(x)
+    if isinstance(wheel, ExternalGear):
+        x = wheel.shift
+        compliance = compliance + 0.25791 / wheel.teeth
+        compliance = compliance - 0.00193 * x - 0.24188 * x / wheel.teeth + 0.00182 * np.square(x)
     return _ACTUAL_STIFFNESS * _RACK_STIFFNESS / compliance
 
 

@@ -1,6 +1,6 @@
 """The full rating of one gear set: every stress, limit, factor and safety, as on a gear calculation sheet."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -113,29 +113,46 @@ class Rating:
 
 def rate(stage: Stage, width_mm: float) -> Rating:
     """The rating of a stage of plain numbers at a face width."""
+    (found,) = ratings(stage, width_mm)
+    return found
+
+
+def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
+    """The ratings of all gear sets of a stage, each at its face width."""
     sun, ring = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
-    return Rating(sun_mesh=_mesh(stage, stage.sun_mesh, *sun), ring_mesh=_mesh(stage, stage.ring_mesh, *ring))
+
+    def one(place: int) -> Rating:
+        def number(value: Numbers) -> float:
+            return float(np.ravel(value)[place if np.size(value) > 1 else 0])
+
+        return Rating(
+            sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number), ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number)
+        )
+
+    return tuple(map(one, range(np.size(width_mm))))
 
 
-def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad) -> MeshRating:
+def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callable[[Numbers], float]) -> MeshRating:
     loads = acting(at, over)
     return MeshRating(
-        tangential_force_n=float(mesh.force_n),
-        pitch_speed_m_per_s=float(mesh.speed_m_per_s),
-        contact_ratio=float(mesh.contact_ratio),
+        tangential_force_n=number(mesh.force_n),
+        pitch_speed_m_per_s=number(mesh.speed_m_per_s),
+        contact_ratio=number(mesh.contact_ratio),
         application_factor=stage.settings.parts.rating.application_factor,
-        sharing_factor=float(mesh.sharing),
-        dynamic_factor=float(at.dynamic),
-        face_load_factor=float(at.face_flank),
-        root_face_load_factor=float(at.face_root),
-        transverse_load_factor=float(at.transverse_flank),
-        root_transverse_load_factor=float(at.transverse_root),
-        pinion=_gear(stage, mesh, mesh.pinion, loads),
-        wheel=_gear(stage, mesh, mesh.wheel, loads),
+        sharing_factor=number(mesh.sharing),
+        dynamic_factor=number(at.dynamic),
+        face_load_factor=number(at.face_flank),
+        root_face_load_factor=number(at.face_root),
+        transverse_load_factor=number(at.transverse_flank),
+        root_transverse_load_factor=number(at.transverse_root),
+        pinion=_gear(stage, mesh, mesh.pinion, loads, number),
+        wheel=_gear(stage, mesh, mesh.wheel, loads, number),
     )
 
 
-def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties) -> GearRating:
+def _gear(
+    stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Callable[[Numbers], float]
+) -> GearRating:
     safeties = safeties_of(member.carries, loads)
     contact = contact_stress_mpa(
         loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
@@ -144,24 +161,21 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties) -> GearRati
     return GearRating(
         gear=member.gear,
         steel=member.steel.name,
-        contact_stress_mpa=_number(contact),
-        contact_limit_mpa=_number(member.flank_limit_mpa),
-        flank_safety=_number(safeties.flank),
-        bending_stress_mpa=_number(bending),
-        bending_limit_mpa=_number(member.root_limit_mpa),
-        root_safety=_number(safeties.root),
-        overload_flank_safety=_number(safeties.overload_flank),
-        overload_root_safety=_number(safeties.overload_root),
-        single_contact_factor=_number(member.single_contact),
-        form_factor=_number(member.form.form_factor),
-        stress_correction=_number(member.form.stress_correction),
-        rim_factor=_number(member.rim_factor),
-        flank_cycles=_number(member.flank_cycles),
-        root_cycles=_number(member.root_cycles),
-        flank_life_factor=_number(member.flank_life),
-        root_life_factor=_number(member.root_life),
+        contact_stress_mpa=number(contact),
+        contact_limit_mpa=number(member.flank_limit_mpa),
+        flank_safety=number(safeties.flank),
+        bending_stress_mpa=number(bending),
+        bending_limit_mpa=number(member.root_limit_mpa),
+        root_safety=number(safeties.root),
+        overload_flank_safety=number(safeties.overload_flank),
+        overload_root_safety=number(safeties.overload_root),
+        single_contact_factor=number(member.single_contact),
+        form_factor=number(member.form.form_factor),
+        stress_correction=number(member.form.stress_correction),
+        rim_factor=number(member.rim_factor),
+        flank_cycles=number(member.flank_cycles),
+        root_cycles=number(member.root_cycles),
+        flank_life_factor=number(member.flank_life),
+        root_life_factor=number(member.root_life),
     )
 
-
-def _number(value: Numbers) -> float:
-    return float(np.asarray(value))

@@ -64,12 +64,12 @@ def mesh_compliance(actuator: Actuator) -> float:
     radius_m, planets = 1e-3 * float(gears.carrier_radius_mm), float(gears.planets)
     tangential_n = actuator.peak_torque_n_m / (2.0 * planets * radius_m)
     load = tangential_n / actuator.face_width_mm
-    outer = pair_stiffness(gears.sun_teeth, gears.planet_teeth, internal=False)
-    inner = pair_stiffness(gears.planet_teeth, gears.ring_teeth, internal=True)
+    outer = pair_stiffness(gears.sun(), gears.planet())
+    inner = pair_stiffness(gears.planet(), gears.ring())
     sun = mesh_stiffness(outer, actuator.contact_ratio_sun, load)
     ring = mesh_stiffness(inner, actuator.contact_ratio_ring, load)
     softness = sum(1e-6 / (stiff * actuator.face_width_mm) for stiff in (sun, ring))  # m/N
-    return float(softness / (4.0 * planets * (radius_m * np.cos(PRESSURE_ANGLE_RAD)) ** 2))
+    return float(softness / (4.0 * planets * (radius_m * np.cos(gears.working_angle_rad)) ** 2))
 
 
 def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> float:
@@ -127,7 +127,8 @@ def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
     """Play of the output between both stops, motor held.
 
     Each tooth is thinned by ``thinning_mm`` on its pitch circle, so that either mesh has twice this as circumferential
-    backlash. The planet's centre moves by the mean of both. Play of bushes and bearings comes on top.
+    backlash there. Along the line of action this is less by cos(alpha), and moves the planet's centre, by the mean of
+    both meshes, by 1 / cos(alpha_w) of it. Play of bushes and bearings comes on top.
     """
-    play_mm = 2.0 * thinning_mm
+    play_mm = 2.0 * thinning_mm * (np.cos(PRESSURE_ANGLE_RAD) / np.cos(gears.working_angle_rad))
     return float(_ARCMIN * play_mm / gears.carrier_radius_mm)

@@ -33,6 +33,7 @@ class Teeth:
         pressure_angle_rad: on the pitch circle.
         phase_rad: angle of the middle of a tooth (external) or of a space (internal).
         inner: an internal gear.
+        shift: profile shift over module, positive outwards.
     """
 
     count: int
@@ -44,6 +45,7 @@ class Teeth:
     pressure_angle_rad: float = np.radians(20.0)
     phase_rad: float = 0.0
     inner: bool = False
+    shift: float = 0.0
 
     @property
     def pitch_radius_mm(self) -> float:
@@ -58,7 +60,8 @@ class Teeth:
     def half_angle(self, radius_mm: float) -> float:
         """Half the angle that a tooth (external) or a space (internal) spans at a radius, at least the base radius."""
         play = self.backlash_mm if self.inner else -self.backlash_mm
-        at_pitch = (0.5 * np.pi * self.module_mm + play) / (2.0 * self.pitch_radius_mm)
+        shifted = 2.0 * self.shift * self.module_mm * np.tan(self.pressure_angle_rad)
+        at_pitch = (0.5 * np.pi * self.module_mm + play + shifted) / (2.0 * self.pitch_radius_mm)
         return float(at_pitch + _inv(self.pressure_angle_rad) - _inv(_angle(self.base_radius_mm, radius_mm)))
 
 

@@ -46,5 +46,6 @@ def _gear(gear: ExternalGear | InternalGear) -> Contour:
             pressure_angle_rad=gear.pressure_angle_rad,
             phase_rad=float(gear.phase_rad),
             inner=isinstance(gear, InternalGear),
+            shift=float(gear.shift),
         )
     )

@@ -2,7 +2,8 @@
 
 Written from the standard's equations and from geometry, with other means than the product: the fillet is traced as the
 envelope of the rack's rounding and the 30 or 60 degree tangent is found by bisection; contact stress is Hertz' at the
-point in question; the pin is a beam solved by stiffness matrices; the sun's twist is summed slice by slice.
+point in question; the pin is a beam solved by stiffness matrices; the sun's twist is summed slice by slice. Profile
+shifts are those at which the teeth fill the working pitch circles, found by bisection.
 Lengths in mm, forces in N, stresses in MPa.
 """
 
@@ -43,11 +44,65 @@ def bisect(function, low, high):
 
 
 @dataclass
+class Gear:
+    """A gear of module 1.
+
+    ``x`` moves its profile outwards, also in a ring; ``cut`` shortens the tips of a sun or a planet.
+    """
+
+    teeth: int
+    x: float = 0.0
+    cut: float = 0.0
+    internal: bool = False
+
+    @property
+    def base(self):
+        return self.teeth / 2.0 * cos(ALPHA)
+
+    @property
+    def tip(self):
+        reach = RACK_ADDENDUM - self.cut
+        return self.teeth / 2.0 + self.x + (-reach if self.internal else reach)
+
+    def thickness(self, radius):
+        """Of a tooth (external gear) or a space (ring) at a radius, along the arc: the involute unwound."""
+        angle = sqrt((radius / self.base) ** 2 - 1.0)
+        at_reference = (pi + 4.0 * self.x * tan(ALPHA)) / self.teeth
+        return radius * (at_reference + 2.0 * (inv(ALPHA) - (angle - atan2(angle, 1.0))))
+
+
+def line_of_action(pinion, wheel, distance):
+    """Distance between the points where the line of action touches both base circles."""
+    both = wheel.base - pinion.base if wheel.internal else wheel.base + pinion.base
+    return sqrt(distance**2 - both**2)
+
+
+def shifted(zs, zp, zr, y, x):
+    """Sun, planet and ring without backlash at a centre distance (zs + zp) / 2 + y, the sun shifted by x."""
+    distance = (zs + zp) / 2.0 + y
+
+    def free_arc(first, second):
+        """Pitch less both teeth, or space less tooth, on the working pitch circles."""
+        sign = -1.0 if second.internal else 1.0
+        radius = distance * first.teeth / (second.teeth + sign * first.teeth)
+        mate = radius * second.teeth / first.teeth
+        if second.internal:
+            return second.thickness(mate) - first.thickness(radius)
+        return 2.0 * pi * radius / first.teeth - first.thickness(radius) - second.thickness(mate)
+
+    xp = bisect(lambda one: free_arc(Gear(zs, x), Gear(zp, one)), -3.0, 3.0)
+    xr = bisect(lambda one: free_arc(Gear(zp, xp), Gear(zr, one, internal=True)), -5.0, 5.0)
+    cut = x + xp - y
+    return Gear(zs, x, cut), Gear(zp, xp, cut), Gear(zr, xr, internal=True), distance
+
+
+@dataclass
 class Fillet:
     """The fillet of one tooth, module 1, with the tooth's centre line as y axis and the gear's centre as origin."""
 
     teeth: int
     internal: bool
+    x: float = 0.0
 
     def point(self, shift):
         """Point and direction of the normal where the rack has moved by ``shift`` along the pitch line.
@@ -57,7 +112,7 @@ class Fillet:
         sign = -1.0 if self.internal else 1.0
         radius = sign * self.teeth / 2.0
         half_rack_tooth = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
-        centre = (half_rack_tooth + shift, -(RACK_DEDENDUM - RACK_FILLET))
+        centre = (half_rack_tooth + shift, sign * self.x - (RACK_DEDENDUM - RACK_FILLET))
         far = hypot(*centre)
         normal = (centre[0] / far, centre[1] / far)
         touch = (centre[0] + RACK_FILLET * normal[0], centre[1] + RACK_FILLET * normal[1])
@@ -87,64 +142,54 @@ class Fillet:
         return abs(x1), abs(y1), (dx * dx + dy * dy) ** 1.5 / abs(dx * ddy - dy * ddx)
 
 
-def tip(teeth, internal):
-    return teeth / 2.0 - RACK_ADDENDUM if internal else teeth / 2.0 + RACK_ADDENDUM
-
-
-def base(teeth):
-    return teeth / 2.0 * cos(ALPHA)
-
-
-def on_path(pinion, wheel, internal):
+def on_path(pinion, wheel, distance):
     """Where contact begins (the wheel's tip) and ends (the pinion's), as the pinion's radii of curvature, module 1."""
-    distance = (wheel - pinion if internal else wheel + pinion) / 2.0
-    wheel_curvature = sqrt(tip(wheel, internal) ** 2 - base(wheel) ** 2)
-    line = distance * sin(ALPHA)
-    begin = wheel_curvature - line if internal else line - wheel_curvature
-    return begin, sqrt(tip(pinion, False) ** 2 - base(pinion) ** 2)
+    wheel_curvature = sqrt(wheel.tip**2 - wheel.base**2)
+    line = line_of_action(pinion, wheel, distance)
+    begin = wheel_curvature - line if wheel.internal else line - wheel_curvature
+    return begin, sqrt(pinion.tip**2 - pinion.base**2)
 
 
-def contact_ratio(pinion, wheel, internal):
-    begin, end = on_path(pinion, wheel, internal)
+def contact_ratio(pinion, wheel, distance):
+    begin, end = on_path(pinion, wheel, distance)
     return (end - begin) / (pi * cos(ALPHA))
 
 
-def form_and_notch(teeth, mate, internal, ring):
-    """Y_F, Y_S and q_s of a gear; ``internal`` says whether the mesh has a ring, ``ring`` whether the gear is it."""
+def form_and_notch(gear, mate, distance):
+    """Y_F, Y_S and q_s of a gear."""
     pitch = pi * cos(ALPHA)
-    if ring:
-        begin, end = on_path(mate, teeth, True)
+    if gear.internal:
+        begin, end = on_path(mate, gear, distance)
         # Single contact nearest to the ring's tip: one base pitch before the pair leaves at the planet's tip. Curvature
         # of the ring is that of the planet plus the distance of the base circles' tangent points.
-        curvature = (teeth - mate) / 2.0 * sin(ALPHA) + end - pitch
-    elif internal:
-        begin, end = on_path(teeth, mate, True)
-        curvature = begin + pitch
+        curvature = line_of_action(mate, gear, distance) + end - pitch
     else:
-        begin, end = on_path(teeth, mate, False)
+        begin, end = on_path(gear, mate, distance)
         curvature = begin + pitch
-    angle = atan2(curvature, base(teeth))
-    half_thickness, height, radius = Fillet(teeth, ring).critical()
-    if ring:
-        force_angle = angle + (pi / (2.0 * teeth) - inv(ALPHA) + inv(angle))
-        arm = height - base(teeth) / cos(force_angle)
+    angle = atan2(curvature, gear.base)
+    half_thickness, height, radius = Fillet(gear.teeth, gear.internal, gear.x).critical()
+    half_tooth = (pi / 2.0 + (-2.0 if gear.internal else 2.0) * gear.x * tan(ALPHA)) / gear.teeth
+    if gear.internal:
+        force_angle = angle + (half_tooth - inv(ALPHA) + inv(angle))
+        arm = height - gear.base / cos(force_angle)
     else:
-        force_angle = angle - (pi / (2.0 * teeth) + inv(ALPHA) - inv(angle))
-        arm = base(teeth) / cos(force_angle) - height
+        force_angle = angle - (half_tooth + inv(ALPHA) - inv(angle))
+        arm = gear.base / cos(force_angle) - height
     chord = 2.0 * half_thickness
     form = 6.0 * arm * cos(force_angle) / (chord**2 * cos(ALPHA))
     slender, notch = chord / arm, chord / (2.0 * radius)
     return form, (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender)), notch
 
 
-def hertz_load(stress, pinion, wheel, module, internal, at_wheel):
+def hertz_load(stress, pinion, wheel, distance, module, at_wheel):
     """Tangential load per face width, with Z_epsilon, at which the contact stress of a gear is ``stress``.
 
     At the inner point of single pair contact of the gear or at the pitch point, whichever has less curvature radius.
     """
-    begin, end = on_path(pinion, wheel, internal)
-    line = (wheel - pinion if internal else wheel + pinion) / 2.0 * sin(ALPHA)
-    places = [pinion / 2.0 * sin(ALPHA)]
+    begin, end = on_path(pinion, wheel, distance)
+    line, internal = line_of_action(pinion, wheel, distance), wheel.internal
+    # The pitch point divides the line of action in proportion to the teeth, from outside in an internal mesh.
+    places = [line * pinion.teeth / (wheel.teeth - pinion.teeth if internal else wheel.teeth + pinion.teeth)]
     if not at_wheel:
         places.append(end - pi * cos(ALPHA))
     elif not internal:
@@ -156,7 +201,7 @@ def hertz_load(stress, pinion, wheel, module, internal, at_wheel):
     radius = module * min(reduced)
     compliance = 2.0 * (1.0 - NU_STEEL**2) / E_STEEL
     normal = stress**2 * pi * compliance * radius
-    epsilon = contact_ratio(pinion, wheel, internal)
+    epsilon = contact_ratio(pinion, wheel, distance)
     return normal * cos(ALPHA) / ((4.0 - epsilon) / 3.0)
 
 
@@ -224,13 +269,16 @@ def mesh_loads(sets, data, width, meshes, over=False):
     """
     found = []
     for mesh in meshes:
-        epsilon = contact_ratio(mesh["z1"], mesh["z2"], mesh["internal"])
+        epsilon = contact_ratio(mesh["pinion"], mesh["wheel"], sets["distance"])
         load = (data.overload_factor if over else data.application_factor) * sets["sharing"] * sets["force"] / width
         pace = sets["speed"] * mesh["z1"] / 100.0 * sqrt(mesh["u"] ** 2 / (1.0 + mesh["u"] ** 2))
         slope = 2.0 if pace <= 0.2 else max(2.071 - 0.357 * pace, 2.071 - 0.357 * 2.9)
         dynamic = 1.0 + (K1[data.accuracy_class] / max(load, 100.0) + 0.0193) * pace * slope
         dynamic = 1.0 if over else dynamic
-        q = 0.04723 + 0.15551 / mesh["z1"] + (0.0 if mesh["internal"] else 0.25791 / mesh["z2"])
+        x1, x2 = mesh["pinion"].x, mesh["wheel"].x
+        q = 0.04723 + (0.15551 - 0.11654 * x1) / mesh["z1"] - 0.00635 * x1 + 0.00529 * x1**2
+        if not mesh["internal"]:
+            q += (0.25791 - 0.24188 * x2) / mesh["z2"] - 0.00193 * x2 + 0.00182 * x2**2
         single = 0.8 / q * (1.0 + 0.5 * (1.2 - 1.25)) * min(load / 100.0, 1.0) ** 0.25
         found.append(
             {"K_V": dynamic, "mean": load * dynamic, "stiff": single * (0.75 * epsilon + 0.25), "eps": epsilon}
@@ -288,10 +336,14 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
         "gap": settings.parts.carrier.planet_clearance_mm,
         "pin": settings.parts.carrier.pin_diameter_mm,
     }
+    sun, planet, ring, sets["distance"] = shifted(zs, zp, zr, float(gears.centre_shift), float(gears.sun_shift))
     meshes = [
-        {"z1": zs, "z2": zp, "u": zp / zs, "internal": False, "steels": (steels.sun, steels.planet)},
-        {"z1": zp, "z2": zr, "u": zr / zp, "internal": True, "steels": (steels.planet, steels.ring)},
+        {"pinion": sun, "wheel": planet, "steels": (steels.sun, steels.planet)},
+        {"pinion": planet, "wheel": ring, "steels": (steels.planet, steels.ring)},
     ]
+    for mesh in meshes:
+        mesh |= {"z1": mesh["pinion"].teeth, "z2": mesh["wheel"].teeth, "internal": mesh["wheel"].internal}
+        mesh["u"] = mesh["z2"] / mesh["z1"]
     loads, overloads = (mesh_loads(sets, data, width, meshes, over) for over in (False, True))
     turns = (ratio - 1.0) / (2.0 * pi)
     passes = {"sun": planets * turns, "planet": turns * zs / zp, "ring": planets * turns * zs / zr}
@@ -302,21 +354,22 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
         nominal = sets["sharing"] * sets["force"] / width
         for which, gear in enumerate(members):
             steel, mate = mesh["steels"][which], mesh["steels"][1 - which]
-            teeth, other = (mesh["z1"], mesh["z2"]) if which == 0 else (mesh["z2"], mesh["z1"])
-            form, notch_stress, notch = form_and_notch(teeth, other, mesh["internal"], gear == "ring")
+            own, other = (mesh["pinion"], mesh["wheel"]) if which == 0 else (mesh["wheel"], mesh["pinion"])
+            form, notch_stress, notch = form_and_notch(own, other, sets["distance"])
             if gear == "ring":
                 rim = ring_wall / module
                 y_b = 1.0 if rim >= 3.5 else 1.15 * log(8.324 / rim)
             elif bores[gear] is None:
                 y_b = 1.0
             else:
-                rim = (module * (teeth / 2.0 - 1.25) - bores[gear] / 2.0) / (2.25 * module)
+                rim = (module * (own.teeth / 2.0 + own.x - 1.25) - bores[gear] / 2.0) / (2.25 * module)
                 y_b = 1.0 if rim >= 1.2 else 1.6 * log(2.242 / rim)
             limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty)
             duty_factor = data.application_factor * load["K_V"] * nominal
             over_factor = data.overload_factor * nominal
             hertz = [
-                hertz_load(limit, mesh["z1"], mesh["z2"], module, mesh["internal"], which == 1) for limit in limits[::2]
+                hertz_load(limit, mesh["pinion"], mesh["wheel"], sets["distance"], module, which == 1)
+                for limit in limits[::2]
             ]
             bend = [limit * module / (form * notch_stress * y_b) for limit in limits[1::2]]
             safety[gear, name] = (

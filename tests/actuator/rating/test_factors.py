@@ -30,6 +30,7 @@ from pareto_monoped.actuator.rating.root import roughness_factor
 from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.materials import GEAR_GRADES, MATERIALS
 
 CASE_HARDENED = GEAR_GRADES["case_hardened_18crnimo7_6"]
@@ -38,7 +39,7 @@ TEMPERED = GEAR_GRADES["through_hardened_42crmo4"]
 
 def test_figures_that_every_handbook_prints():
     """Z_H of 20 degrees on standard centres, and Z_E of steel on steel: ISO 6336-2, Niemann/Winter, Shigley."""
-    assert zone_factor() == pytest.approx(2.495, abs=5e-4)
+    assert zone_factor(np.radians(20.0)) == pytest.approx(2.495, abs=5e-4)
     assert elasticity_factor(MATERIALS.gear_steel) == pytest.approx(189.8, abs=0.05)
 
 
@@ -52,7 +53,7 @@ def test_a_rack_has_the_form_factor_of_a_straight_sided_tooth():
     height = 1.0 - (epsilon - 1.0) * np.pi * np.cos(a) * np.sin(a)
     # It meets the middle of the tooth at the height of its flank point less what the slope takes.
     arm = height + (1.25 - 0.38 * (1 - np.sin(np.pi / 6))) - (np.pi / 4 - height * np.tan(a)) * np.tan(a)
-    found = tooth_form(1e7, epsilon, internal=False)
+    found = tooth_form(ExternalGear(teeth=1e7, module_mm=1.0), epsilon)
     assert found.form_factor == pytest.approx(6 * arm / chord**2, rel=1e-4)
     assert found.notch == pytest.approx(chord / (2 * 0.38), rel=1e-4)
 
@@ -151,9 +152,10 @@ def test_rim_factors_meet_one_where_the_standard_ends_them():
 
 def test_single_contact_factors_by_hand():
     """18/36: M1 = 0.36397 / sqrt(0.28188 x 0.40512) with the contact ratio of 1.61; the wheel's is below 1."""
-    pinion, wheel = single_contact_factors(18, 36, 1.61, internal=False)
+    sun, planet, ring = (kind(teeth=z, module_mm=1.0) for kind, z in ((ExternalGear, 18), (ExternalGear, 36), (InternalGear, 90)))
+    pinion, wheel = single_contact_factors(sun, planet, 1.61, np.radians(20.0))
     assert (pinion, wheel) == (pytest.approx(1.077, abs=1e-3), 1.0)
-    assert single_contact_factors(36, 90, 1.94, internal=True)[1] == 1.0
+    assert single_contact_factors(planet, ring, 1.94, np.radians(20.0))[1] == 1.0
 
 
 def test_twist_of_a_single_mesh_is_the_torsional_share_of_iso_6336_1():

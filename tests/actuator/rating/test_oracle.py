@@ -1,4 +1,4 @@
-"""The rating against the slow one of ``iso6336``, on twenty gear sets, and against measured and published figures."""
+"""The rating against the slow one of ``iso6336``, on forty gear sets, and against measured and published figures."""
 
 from dataclasses import replace
 
@@ -17,17 +17,29 @@ from pareto_monoped.materials import GEAR_GRADES
 from tests.actuator.rating import iso6336
 
 SETTINGS = ActuatorSettings(rules="iso6336")
+FIELDS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets", "centre_shift", "sun_shift")
 PUBLISHED = [(30, 30, 0.5, 5, 7.2), (18, 36, 0.5, 3, 20.7), (22, 65, 0.5, 3, 16.9)]
 
 
-def gears(sun, planet, module, planets):
-    return GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
+def gears(sun, planet, module, planets, centre_shift=0.0, sun_shift=0.0):
+    return GearSet(
+        sun_teeth=sun,
+        planet_teeth=planet,
+        ring_teeth=sun + 2 * planet,
+        module_mm=module,
+        planets=planets,
+        centre_shift=centre_shift,
+        sun_shift=sun_shift,
+    )
 
 
-def twenty():
-    """The three published sets and seventeen others of all modules, planets, families, motors and steels."""
+def forty():
+    """The three published sets and seventeen others of all modules, planets, families, motors and steels.
+
+    Twenty more have profile shifts, of either sign.
+    """
     rng = np.random.default_rng(6336)
-    for k in range(20):
+    for k in range(40):
         if k < len(PUBLISHED):
             sun, planet, module, planets, width = PUBLISHED[k]
         else:
@@ -36,8 +48,10 @@ def twenty():
             module, planets = float(rng.choice([0.5, 0.6, 0.8, 1.0])), int(rng.integers(2, 8))
             width = float(np.round(rng.uniform(6.0, 1.5 * module * sun + 6.0), 1))
         grades = rng.choice(list(GEAR_GRADES), 3) if k >= 8 else ["", "", ""]
+        wider = float(rng.uniform(-0.2, 0.8)) if k >= 20 else 0.0
+        shifts = (wider, 0.5 * wider + float(rng.uniform(-0.1, 0.4))) if k >= 20 else (0.0, 0.0)
         yield (
-            gears(sun, planet, module, planets),
+            gears(sun, planet, module, planets, *shifts),
             width,
             motor_names()[k % 5],
             "ISSPG" if k % 2 else "ESSPG",
@@ -59,12 +73,12 @@ def settings_with(grades, k):
     return replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data, duty=duty))
 
 
-@pytest.mark.parametrize("k", range(20))
-def test_twenty_gear_sets_are_rated_as_by_the_slow_rating(k):
-    one, width, motor_name, family, grades = list(twenty())[k]
+@pytest.mark.parametrize("k", range(40))
+def test_gear_sets_are_rated_as_by_the_slow_rating(k):
+    one, width, motor_name, family, grades = list(forty())[k]
     settings, motor = settings_with(grades, k), load_motor(motor_name)
     data = settings.parts.gears
-    wall = (data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm) - 1.25 * one.module_mm
+    wall = data.ring_rim_modules * one.module_mm
     expected, loads = iso6336.rate(
         one, motor, width, settings, ring_wall=wall, sun_bore=None if family == "ISSPG" else data.sun_bore_mm
     )
@@ -82,14 +96,14 @@ def test_twenty_gear_sets_are_rated_as_by_the_slow_rating(k):
 
 
 def test_many_at_once_are_rated_as_one_by_one():
-    sets = [one for one, *_ in twenty()]
+    sets = [one for one, *_ in forty()]
     many = GearSet(
         **{
             name: np.array([getattr(one, name) for one in sets])
-            for name in ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets")
+            for name in FIELDS
         }
     )
-    motor, width = load_motor("U8"), np.linspace(6.0, 30.0, 20)
+    motor, width = load_motor("U8"), np.linspace(6.0, 30.0, len(sets))
     together = build_stage(many, motor, "ESSPG", SETTINGS).safeties(width)
     for k, one in enumerate(sets):
         alone = build_stage(one, motor, "ESSPG", SETTINGS).safeties(width[k])
@@ -119,16 +133,18 @@ def test_contact_stress_of_the_published_sets_as_measured_apart(sun, planet, pla
         assert stress == pytest.approx(expected, abs=1.0)
 
 
+@pytest.mark.parametrize("shifts", [(0.0, 0.0), (0.0, 0.4), (0.6, 0.5), (-0.1, 0.1)])
 @pytest.mark.parametrize(("sun", "planet"), [(17, 17), (18, 36), (30, 30), (24, 70), (60, 90), (17, 120)])
-def test_form_and_notch_are_those_of_the_traced_fillet(sun, planet):
-    one = gears(sun, planet, 0.5, 3)
+def test_form_and_notch_are_those_of_the_traced_fillet(sun, planet, shifts):
+    one = gears(sun, planet, 0.5, 3, *shifts)
     outer, inner = contact_ratios(one)
-    for teeth, mate, ratio, internal, ring in (
-        (sun, planet, outer, False, False),
-        (planet, sun, outer, False, False),
-        (planet, sun + 2 * planet, inner, True, False),
-        (sun + 2 * planet, planet, inner, True, True),
+    *slow, distance = iso6336.shifted(sun, planet, sun + 2 * planet, *shifts)
+    for own, mate, gear, ratio in (
+        (0, 1, one.sun(), outer),
+        (1, 0, one.planet(), outer),
+        (1, 2, one.planet(), inner),
+        (2, 1, one.ring(), inner),
     ):
-        found = tooth_form(teeth, ratio, internal=ring)
-        expected = iso6336.form_and_notch(teeth, mate, internal, ring)
+        found = tooth_form(gear, ratio)
+        expected = iso6336.form_and_notch(slow[own], slow[mate], distance)
         assert (found.form_factor, found.stress_correction, found.notch) == pytest.approx(expected, rel=1e-4)
