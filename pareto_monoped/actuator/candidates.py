@@ -52,7 +52,7 @@ def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> 
     if not others:
         return everything
     meshing = (gears.sun_teeth + gears.ring_teeth) % gears.planets == 0.0
-    hopeful = gears.where(meshing & (2.0 * gears.ring_pitch_radius_mm <= room_mm))
+    hopeful = gears.where(np.asarray(meshing & (2.0 * gears.ring_pitch_radius_mm <= room_mm)))
     return joined([everything, *(hopeful.shifted(*shifts) for shifts in others)])
 
 

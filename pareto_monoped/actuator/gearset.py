@@ -210,22 +210,27 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
         pi mu (1/z1 + 1/z2) (1 - e1 - e2 + e1^2 + e2^2),
 
     for an internal mesh with 1/z1 - 1/z2. The contact ratios e1 and e2 are the parts before and after the pitch point
-    (Ohlendorf; Niemann/Winter, Maschinenelemente II). With eta0, the product over both meshes, and the ratio i, the
-    efficiency is (1 + (i - 1) eta0) / i (Mueller, Die Umlaufgetriebe): only the rolling power suffers losses.
+    (Ohlendorf; Niemann/Winter, Maschinenelemente II). This is the mean of |s| over a base pitch, with all pairs in
+    contact sharing the load evenly and s their distance from the pitch point. The same mean for any e1 and e2, which
+    may exceed 1 or be negative, has e |e| / 2 + (1 - e) |1 - e| / 2 in place of each 1/2 - e + e^2. With eta0, the
+    product over both meshes, and the ratio i, the efficiency is (1 + (i - 1) eta0) / i (Mueller, Die Umlaufgetriebe):
+    only the rolling power suffers losses.
     """
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
 
     def share(gear: ExternalGear | InternalGear, working_angle_rad: Numbers) -> Numbers:
         rolling = gear.pitch_radius_mm * (np.cos(PRESSURE_ANGLE_RAD) / np.cos(working_angle_rad))
-        return np.abs(_tip_reach_mm(gear) - rolling * np.sin(working_angle_rad)) / pitch
+        beyond = (_tip_reach_mm(gear) - rolling * np.sin(working_angle_rad)) / pitch
+        return -beyond if isinstance(gear, InternalGear) else beyond
+
+    def sliding(part: Numbers) -> Numbers:
+        return 0.5 * (part * np.abs(part) + (1.0 - part) * np.abs(1.0 - part))
 
     def loss(first: Numbers, second: Numbers, curvature: Numbers) -> Numbers:
-        return np.pi * friction * curvature * (1.0 - first - second + np.square(first) + np.square(second))
+        return np.pi * friction * curvature * (sliding(first) + sliding(second))
 
     planet, angle, ring_angle = gears.planet(), gears.working_angle_rad, gears.ring_working_angle_rad
-    outer = loss(
-        share(gears.sun(), angle), share(planet, angle), 1.0 / gears.sun_teeth + 1.0 / gears.planet_teeth
-    )
+    outer = loss(share(gears.sun(), angle), share(planet, angle), 1.0 / gears.sun_teeth + 1.0 / gears.planet_teeth)
     inner = loss(
         share(planet, ring_angle),
         share(gears.ring(), ring_angle),

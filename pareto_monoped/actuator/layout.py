@@ -97,6 +97,10 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
     assert body is not None
     r_motor = 0.5 * body.outer_diameter_mm
     stator_in, stator_out = motor.stator_diameters_mm
+    r_ring = ring_radius_mm(gears, family, settings)
+    if family == "ESSPG" and settings.rules == "iso6336":
+        # The main bearing passes through the ring's shoulder.
+        r_ring = np.maximum(r_ring, 0.5 * bearing.outer_diameter_mm + casing.ring_lip_mm)
     z_bearing_front = -(carrier.flange_thickness_mm + RING_GROOVE_WALL_MM + RETAINING_RING_MM)
     z_bearing_back = z_bearing_front - bearing.width_mm
     z_shoulder = z_bearing_back - carrier.shoulder_thickness_mm
@@ -121,7 +125,7 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         r_seat=0.5 * bearing.outer_diameter_mm,
         r_open=0.5 * bearing.outer_diameter_mm - casing.lip_mm,
         r_pins=r_pins,
-        r_ring=ring_radius_mm(gears, family, settings),
+        r_ring=r_ring,
         r_carrier_in=r_pins - pin_reach,
         r_secondary_in=np.maximum(r_pins - pin_reach, gears.sun().tip_radius_mm + carrier.sun_clearance_mm),
         r_secondary_out=r_pins + pin_reach,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.design import RULE_SETS, RuleSet
-from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
 from pareto_monoped.geometry.shapes import Numbers
 
 TOLERANCE_MM = 1e-9
@@ -79,6 +80,12 @@ def _tip_thickness(sets: CandidateSets) -> Numbers:
     backlash, gears = sets.settings.parts.gears.backlash_mm, sets.gears
     thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
     return thinnest - sets.settings.parts.rating.tip_thickness_modules * gears.module_mm
+
+
+def _root_fillet(sets: CandidateSets) -> Numbers:
+    backlash, gears = sets.settings.parts.gears.backlash_mm, sets.gears
+    shapes = (gears.sun(backlash), gears.planet(backlash), gears.ring(backlash))
+    return reduce(np.minimum, (shape.root_radius_mm * fillet_room_rad(shape) for shape in shapes))
 
 
 def _sun_rim(sets: CandidateSets) -> Numbers:
@@ -186,6 +193,13 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
             radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_root_radius_mm
         ),
         cures=("a wider motor", "a smaller module"),
+    ),
+    "root_fillet": Constraint(
+        says="fillets of 0.38 modules fit between the flanks of every gear",
+        source="root radius of the basic rack, ISO 53",
+        margin=_root_fillet,
+        cures=("less profile shift", "more teeth"),
+        rule_sets=("iso6336",),
     ),
     "sun_rim": Constraint(
         says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG, whose sun is on a shaft)",

@@ -21,6 +21,7 @@ ConstraintName = Literal[
     "no_interference",
     "teeth_min",
     "tip_thickness",
+    "root_fillet",
     "gearbox_diameter",
     "ring_root",
     "sun_rim",

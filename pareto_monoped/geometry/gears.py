@@ -113,6 +113,26 @@ def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers, outwards
     return 2.0 * gear.teeth * radial * straight(0.5 * np.pi + lean) / straight(0.5 * np.pi)
 
 
+def fillet_room_rad(gear: "ExternalGear | InternalGear") -> Numbers:
+    """Half the angle that is left of the root circle between two fillets; negative where they do not fit."""
+    rho, base = FILLET * _array(gear.module_mm), _array(gear.base_radius_mm)
+    inner = isinstance(gear, InternalGear)
+    centre = gear.root_radius_mm - rho if inner else gear.root_radius_mm + rho
+    psi = half_angle(
+        radius_mm=centre,
+        teeth=gear.teeth,
+        module_mm=gear.module_mm,
+        thinning_mm=-_array(gear.backlash_mm) if inner else gear.backlash_mm,
+        shift=gear.shift,
+        pressure_angle_rad=gear.pressure_angle_rad,
+    )
+    if inner:
+        return psi - rho / base
+    # A fillet that ends below the base circle touches a radial line there.
+    on_involute = np.square(centre) >= np.square(base) + np.square(rho)
+    return np.pi / _array(gear.teeth) - psi - np.where(on_involute, rho / base, np.arcsin(rho / centre))
+
+
 def _round_moments(area: Numbers, polar: Numbers) -> Moments:
     return Moments(area, 0.0, 0.0, 0.5 * polar, 0.5 * polar, 0.0)
 

@@ -3,11 +3,12 @@
 The rules are written out again from their sources; only the parts' masses are the package's, one actuator at a time.
 """
 
-from math import acos, atan, cos, pi, radians, sin, sqrt
+from math import acos, atan, cos, hypot, pi, radians, sin, sqrt
 
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.bearings import catalogue
 from pareto_monoped.actuator.gearset import GearSet
+from tests.actuator.rating import iso6336
 
 ALPHA = radians(20.0)
 # Shigley, table 14-2.
@@ -86,6 +87,43 @@ def allowed(motor, family, sun, planet, ring, module, planets, width):
         rules.append(bearing[1] / 2 <= module * ring / 2 + 3.0 - 1.0 + 1e-9)
     rules.append(wall >= 3.5 * module - 1e-9)
     return all(rules)
+
+
+def allowed_by_iso6336(motor, family, gears, width):
+    """The same for a gear set with or without profile shift under the rules ``iso6336``, but for strength."""
+    body = motor.frameless if family == "ISSPG" else motor.framed
+    room = (body.stator_inner_diameter_mm if family == "ISSPG" else body.outer_diameter_mm) - 10.0
+    module, planets = gears.module_mm, gears.planets
+    teeth = gears.sun_teeth, gears.planet_teeth, gears.ring_teeth
+    sun, planet, ring, distance = iso6336.shifted(*teeth, float(gears.centre_shift), float(gears.sun_shift))
+    worth = 2.0 / sin(ALPHA) ** 2
+    rules = [
+        sum(teeth[::2]) % planets == 0,
+        4 * module * (distance * sin(pi / planets) - (planet.tip - 1.0)) >= 5.0 - 1e-9,
+        module * ring.teeth <= room + 1e-9,
+        module * (ring.teeth + 2 * ring.x + 2.5) <= room + 2e-9,
+        module * (planet.teeth / 2 + planet.x - 1.25) - 4.0 >= 1.2 * 2.25 * module - 1e-9,
+        iso6336.contact_ratio(sun, planet, distance) >= 1.2,
+        iso6336.contact_ratio(planet, ring, distance) >= 1.2,
+        ring.tip >= hypot(ring.base, iso6336.line_of_action(planet, ring, distance)) - 1e-9,
+    ]
+    for gear in (sun, planet):
+        thinned = gear.thickness(gear.tip) * module - 0.04 * gear.tip / (gear.teeth / 2)
+        rules += [gear.teeth + worth * gear.x >= 18 - 1e-9, thinned >= 0.4 * module - 1e-9]
+    if family == "ESSPG":
+        rules.append(module * (sun.teeth / 2 + sun.x - 1.25) - 3.0 >= 1.2 * 2.25 * module - 1e-9)
+    else:
+        rules.append(width <= body.stator_height_mm + 1e-9)
+    bearing = main_bearing(max(2 * module * distance + 10.0, 35.0))
+    if bearing is None or not all(rules):
+        return False
+    if family == "ISSPG" and bearing[1] / 2 + 2.0 + 7.0 > body.outer_diameter_mm / 2 + 2.3 + 1e-9:
+        return False
+    # What is left of the ring's space at the fillets' centres, or of the gap between teeth.
+    spaces = 0.38 * module
+    centre = ring.teeth / 2 + ring.x + 1.25 - 0.38
+    room_left = ring.thickness(centre) * module / 2 + 0.04 * centre / ring.teeth - spaces * centre / ring.base
+    return room_left >= -1e-9
 
 
 def best_in(motor, family, tenths, settings):

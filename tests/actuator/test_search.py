@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
+from pareto_monoped.actuator.candidates import candidates, interval_tenths
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import FAMILIES, layout
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.rules import CandidateSets, violations
-from pareto_monoped.actuator.candidates import candidates, interval_tenths
 from pareto_monoped.actuator.search import build_map
 from pareto_monoped.actuator.settings import ISO_54_SERIES_1_MM, ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm

@@ -150,9 +150,7 @@ def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callab
     )
 
 
-def _gear(
-    stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Callable[[Numbers], float]
-) -> GearRating:
+def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Callable[[Numbers], float]) -> GearRating:
     safeties = safeties_of(member.carries, loads)
     contact = contact_stress_mpa(
         loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
@@ -178,4 +176,3 @@ def _gear(
         flank_life_factor=number(member.flank_life),
         root_life_factor=number(member.root_life),
     )
-

@@ -152,7 +152,9 @@ def test_rim_factors_meet_one_where_the_standard_ends_them():
 
 def test_single_contact_factors_by_hand():
     """18/36: M1 = 0.36397 / sqrt(0.28188 x 0.40512) with the contact ratio of 1.61; the wheel's is below 1."""
-    sun, planet, ring = (kind(teeth=z, module_mm=1.0) for kind, z in ((ExternalGear, 18), (ExternalGear, 36), (InternalGear, 90)))
+    sun, planet, ring = (
+        kind(teeth=z, module_mm=1.0) for kind, z in ((ExternalGear, 18), (ExternalGear, 36), (InternalGear, 90))
+    )
     pinion, wheel = single_contact_factors(sun, planet, 1.61, np.radians(20.0))
     assert (pinion, wheel) == (pytest.approx(1.077, abs=1e-3), 1.0)
     assert single_contact_factors(planet, ring, 1.94, np.radians(20.0))[1] == 1.0

@@ -97,12 +97,7 @@ def test_gear_sets_are_rated_as_by_the_slow_rating(k):
 
 def test_many_at_once_are_rated_as_one_by_one():
     sets = [one for one, *_ in forty()]
-    many = GearSet(
-        **{
-            name: np.array([getattr(one, name) for one in sets])
-            for name in FIELDS
-        }
-    )
+    many = GearSet(**{name: np.array([getattr(one, name) for one in sets]) for name in FIELDS})
     motor, width = load_motor("U8"), np.linspace(6.0, 30.0, len(sets))
     together = build_stage(many, motor, "ESSPG", SETTINGS).safeties(width)
     for k, one in enumerate(sets):
