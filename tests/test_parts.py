@@ -78,3 +78,14 @@ def test_an_actuator_does_not_depend_on_the_names_of_its_parts(motor):
             reflected_inertia_kg_m2(renamed.parts, actuator.gears, actuator.motor) == actuator.reflected_inertia_kg_m2
         )
         assert [p.name for p in renamed.parts_bolted_at_back] == [names[p.name] for p in actuator.parts_bolted_at_back]
+
+
+@pytest.mark.parametrize("name", ["VT8020", "MN8014"])
+def test_volume_alone_is_the_first_of_the_integrals(name):
+    """Searches take the volume alone; inertias and the CAD take all integrals."""
+    found = map_for(name)
+    actuators = [entry.actuator for entry in found.entries if entry.actuator is not None][::12]
+    solids = [s for a in actuators for part in a.parts for s in (*part.prisms, *part.balls, *part.bevels)]
+    assert len(solids) > 100
+    for solid in solids:
+        assert solid.volume_mm3() == pytest.approx(solid.integrals()[0], rel=1e-12, abs=1e-12)

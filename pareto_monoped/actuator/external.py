@@ -12,7 +12,6 @@ from pareto_monoped.actuator.features import (
     gear_grade,
     gear_note,
     motor_holes,
-    note_with,
     slab,
     tube,
 )
@@ -76,6 +75,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     through = _rotor_holes(output, _ROTOR_HOLE_MM)
     r_coupling = 0.5 * (output.pitch_circle_mm + output.diameter_mm) + data.coupling.rim_mm - _RIM_LESS_MM
     spline = data.spline.external
+    teeth = at.gears.sun(data.gears.backlash_mm)
     return (
         Part(
             name="sun",
@@ -85,7 +85,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             prisms=(
                 *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
                 *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
-                *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
+                *slab(at.z_gear_back, at.z_gear_front, teeth),
                 *slab(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
                 *slab(shell.z_motor, shell.z_coupling, spline),
             ),
@@ -93,12 +93,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
-            note=note_with(
-                f"one piece with its shaft, {spline_note(spline)}; " + gear_note(settings),
-                at.gears.sun_teeth,
-                at.gears.module_mm,
-                data.gears.backlash_mm,
-            ),
+            note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(

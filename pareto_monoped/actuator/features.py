@@ -7,13 +7,13 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.materials import GearGrade, Material
 
-GEAR_NOTE = "{} teeth, module {} mm, 20 degrees, tooth thinned by {} mm"
 SPIGOT_MM = 1.5
 """Height of the backplate's step that centres it in the casing; our own choice."""
 RING_GROOVE_MM = 1.0
@@ -36,9 +36,16 @@ def gear_accuracy(settings: ActuatorSettings) -> int | None:
     return None if settings.rules == "paper" else settings.parts.rating.accuracy_class
 
 
-def gear_note(settings: ActuatorSettings) -> str:
-    """Form of a gear's note. Wire-cutting after hardening would take a hard case off."""
-    return GEAR_NOTE + ("; hardened steel, wire-cut" if settings.rules == "paper" else "")
+def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> str:
+    """A gear's note; '' for arrays. Wire-cutting after hardening would take a hard case off."""
+    if np.ndim(gear.teeth):
+        return ""
+    shift = f"profile shift {gear.shift * gear.module_mm:+.3f} mm (outwards), " if gear.shift else ""
+    making = "; hardened steel, wire-cut" if settings.rules == "paper" else ""
+    return (
+        f"{gear.teeth:g} teeth, module {gear.module_mm:g} mm, 20 degrees, {shift}"
+        f"tooth thinned by {gear.backlash_mm:g} mm{making}"
+    )
 
 
 def note_with(text: str, *numbers: Numbers) -> str:

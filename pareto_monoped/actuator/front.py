@@ -81,12 +81,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.PLANET,
             grade=gear_grade(settings, settings.gear_steels.planet),
             accuracy_class=gear_accuracy(settings),
-            note=note_with(
-                gear_note(settings),
-                gears.planet_teeth,
-                gears.module_mm,
-                data.gears.backlash_mm,
-            ),
+            note=gear_note(gears.planet(data.gears.backlash_mm), settings),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -147,12 +142,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.HOUSING,
             grade=gear_grade(settings, settings.gear_steels.ring),
             accuracy_class=gear_accuracy(settings),
-            note=note_with(
-                gear_note(settings),
-                gears.ring_teeth,
-                gears.module_mm,
-                data.gears.backlash_mm,
-            ),
+            note=gear_note(gears.ring(data.gears.backlash_mm), settings),
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
         ),
     )

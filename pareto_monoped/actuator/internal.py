@@ -81,6 +81,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
     coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
     z_hub = shell.z_coupling - coupling.thickness_mm
     dowels = _bell_dowel_holes(settings)
+    teeth = at.gears.sun(data.gears.backlash_mm)
     return (
         Part(
             name="sun",
@@ -90,7 +91,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             prisms=(
                 *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
                 *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
-                *slab(at.z_gear_back, at.z_gear_front, at.gears.sun(data.gears.backlash_mm)),
+                *slab(at.z_gear_back, at.z_gear_front, teeth),
                 *slab(shell.z_coupling, at.z_gear_back, shaft),
                 *slab(z_hub, shell.z_coupling, spline),
                 *shaft_end(shell.z_plate, z_hub, shaft),
@@ -99,12 +100,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
-            note=note_with(
-                f"one piece with its shaft, {spline_note(spline)}; " + gear_note(settings),
-                at.gears.sun_teeth,
-                at.gears.module_mm,
-                data.gears.backlash_mm,
-            ),
+            note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
-from pareto_monoped.actuator.layout import Family, Layout, radial_room_mm
+from pareto_monoped.actuator.layout import END_BEARING_BORE_MM, Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
@@ -89,6 +89,8 @@ def _root_fillet(sets: CandidateSets) -> Numbers:
 
 
 def _sun_rim(sets: CandidateSets) -> Numbers:
+    if sets.settings.rules == "iso6336":
+        return sets.gears.sun().root_radius_mm - 0.5 * END_BEARING_BORE_MM
     if sets.family == "ISSPG":
         return np.zeros(np.shape(sets.gears.sun_teeth))
     bore = 0.5 * sets.settings.parts.gears.sun_bore_mm
@@ -202,11 +204,11 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         rule_sets=("iso6336",),
     ),
     "sun_rim": Constraint(
-        says="wall between the sun's bore and its roots >= 1.2 tooth depths (ESSPG, whose sun is on a shaft)",
-        source="AGMA 2001-D04, rim thickness factor 1",
+        says="the sun's roots lie outside its journal of 6 mm (iso6336); wall between the sun's bore of 6 mm and its roots "
+        ">= 1.2 tooth depths (paper, ESSPG)",
+        source="assembly; AGMA 2001-D04, rim thickness factor 1",
         margin=_sun_rim,
-        cures=("a smaller bore of the sun", "a larger module"),
-        rule_sets=("paper",),
+        cures=("a smaller journal of the sun", "a larger module"),
     ),
     "planet_rim": Constraint(
         says="wall between the planet's bore and its roots >= 1.2 tooth depths",

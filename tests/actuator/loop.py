@@ -97,6 +97,8 @@ def allowed_by_iso6336(motor, family, gears, width):
     teeth = gears.sun_teeth, gears.planet_teeth, gears.ring_teeth
     sun, planet, ring, distance = iso6336.shifted(*teeth, float(gears.centre_shift), float(gears.sun_shift))
     worth = 2.0 / sin(ALPHA) ** 2
+    if ring.tip <= ring.base:
+        return False
     rules = [
         sum(teeth[::2]) % planets == 0,
         4 * module * (distance * sin(pi / planets) - (planet.tip - 1.0)) >= 5.0 - 1e-9,
@@ -110,9 +112,8 @@ def allowed_by_iso6336(motor, family, gears, width):
     for gear in (sun, planet):
         thinned = gear.thickness(gear.tip) * module - 0.04 * gear.tip / (gear.teeth / 2)
         rules += [gear.teeth + worth * gear.x >= 18 - 1e-9, thinned >= 0.4 * module - 1e-9]
-    if family == "ESSPG":
-        rules.append(module * (sun.teeth / 2 + sun.x - 1.25) - 3.0 >= 1.2 * 2.25 * module - 1e-9)
-    else:
+    rules.append(module * (sun.teeth / 2 + sun.x - 1.25) >= 3.0 - 1e-9)
+    if family == "ISSPG":
         rules.append(width <= body.stator_height_mm + 1e-9)
     bearing = main_bearing(max(2 * module * distance + 10.0, 35.0))
     if bearing is None or not all(rules):

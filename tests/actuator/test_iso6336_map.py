@@ -60,15 +60,14 @@ def test_every_winner_keeps_every_limit(name):
         assert actuator.mass_kg == pytest.approx(sum(actuator.mass_breakdown_kg().values()))
 
 
-def least_width(gears, motor, family):
+def least_width(gears, motor):
     """By the slow rating, from the least width allowed upwards; None if no width up to the limits is enough."""
     data = SETTINGS.parts.gears
-    bore = None if family == "ISSPG" else data.sun_bore_mm
     least = (DATA.flank_safety, DATA.root_safety, DATA.overload_flank_safety, DATA.overload_root_safety)
     high = min(1.5 * gears.module_mm * gears.sun_teeth, 40.0 * gears.module_mm)
     for steps in range(60, int(np.floor(10.0 * high + 1e-6)) + 1):
         safety, _ = iso6336.rate(
-            gears, motor, steps / 10.0, SETTINGS, ring_wall=data.ring_rim_modules * gears.module_mm, sun_bore=bore
+            gears, motor, steps / 10.0, SETTINGS, ring_wall=data.ring_rim_modules * gears.module_mm, sun_bore=None
         )
         if all(got >= wanted for one in safety.values() for got, wanted in zip(one, least, strict=True)):
             return max(steps / 10.0, np.ceil(60.0 * gears.module_mm - 1e-9) / 10.0)
@@ -105,7 +104,7 @@ def test_search_finds_what_a_slow_loop_with_the_slow_rating_finds(vt8020, family
         # No face is narrower than this one, and none that is wider is lighter.
         if best and build_actuator(vt8020, family, gears, SETTINGS, max(6.0, 6.0 * gears.module_mm)).mass_kg > best[0]:
             continue
-        width = least_width(gears, vt8020, family)
+        width = least_width(gears, vt8020)
         if width is None or not allowed_by_iso6336(vt8020, family, gears, width):
             continue
         mass = build_actuator(vt8020, family, gears, SETTINGS).mass_kg

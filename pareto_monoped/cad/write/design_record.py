@@ -5,6 +5,7 @@ from typing import Any
 
 from pareto_monoped import __version__
 from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import motor_values
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.cad.assembly import Pose
@@ -72,6 +73,18 @@ def design_record(
     }
 
 
+def _shifts(gears: GearSet) -> dict[str, float]:
+    """Profile shifts over the module, positive outwards; nothing where there are none, as in earlier records."""
+    if not gears.is_shifted:
+        return {}
+    return {
+        "sun_shift": float(gears.sun_shift),
+        "planet_shift": float(gears.planet_shift),
+        "ring_shift": float(gears.ring_shift),
+        "centre_distance_mm": float(gears.carrier_radius_mm),
+    }
+
+
 def _actuator(actuator: Actuator) -> dict[str, Any]:
     """Gears and figures of an actuator, with the rating where its gears are rated."""
     rating = actuator.rating
@@ -82,6 +95,7 @@ def _actuator(actuator: Actuator) -> dict[str, Any]:
         "ring_teeth": int(actuator.gears.ring_teeth),
         "module_mm": float(actuator.gears.module_mm),
         "planets": int(actuator.gears.planets),
+        **_shifts(actuator.gears),
         "face_width_mm": actuator.face_width_mm,
         "ratio": actuator.ratio,
         "mass_kg": actuator.mass_kg,

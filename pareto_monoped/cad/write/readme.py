@@ -57,9 +57,12 @@ def _design(record: Mapping[str, Any]) -> Iterator[str]:
 def _actuators(record: Mapping[str, Any]) -> Iterator[str]:
     for joint, actuator in record["actuators"].items():
         teeth = f"{actuator['sun_teeth']}/{actuator['planet_teeth']}/{actuator['ring_teeth']}"
+        shifts = [actuator[f"{gear}_shift"] for gear in ("sun", "planet", "ring") if f"{gear}_shift" in actuator]
+        shifted = f"profile shifts {'/'.join(f'{shift:+.3f}' for shift in shifts)} modules, " if shifts else ""
         yield (
             f"- {joint}: {actuator['family']}, {actuator['ratio']:.3f} to 1, teeth {teeth}, module "
-            f"{actuator['module_mm']:g} mm, {actuator['planets']} planets, {actuator['peak_torque_n_m']:.1f} N m peak"
+            f"{actuator['module_mm']:g} mm, {shifted}{actuator['planets']} planets, "
+            f"{actuator['peak_torque_n_m']:.1f} N m peak"
         )
         if "stand_in" in actuator:
             yield f"  ({actuator['stand_in']})"

@@ -79,9 +79,7 @@ def test_gear_sets_are_rated_as_by_the_slow_rating(k):
     settings, motor = settings_with(grades, k), load_motor(motor_name)
     data = settings.parts.gears
     wall = data.ring_rim_modules * one.module_mm
-    expected, loads = iso6336.rate(
-        one, motor, width, settings, ring_wall=wall, sun_bore=None if family == "ISSPG" else data.sun_bore_mm
-    )
+    expected, loads = iso6336.rate(one, motor, width, settings, ring_wall=wall, sun_bore=None)
     found = rate(build_stage(one, motor, family, settings), width)
     for mesh, name, factors in ((found.sun_mesh, "sun mesh", loads[0]), (found.ring_mesh, "ring mesh", loads[1])):
         got = (mesh.dynamic_factor, mesh.face_load_factor, mesh.root_face_load_factor)
