@@ -204,8 +204,8 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         rule_sets=("iso6336",),
     ),
     "sun_rim": Constraint(
-        says="the sun's roots lie outside its journal of 6 mm (iso6336); wall between the sun's bore of 6 mm and its roots "
-        ">= 1.2 tooth depths (paper, ESSPG)",
+        says="the sun's roots lie outside its journal of 6 mm (iso6336), or stay 1.2 tooth depths off its bore of 6 mm "
+        "(paper, ESSPG)",
         source="assembly; AGMA 2001-D04, rim thickness factor 1",
         margin=_sun_rim,
         cures=("a smaller journal of the sun", "a larger module"),
