@@ -139,7 +139,7 @@ MEASURES: tuple[Measure, ...] = (
         "drive_loss_j",
         "J",
         "minimise",
-        "energy lost in gear meshes and chain",
+        "energy lost in gearboxes and chain",
         "lost in gears and chain",
         2,
         reference=10.0,

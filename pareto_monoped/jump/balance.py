@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
+from pareto_monoped.jump.model import gear_efficiency
 from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.robot.population import RobotArrays
 
@@ -21,7 +22,7 @@ class EnergyBalance:
 
     Attributes:
         motor_work_j: of both motors, less what they absorbed.
-        mesh_loss_j, chain_loss_j: lost in the gear meshes and in the chain.
+        mesh_loss_j, chain_loss_j: lost in the gearboxes and in the chain.
         bodies_kinetic_j: change of the kinetic energy of the bodies, each moving as one piece.
         rotors_kinetic_j: change of what the turning parts have beyond that.
         potential_j: change of the potential energy.
@@ -147,8 +148,8 @@ def _integration_loss_j(moment: Moment, calibration: Calibration, moved: Floats)
 
 
 def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
-    """The share of each drive's loss that its gear meshes have; the chain, behind them, has the rest. Shape (2,)."""
-    mesh = robots.efficiency[0] if calibration.drive.mesh_losses else np.ones(2)
+    """The share of each drive's loss that its gearbox has; the chain, behind it, has the rest. Shape (2,)."""
+    mesh = gear_efficiency(robots, calibration.drive)[0]
     chain = np.array([1.0, calibration.drive.chain_efficiency])
     lost = 1.0 - mesh * chain
     return np.divide(1.0 - mesh, lost, out=np.zeros(2), where=lost > 0.0)

@@ -99,7 +99,8 @@ class Drive:
     """What lies between motor and joint.
 
     Attributes:
-        mesh_losses: whether the efficiency of the gear meshes is applied.
+        mesh_losses: whether the gearbox has losses.
+        efficiency: which losses: those of the ``mesh`` alone, or the ``total`` of meshes, planets' bushes and bearings.
         chain_efficiency: of the chain that drives the knee.
         loss_speed_rad_per_s: joint speed over which the load-dependent losses change sign; smooths the change.
         voltage_limit: whether the torque limit falls along the voltage-speed line to zero at the no-load speed.
@@ -119,6 +120,7 @@ class Drive:
     knee_torque_scale: Positive = 1.0
     regeneration_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
     standby_power_w: NotNegative = 0.0
+    efficiency: Literal["mesh", "total"] = "mesh"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -323,7 +325,7 @@ class Calibration:
 
 _LATER = {
     "joints": ("rotors", "stops"),
-    "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w"),
+    "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency"),
     "controller": ("weight", "flight"),
     "simulation": ("control_period_s", "delay_s", "positions_read"),
 }

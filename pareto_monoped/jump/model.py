@@ -122,6 +122,13 @@ def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
 
 
+def gear_efficiency(robots: RobotArrays, drive: Drive) -> Floats:
+    """Efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
+    if not drive.mesh_losses:
+        return np.ones_like(robots.efficiency)
+    return (robots.efficiency_total if drive.efficiency == "total" else robots.efficiency).copy()
+
+
 def torque_limit(robots: RobotArrays, drive: Drive) -> Floats:
     """Peak torque of hip and knee, N m at the joint, shape (n, 2)."""
     return drive.peak_torque_scale * robots.peak_torque_n_m * [1.0, drive.knee_torque_scale]

@@ -190,7 +190,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     current = limit / volts_per_speed
     corner = robots.no_load_speed_rad_per_s - robots.winding_resistance_ohm * current / volts_per_speed
     records["corner_speed_rad_per_s"] = corner
-    efficiency = robots.efficiency.copy() if drive.mesh_losses else np.ones_like(robots.efficiency)
+    efficiency = model.gear_efficiency(robots, drive)
     efficiency[:, controller.KNEE] *= drive.chain_efficiency
     records["loss"] = 1.0 - efficiency
     records["heat_w_per_n2_m2"] = robots.winding_resistance_ohm / volts_per_speed**2

@@ -76,7 +76,7 @@ class RobotArrays:
         sprocket_radius_m: pitch radius of the chain's sprockets, shape (n,).
         peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2).
         no_load_speed_rad_per_s: at the joint, shape (n, 2).
-        efficiency: of the gear mesh, shape (n, 2).
+        efficiency, efficiency_total: of the gear meshes, and of the whole gearbox, shape (n, 2).
         torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
             resistance is line to line; shape (n, 2).
         reason: why the robot cannot be built, empty if it can, n strings.
@@ -101,6 +101,7 @@ class RobotArrays:
     continuous_torque_n_m: NDArray[np.float64]
     no_load_speed_rad_per_s: NDArray[np.float64]
     efficiency: NDArray[np.float64]
+    efficiency_total: NDArray[np.float64]
     torque_constant_n_m_per_a: NDArray[np.float64]
     winding_resistance_ohm: NDArray[np.float64]
     reason: tuple[str, ...]
@@ -151,6 +152,7 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         continuous_torque_n_m=table.continuous_torque_n_m[rows],
         no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
         efficiency=table.efficiency[rows],
+        efficiency_total=table.efficiency_total[rows],
         torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
         winding_resistance_ohm=np.full(rows.shape, motor.terminal_resistance_ohm),
         reason=reason,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.tabulated import Tabulated, tabulate
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
@@ -29,6 +30,7 @@ class ActuatorTable:
         armature_kg_m2: reflected inertia at the joint.
         coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``.
         peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``.
+        efficiency_total: of the whole gearbox, see ``actuator.service.losses.Losses``.
     """
 
     row: NDArray[np.intp]
@@ -42,6 +44,7 @@ class ActuatorTable:
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
     efficiency: Floats
+    efficiency_total: Floats
 
 
 @lru_cache(maxsize=16)
@@ -66,6 +69,7 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
         no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
         efficiency=np.array([a.efficiency for a in actuators]),
+        efficiency_total=np.array([service_sheet(a, actuator_map.settings).losses.efficiency_total for a in actuators]),
     )
 
 

@@ -184,7 +184,7 @@ def more(*keys):
         (put(17, "actuators", "knee", "sun_teeth"), "actuators.knee.sun_teeth"),
         (drop("actuators", "knee", "family"), "actuators.knee.family"),
         (put("U12", "motor"), "motor"),
-        (put("reference-2", "calibration"), "calibration"),
+        (put("reference-3", "calibration"), "calibration"),
         (drop("jumps"), "jumps"),
         (put(1, "invented"), "invented"),
     ],

@@ -155,8 +155,9 @@ def jump(
 def motors_of(robots: RobotArrays, i: int, calibration: Calibration) -> list[Motor]:
     """The drives of robot ``i``, from its motor's data sheet."""
     drive, motors = calibration.drive, []
+    gears = robots.efficiency_total if drive.efficiency == "total" else robots.efficiency
     for j, transmission in enumerate((1.0, drive.chain_efficiency)):
-        motor = Motor(loss=1.0 - (robots.efficiency[i, j] if drive.mesh_losses else 1.0) * transmission)
+        motor = Motor(loss=1.0 - (gears[i, j] if drive.mesh_losses else 1.0) * transmission)
         if drive.voltage_limit:
             constant = robots.ratio[i, j] * robots.torque_constant_n_m_per_a[i, j]
             peak = drive.peak_torque_scale * robots.peak_torque_n_m[i, j]

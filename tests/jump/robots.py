@@ -57,6 +57,7 @@ def plausible_robots(designs):
         continuous_torque_n_m=3.82 * ratio,
         no_load_speed_rad_per_s=502.65 / ratio,
         efficiency=0.97 * both,
+        efficiency_total=0.94 * both,
         torque_constant_n_m_per_a=0.0955 * both,
         winding_resistance_ohm=0.06 * both,
         reason=("",) * n,

@@ -106,7 +106,7 @@ def test_chain_and_mesh_share_the_loss_by_their_efficiencies():
     assert balance_of(PAPER[0], without_mesh)[1].mesh_loss_j == 0.0
     robots, balance = balance_of(PAPER[0])
     trace = trace_of(robots, columns(PAPER[0][None], CONTROL), REFERENCE)
-    mesh, chain = robots.efficiency[0, 1], drive.chain_efficiency
+    mesh, chain = robots.efficiency_total[0, 1], drive.chain_efficiency
     speed = 0.5 * (trace["knee_rad_per_s"][1:] + trace["knee_rad_per_s"][:-1])
     lost = (trace["knee_motor_torque_n_m"] - trace["knee_torque_n_m"])[:-1] @ speed * trace["time_s"][1]
     assert balance.chain_loss_j == pytest.approx(lost * mesh * (1.0 - chain) / (1.0 - mesh * chain), rel=1e-9)

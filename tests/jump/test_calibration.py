@@ -67,7 +67,7 @@ def _text(name="reference"):
 
 def test_a_users_file_is_read_by_its_path(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 2", "version = 7"))
+    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 3", "version = 7"))
     assert load_calibration(str(path)).label == "mine-7"
 
 
@@ -108,11 +108,20 @@ def test_stops_are_given_or_those_of_the_parts(tmp_path):
 
 @pytest.mark.parametrize("label", earlier_calibrations())
 def test_an_earlier_version_is_loaded_by_its_label_and_has_its_own_hash(label):
-    """The values are those that version 0.1.0 stored with its studies, without what came later."""
+    """The values are those that its version stored with its studies, without what came later."""
     values = calibration_values(load_calibration(label))
     assert f"{values['name']}-{values['version']}" == label
-    assert not {"rotors", "stops"} & set(values["joints"])
-    assert not {"control_period_s", "delay_s", "positions_read"} & set(values["simulation"])
+    assert "efficiency" not in values["drive"]
+    if values["version"] == 1:
+        assert not {"rotors", "stops"} & set(values["joints"])
+        assert not {"control_period_s", "delay_s", "positions_read"} & set(values["simulation"])
+
+
+@pytest.mark.parametrize("name", ["reference", "ideal"])
+def test_version_3_reads_the_whole_gearbox_and_is_version_2_otherwise(name):
+    now, before = load_calibration(name), load_calibration(f"{name}-2")
+    assert (now.drive.efficiency, before.drive.efficiency) == ("total", "mesh")
+    assert replace(now, version=2, drive=replace(now.drive, efficiency="mesh")) == before
 
 
 @pytest.mark.parametrize("name", ["refrence", "missing.toml", "no/such/file"])

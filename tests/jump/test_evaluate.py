@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER
 from pareto_monoped.jump import evaluate
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import STATUSES, Evaluator, evaluate_robots
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.robot.tables import actuator_table
 from tests.jump.robots import random_designs
 
 GOOD = PAPER_CASES["C"].design.as_array()
@@ -178,3 +180,25 @@ def test_long_batches_are_jumped_in_chunks(evaluator, monkeypatch):
     whole = evaluator(designs)
     monkeypatch.setattr(evaluate, "_CHUNK", 3)
     np.testing.assert_array_equal(evaluator(designs).height_m, whole.height_m)
+
+
+def test_losses_of_the_whole_gearbox_cost_height_and_more_than_those_of_the_meshes():
+    designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
+    reference = load_calibration()
+    assert reference.drive.efficiency == "total"
+    heights = [
+        Evaluator(map_for("VT8020"), replace(reference, drive=replace(reference.drive, **changes)))(designs).height_m
+        for changes in ({"mesh_losses": False}, {"efficiency": "mesh"}, {})
+    ]
+    assert np.all(heights[0] > heights[1])
+    assert np.all(heights[1] > heights[2])
+
+
+def test_the_table_of_a_map_has_the_total_of_every_service_sheet():
+    found = map_for("VT8020")
+    table = actuator_table(found)
+    actuators = [entry.actuator for entry in found.entries if entry.actuator is not None]
+    for row in (0, len(actuators) // 2, -1):
+        losses = service_sheet(actuators[row], found.settings).losses
+        assert table.efficiency_total[row] == losses.efficiency_total
+        assert table.efficiency_total[row] < table.efficiency[row]

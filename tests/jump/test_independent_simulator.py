@@ -50,7 +50,7 @@ def machine(robots, i, design, calibration):
             peak=robots.peak_torque_n_m[i],
             no_load=robots.no_load_speed_rad_per_s[i],
             corner=robots.no_load_speed_rad_per_s[i] - resistance * robots.peak_torque_n_m[i],
-            loss=1.0 - robots.efficiency[i] * [1.0, drive.chain_efficiency],
+            loss=1.0 - robots.efficiency_total[i] * [1.0, drive.chain_efficiency],
             heat=resistance,
             gains=tuple(design[name] for name in PAPER_CONTROL),
             rest=design["rest_length_m"],

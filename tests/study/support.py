@@ -58,7 +58,7 @@ def made_meta(study):
     return StudyMeta(
         study=study.as_dict(),
         motor=study.motor,
-        calibration="reference-2",
+        calibration="reference-3",
         seed=study.seed,
         contents=CONTENTS,
         files={"motor": None, "calibration": None},
