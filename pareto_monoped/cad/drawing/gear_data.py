@@ -50,21 +50,29 @@ def thickness_tolerance_mm(pitch_diameter_mm: float) -> float:
     raise ValueError(f"pitch diameter {pitch_diameter_mm:g} mm: must be at most 280 mm")
 
 
-def spanned_teeth(teeth: int, pressure_angle_rad: float) -> int:
-    """Teeth over which the base tangent touches near the pitch circle: z a / pi + 1/2, rounded."""
-    return max(int(np.floor(teeth * pressure_angle_rad / np.pi + 1.0)), 2)
+def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> int:
+    """Teeth over which the base tangent touches x modules off the pitch circle.
+
+    z (tan a_v - inv a - 2 x tan a / z) / pi + 1/2, rounded, with cos(a_v) = z cos(a) / (z + 2 x) (ISO 21771).
+    """
+    a = pressure_angle_rad
+    touch = float(np.arccos(teeth * np.cos(a) / (teeth + 2.0 * shift))) if shift else a
+    turned = np.tan(touch) - (np.tan(a) - a) - 2.0 * shift * np.tan(a) / teeth
+    return max(int(np.floor(teeth * turned / np.pi + 1.0)), 2)
 
 
 def base_tangent_mm(gear: ExternalGear, count: int, *, allowance_mm: float) -> float:
     """Length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
-    return m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + allowance_mm * float(np.cos(a))
+    along = m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + 2.0 * float(gear.shift) * m * np.sin(a)
+    return float(along + allowance_mm * np.cos(a))
 
 
 def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -> float:
     """Distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
-    angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + (0.5 * np.pi + allowance_mm / m) / z)
+    width = 0.5 * np.pi + 2.0 * float(gear.shift) * np.tan(a) + allowance_mm / m
+    angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + width / z)
     centres = z * m * np.cos(a) / np.cos(angle)
     return float(centres * (np.cos(0.5 * np.pi / z) if z % 2 else 1.0) - pin_mm)
 
@@ -79,7 +87,7 @@ def measure(gear: ExternalGear | InternalGear, *, hole: bool = False) -> Span:
     tolerance = thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm))
     play = float(gear.backlash_mm)
     if isinstance(gear, ExternalGear):
-        count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad)
+        count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad, float(gear.shift))
         slack = (0.0, tolerance) if hole else (-tolerance, 0.0)
         least, greatest = (base_tangent_mm(gear, count, allowance_mm=-play + t) for t in slack)
         return Span(count=count, pin_mm=0.0, least_mm=least, greatest_mm=greatest)
@@ -107,7 +115,7 @@ def gear_rows(
         ("Pressure angle", f"{number(round(float(np.degrees(gear.pressure_angle_rad)), 3))}°"),
         ("Helix angle", "0°"),
         ("Basic rack", f"ISO 53, h {DEDENDUM:g} m, fillet {FILLET:g} m"),
-        ("Profile shift x", number(float(getattr(gear, "profile_shift", 0.0)))),
+        ("Profile shift x, outwards", number(round(float(gear.shift), 4))),
         ("Pitch diameter", number(2.0 * float(gear.pitch_radius_mm))),
         ("Tip diameter", number(2.0 * float(gear.tip_radius_mm))),
         ("Root diameter", number(2.0 * float(gear.root_radius_mm))),

@@ -16,8 +16,23 @@ from pareto_monoped.cad.shape.curves import Contour, Spline, polygon
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 
-EXTERNAL = [(18, 0.5, 0.0), (22, 0.6, 0.04), (30, 0.5, 0.04), (44, 0.6, 0.02), (65, 0.8, 0.05)]
-INTERNAL = [(90, 0.5, 0.04), (110, 0.6, 0.04), (95, 0.8, 0.0)]
+EXTERNAL = [
+    (18, 0.5, 0.0, 0.0),
+    (22, 0.6, 0.04, 0.0),
+    (30, 0.5, 0.04, 0.0),
+    (44, 0.6, 0.02, 0.0),
+    (65, 0.8, 0.05, 0.0),
+    (19, 0.7, 0.04, 0.4),
+    (20, 0.6, 0.04, 0.5),
+    (38, 0.7, 0.04, -0.4),
+]
+INTERNAL = [
+    (90, 0.5, 0.04, 0.0),
+    (110, 0.6, 0.04, 0.0),
+    (95, 0.8, 0.0, 0.0),
+    (95, 0.7, 0.04, -0.4),
+    (100, 0.6, 0.04, 0.8),
+]
 
 
 def flank_points(gear):
@@ -33,13 +48,13 @@ def flank_points(gear):
     return np.concatenate(rows)
 
 
-@pytest.mark.parametrize(("teeth", "module", "thinning"), EXTERNAL)
-def test_base_tangent_is_pitches_and_a_tooth_along_the_base_circle(teeth, module, thinning):
+@pytest.mark.parametrize(("teeth", "module", "thinning", "shift"), EXTERNAL)
+def test_base_tangent_is_pitches_and_a_tooth_along_the_base_circle(teeth, module, thinning, shift):
     """K - 1 base pitches and the tooth's thickness on the base circle (Shigley, ch. 13): s_b = cos a (s + d inv a)."""
-    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
-    count = spanned_teeth(teeth, np.radians(20.0))
+    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning, shift=shift)
+    count = spanned_teeth(teeth, np.radians(20.0), shift)
     involute = 0.014904383867336446  # tan 20 - 20 pi / 180
-    thickness = 0.5 * np.pi * module - thinning
+    thickness = 0.5 * np.pi * module + 2.0 * shift * module * np.tan(np.radians(20.0)) - thinning
     on_base = np.cos(np.radians(20.0)) * (thickness + teeth * module * involute)
     expected = (count - 1) * np.pi * module * np.cos(np.radians(20.0)) + on_base
     assert base_tangent_mm(gear, count, allowance_mm=-thinning) == pytest.approx(expected, abs=1e-9)
@@ -52,10 +67,10 @@ def test_a_base_tangent_length_of_a_textbook():
     assert base_tangent_mm(gear, 4, allowance_mm=0.0) == pytest.approx(10.7526, abs=1e-4)
 
 
-@pytest.mark.parametrize(("teeth", "module", "thinning"), EXTERNAL)
-def test_callipers_over_the_built_flanks_read_the_greatest_base_tangent_length(teeth, module, thinning):
+@pytest.mark.parametrize(("teeth", "module", "thinning", "shift"), EXTERNAL)
+def test_callipers_over_the_built_flanks_read_the_greatest_base_tangent_length(teeth, module, thinning, shift):
     """Two parallel jaws across k teeth touch the outline where the drawing says, to a micrometre."""
-    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
+    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning, shift=shift)
     span = measure(gear)
     points = flank_points(gear)
     # The middle of the k teeth lies on the x axis: on a tooth for odd k, on a space for even k.
@@ -70,10 +85,10 @@ def test_callipers_over_the_built_flanks_read_the_greatest_base_tangent_length(t
     assert across.max() - across.min() == pytest.approx(span.greatest_mm, abs=1e-3)
 
 
-@pytest.mark.parametrize(("teeth", "module", "widening"), INTERNAL)
-def test_pins_in_the_built_spaces_stand_as_far_apart_as_the_least_measure(teeth, module, widening):
+@pytest.mark.parametrize(("teeth", "module", "widening", "shift"), INTERNAL)
+def test_pins_in_the_built_spaces_stand_as_far_apart_as_the_least_measure(teeth, module, widening, shift):
     """A pin that is pushed outwards in a space touches both flanks where the formula has it, to a micrometre."""
-    gear = InternalGear(teeth=teeth, module_mm=module, backlash_mm=widening)
+    gear = InternalGear(teeth=teeth, module_mm=module, backlash_mm=widening, shift=shift)
     span = measure(gear)
     points = flank_points(gear)
     angle = np.arctan2(points[:, 1], points[:, 0])
