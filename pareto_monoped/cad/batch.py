@@ -44,6 +44,7 @@ def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[s
         formats=job.formats,
         force=job.force,
         source=job.source,
+        strength=job.strength,
         hip_rad=job.hip_rad,
         knee_rad=job.knee_rad,
         progress=progress,

@@ -23,14 +23,17 @@ from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, r
 from pareto_monoped.cad.write.formats import chosen_formats
 from pareto_monoped.cad.write.parts_list import parts_list
 from pareto_monoped.cad.write.readme import readme
+from pareto_monoped.cad.write.strength_table import strength_table
 from pareto_monoped.cad.write.visuals import visuals
-from pareto_monoped.design import Design
+from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
+from pareto_monoped.strength.single import JointFactor, joint_factors
 
 _NAMED_FAILURES = 3  # more would not fit on a line
 
@@ -63,6 +66,7 @@ def export_design(
     hip_rad: float | None = None,
     knee_rad: float | None = None,
     source: Mapping[str, Any] | None = None,
+    strength: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> ExportSummary:
     """Build, check and write everything about one design.
@@ -77,6 +81,8 @@ def export_design(
         hip_rad: angle of the hip in the assembly, in place of the start pose's.
         knee_rad: angle of the knee, likewise.
         source: where the design comes from, written into ``design.json``.
+        strength: refuse a design with a joint that has less than its required safety factor. The factors are listed
+            either way.
         progress: called with the name of each step as it begins.
 
     Raises:
@@ -108,18 +114,25 @@ def export_design(
             calibration=calibration,
             source=source,
             formats=wanted,
+            strength=strength,
         )
         sheets = files.part_sheets(product, record, threads) if "pdf" in wanted else None
         progress("simulating")
-        jumps = simulated_jumps({"searched": design, "as_built": built}, actuator_map, calibration)
+        designs = {"searched": design, "as_built": built}
+        results = _evaluated(designs, actuator_map, calibration)
+        factors = _factors(built, results, list(designs).index("as_built"), actuator_map)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
         part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
         checks = run_checks(
-            product, robot_arrays(built.as_array(), actuator_map), part_files=part_files, other_files=other_files
+            product,
+            robot_arrays(built.as_array(), actuator_map),
+            part_files=part_files,
+            other_files=other_files,
+            factors=factors if strength else None,
         )
         _require_passed(checks, out_dir)
-        record["jumps"] = jumps
+        record["jumps"] = _jumps(designs, results)
         progress("writing")
         with beside(out_dir) as folder:
             files.write_meshes(folder, part_files, other_files, wanted)
@@ -127,9 +140,10 @@ def export_design(
             if sheets is not None:
                 files.write_sheets(folder, product, record, sheets.result())
             files.write_models(folder, product, shown, simulated, built, calibration, wanted)
-            write(folder, "bom.csv", parts_list(product))
+            write(folder, "bom.csv", parts_list(product, factors))
+            write(folder, "strength.csv", strength_table(factors))
             write(folder, "checks.json", checks_record(checks))
-            write(folder, "README.md", readme(record, product, checks, wanted))
+            write(folder, "README.md", readme(record, product, checks, wanted, factors))
             for name, picture in pictures.items():
                 write(folder, name, picture.result())
             if solids is not None:
@@ -166,8 +180,26 @@ def simulated_jumps(
     designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration
 ) -> dict[str, dict[str, Any]]:
     """Status, reason, height and energy of some designs' jumps, by the designs' names, as JSON values."""
-    values = np.stack([design.as_array() for design in designs.values()])
-    results = Evaluator(actuator_map, calibration)(values)
+    return _jumps(designs, _evaluated(designs, actuator_map, calibration))
+
+
+def _evaluated(designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration) -> Evaluations:
+    return Evaluator(actuator_map, calibration)(np.stack([design.as_array() for design in designs.values()]))
+
+
+def design_factors(design: Design, actuator_map: ActuatorMap, calibration: Calibration) -> tuple[JointFactor, ...]:
+    """The safety factors of a design's joints under the loads of its jump; none if it does not jump."""
+    return _factors(design, _evaluated({"": design}, actuator_map, calibration), 0, actuator_map)
+
+
+def _factors(design: Design, results: Evaluations, row: int, actuator_map: ActuatorMap) -> tuple[JointFactor, ...]:
+    """The same from a row of the results of its jump."""
+    columns = {name: getattr(results, name)[row : row + 1] for name in LOAD_NAMES if name not in LENGTHS}
+    lengths = {name: np.array([getattr(design, name)]) for name in LENGTHS}
+    return joint_factors(design, actuator_map, loads_of(columns | lengths))
+
+
+def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dict[str, Any]]:
     return {
         name: {
             "status": str(results.status[k]),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pareto_monoped.actuator.motors import Motor, load_motor
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
-from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration
+from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration, strength_for
 
 if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
@@ -27,6 +27,7 @@ class Job:
         formats: of ``FORMATS``, in its order.
         force: replace an export of something else.
         source: where the design comes from.
+        strength: refuse it if a joint has less than its required safety factor.
         hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
     """
@@ -39,6 +40,7 @@ class Job:
     formats: tuple[str, ...] = FORMATS
     force: bool = False
     source: dict[str, Any]
+    strength: bool = False
     hip_rad: float | None = None
     knee_rad: float | None = None
 
@@ -53,6 +55,7 @@ def case_job(
     force: bool = False,
     hip_rad: float | None = None,
     knee_rad: float | None = None,
+    strength: bool | None = None,
 ) -> Job:
     """The job for a row of the paper's Table I with the default calibration, our best model of the paper's robot.
 
@@ -65,6 +68,7 @@ def case_job(
         force: replace an earlier export there.
         hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
+        strength: whether it must hold; default as for a study with this calibration.
 
     Raises:
         InputError: an unknown format.
@@ -79,6 +83,7 @@ def case_job(
         formats=chosen_formats(formats),
         force=force,
         source={"case": case},
+        strength=strength_for(DEFAULT) if strength is None else strength,
         hip_rad=hip_rad,
         knee_rad=knee_rad,
     )
@@ -93,6 +98,7 @@ def trial_job(
     force: bool = False,
     hip_rad: float | None = None,
     knee_rad: float | None = None,
+    strength: bool | None = None,
 ) -> Job:
     """The job for one trial of a study, with the motor and the calibration that the study stores.
 
@@ -104,6 +110,7 @@ def trial_job(
         force: replace an earlier export there.
         hip_rad: angle of the hip in the assembly, instead of that of the start pose.
         knee_rad: angle of the knee, likewise.
+        strength: whether it must hold; default as the study asked.
 
     Raises:
         InputError: an unknown format.
@@ -119,13 +126,20 @@ def trial_job(
         formats=chosen_formats(formats),
         force=force,
         source={"study": data.study.name, "trial": int(trial), "date": data.meta.created[:10]},
+        strength=data.study.strength if strength is None else strength,
         hip_rad=hip_rad,
         knee_rad=knee_rad,
     )
 
 
 def front_jobs(
-    data: "StudyData", *, folder: Path, every: int = 1, formats: Sequence[str] | None = None, force: bool = False
+    data: "StudyData",
+    *,
+    folder: Path,
+    every: int = 1,
+    formats: Sequence[str] | None = None,
+    force: bool = False,
+    strength: bool | None = None,
 ) -> list[Job]:
     """The jobs for the designs on a study's front, from the lowest jump to the highest.
 
@@ -135,10 +149,14 @@ def front_jobs(
         every: take only each N-th design, beginning with the first.
         formats: some of ``FORMATS``; default all.
         force: replace earlier exports.
+        strength: whether they must hold; default as the study asked.
 
     Raises:
         InputError: an unknown format.
         DatabaseError: the study's motor or calibration is damaged.
     """
     trials = data.front()["trial"].astype(int).tolist()[::every]
-    return [trial_job(data, trial, folder=folder / f"trial_{trial}", formats=formats, force=force) for trial in trials]
+    return [
+        trial_job(data, trial, folder=folder / f"trial_{trial}", formats=formats, force=force, strength=strength)
+        for trial in trials
+    ]

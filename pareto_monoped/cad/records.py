@@ -57,6 +57,7 @@ def record_job(
         wanted = [str(name) for name in record["formats"]]
         maker = str(record["made_by"])
         rules = _rules(record.get("rules", "paper"))
+        strength = record.get("strength", False) is True
     except OSError as problem:
         raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
@@ -71,6 +72,7 @@ def record_job(
         formats=chosen_formats(wanted if formats is None else formats),
         force=force,
         source=origin,
+        strength=strength,
         **angles,
     )
     wrong = _contradiction(record, job, same_version=maker == MADE_BY)
@@ -98,7 +100,7 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
         wrong = difference(found, expected, rel_tolerance=REL_TOLERANCE)
         if wrong is not None:
             return wrong
-        designs = {"searched": job.design, "as_built": Design.from_array(list(expected["as_built"].values()))}
+        designs = {"searched": job.design, "as_built": _design(expected["as_built"])}
         simulated = simulated_jumps(designs, map_of(job.motor, job.rules), job.calibration)
         return difference(jumps, simulated, rel_tolerance=_JUMP_REL_TOLERANCE, field="jumps")
     built = as_built(job.design, map_of(job.motor, job.rules)).as_dict()

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 @click.option("--hip-deg", type=float, metavar="DEG", help="Hip angle of the assembly.  [default: start pose]")
 @click.option("--knee-deg", type=float, metavar="DEG", help="Knee angle of the assembly.  [default: start pose]")
 @click.option("--force", is_flag=True, help="Replace an earlier export in DIR.")
+@click.option("--no-strength", is_flag=True, help="Do not refuse a design whose joints do not hold.")
 def export(
     db: Path | None,
     selector: "Selector | None",
@@ -58,6 +59,7 @@ def export(
     hip_deg: float | None,
     knee_deg: float | None,
     force: bool,
+    no_strength: bool,
 ) -> None:
     """Write CAD, drawings, models, pictures and parts list of a design.
 
@@ -65,7 +67,7 @@ def export(
     checked. Nothing is written if a check fails. The design.json of an export also contains its motor and jump model,
     so that --record needs neither the study nor its files.
     """
-    _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg)
+    _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg, no_strength)
     for option, value in (("--rules", rules), ("--motor", motor)):
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
@@ -80,20 +82,26 @@ def export(
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         kept = _without_drawings if no_drawings else lambda job: job
         angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
+        strength = False if no_strength else None
         if record is not None:
             _one(kept(record_job(record, folder=output, formats=names, force=force, note=_note)))
         elif case is not None:
             kit, chosen = motor or PAPER_MOTOR, rules or DEFAULT_RULES
-            _one(kept(case_job(case, motor=kit, rules=chosen, folder=output, formats=names, force=force, **angles)))
+            job = case_job(
+                case, motor=kit, rules=chosen, folder=output, formats=names, force=force, strength=strength, **angles
+            )
+            _one(kept(job))
         elif whole_front:
-            jobs = front_jobs(read_study(_given(db)), folder=output, every=every, formats=names, force=force)
+            data = read_study(_given(db))
+            jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
             _many([kept(job) for job in jobs], workers or os.cpu_count() or 1)
         else:
             study, wanted = _given(db), required(selector)
             data = read_study(study)
             picked = pick(data.front(), wanted, data.study.objectives)
             _note(picked.why)
-            _one(kept(trial_job(data, picked.trial, folder=output, formats=names, force=force, **angles)))
+            trial = picked.trial
+            _one(kept(trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)))
 
 
 def _refuse_mixed_sources(
@@ -104,6 +112,7 @@ def _refuse_mixed_sources(
     whole_front: bool,
     hip_deg: float | None,
     knee_deg: float | None,
+    no_strength: bool,
 ) -> None:
     """A usage error for options that exclude each other."""
     if record is not None:
@@ -111,6 +120,8 @@ def _refuse_mixed_sources(
             raise click.UsageError("--record takes no DB, no selector, no --case and no --front; drop one of them")
         if hip_deg is not None or knee_deg is not None:
             raise click.UsageError("--record takes no --hip-deg and no --knee-deg, it holds the pose; drop them")
+        if no_strength:
+            raise click.UsageError("--record takes no --no-strength, it says whether the design must hold; drop it")
     if whole_front and (selector is not None or case is not None):
         raise click.UsageError("--front takes no selector and no --case; drop one of them")
     if case is not None and (db is not None or selector is not None):
@@ -141,11 +152,20 @@ def _one(job: "Job") -> None:
 
     record = run(job, progress=lambda step: _note(f"{step} ..."))
     _note(f"wrote {job.folder} ({len(record['files'])} files)")
+    _say_of_strength([job])
     for name in ("searched", "as_built"):
         jump = record["jumps"][name]
         height, energy = jump["height_m"], jump["energy_j"]
         result = f"{height:.4f} m  {energy:.3f} J" if height is not None and energy is not None else jump["status"]
         click.echo(f"{name.replace('_', ' '):<9} {result}")
+
+
+def _say_of_strength(jobs: "list[Job]") -> None:
+    """Say that designs may not hold, where nobody asked for it."""
+    from pareto_monoped.study.definition import NO_STRENGTH
+
+    if not all(job.strength for job in jobs):
+        _note(f"note: {NO_STRENGTH}")
 
 
 def _many(jobs: "list[Job]", workers: int) -> None:

@@ -61,4 +61,10 @@ BOLT_OFFSET = Limit(name="bolt patterns coincide", value=0.05, unit="mm")
 """Half of the radial clearance of a fine clearance hole: M3 in 3.2 mm (ISO 273)."""
 BOLT_PARTS = Limit(name="bolts join parts", value=2, unit="parts", at_least=True)
 
+STRENGTH = Limit(
+    name="joints have their required safety factors", value=0.98, unit="of the required factor", at_least=True
+)
+"""The links of a design are rounded to 0.1 mm after the search, which moves the loads of its jump a little. A design
+that just holds in a study is not refused for that."""
+
 LOOSE = Limit(name="every part is held", value=0, unit="loose parts")

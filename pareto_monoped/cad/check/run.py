@@ -1,6 +1,6 @@
 """All checks that an export must pass, in the order in which it reports them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from pareto_monoped.cad.check import (
     bolts,
@@ -11,6 +11,7 @@ from pareto_monoped.cad.check import (
     mass,
     overlap,
     retention,
+    strength,
     validity,
     watertight,
 )
@@ -18,6 +19,7 @@ from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
 from pareto_monoped.cad.product import Product
 from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.strength.single import JointFactor
 
 
 def run_checks(
@@ -26,6 +28,7 @@ def run_checks(
     *,
     part_files: Mapping[str, bytes],
     other_files: Mapping[str, bytes],
+    factors: Sequence[JointFactor] | None = None,
 ) -> tuple[Check, ...]:
     """All checks of a product against the robot that is simulated.
 
@@ -34,6 +37,7 @@ def run_checks(
         arrays: the same robot as the simulation carries it, one row, masses from the parts.
         part_files: the STL file of every unique part, whether it is to be written or not, by the part's name.
         other_files: all other files with triangles, by path.
+        factors: of all joints, if they must be as required.
     """
     # First what does not need the solids, which the kernel's process is building meanwhile.
     without_solids = (
@@ -54,4 +58,5 @@ def run_checks(
         *centre_of_mass.check(bodies, arrays),
         *inertia.check(bodies, arrays),
         *without_solids,
+        *(() if factors is None else (strength.check(factors),)),
     )

@@ -32,6 +32,7 @@ def design_record(
     calibration: Calibration,
     source: Mapping[str, Any] | None,
     formats: Sequence[str],
+    strength: bool,
 ) -> dict[str, Any]:
     """The content of ``design.json``, apart from the list of files.
 
@@ -45,6 +46,7 @@ def design_record(
         calibration: the jump model of both.
         source: where the design comes from.
         formats: what was written.
+        strength: whether every joint had to have its required safety factor.
     """
     rules, motor_data = actuator_map.settings.rules, motor_values(robot.hip.motor)
     return {
@@ -59,6 +61,7 @@ def design_record(
         "as_built": built.as_dict(),
         "jumps": {name: dict(jump) for name, jump in jumps.items()},
         "mass_kg": robot.mass_kg,
+        "strength": strength,
         "pose": {"hip_rad": pose.hip_rad, "knee_rad": pose.knee_rad},
         "actuators": {
             name: _actuator(actuator) | ({"stand_in": note} if (note := actuator_map.stand_in(ratio)) else {})

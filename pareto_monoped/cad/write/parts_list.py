@@ -2,9 +2,14 @@
 
 import csv
 import io
+from collections import defaultdict
+from collections.abc import Sequence
 
-from pareto_monoped.cad.product import Product, extent_mm
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
+from pareto_monoped.cad.product import Product, extent_mm, part_file_name
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.strength.joint import ActuatorJoint
+from pareto_monoped.strength.single import JointFactor
 
 _COLUMNS = (
     "part",
@@ -18,12 +23,19 @@ _COLUMNS = (
     "used_in",
     "torque_n_m",
     "lock",
+    "safety_factors",
     "note",
 )
 
 
-def parts_list(product: Product) -> str:
-    """The parts list as CSV, one row per unique part."""
+def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
+    """The parts list as CSV, one row per unique part.
+
+    Args:
+        product: the parts.
+        factors: safety factors of the joints; each stands with the parts that it is about.
+    """
+    joints = _by_part(factors)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -43,10 +55,25 @@ def parts_list(product: Product) -> str:
                 " ".join(unique.units),
                 f"{part.fastening.torque_n_m:.1f}" if part.fastening else "",
                 part.fastening.lock if part.fastening else "",
+                "; ".join(joints[unique.name]),
                 _note(part),
             )
         )
     return stream.getvalue()
+
+
+def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
+    """File name of a part -> its joints, each with factor and required factor."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for one in factors:
+        text = f"{one.joint.name} {one.factor:.2f} ({one.joint.required:g})"
+        for part in one.joint.parts:
+            # A joint of an actuator may name parts of the leg too, and both actuators may share their parts.
+            found[part].append(text)
+            if isinstance(one.joint, ActuatorJoint):
+                found[part_file_name((f"{one.joint.side}_actuator",), part)].append(text)
+                found[part_file_name(tuple(ACTUATOR_UNITS), part)].append(text)
+    return found
 
 
 def _note(part: Part) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.formats import FILES
+from pareto_monoped.strength.single import JointFactor
 
 _HOW = {
     "laser cut": "Laser-cut from sheet by `laser/`; countersink where the parts list says so; deburr.",
@@ -16,7 +17,13 @@ _HOW = {
 }
 
 
-def readme(record: Mapping[str, Any], product: Product, checks: Sequence[Check], formats: Sequence[str]) -> str:
+def readme(
+    record: Mapping[str, Any],
+    product: Product,
+    checks: Sequence[Check],
+    formats: Sequence[str],
+    factors: Sequence[JointFactor] = (),
+) -> str:
     """The page as Markdown.
 
     Args:
@@ -24,12 +31,14 @@ def readme(record: Mapping[str, Any], product: Product, checks: Sequence[Check],
         product: the parts.
         checks: all checks that were run.
         formats: what was written.
+        factors: safety factors of all joints; none if the design does not jump.
     """
     lines = [
         *_design(record),
         *_actuators(record),
         *_files(formats),
         *_making(product),
+        *_strength(record, factors),
         *_checks(checks),
     ]
     return "\n".join(lines) + "\n"
@@ -73,7 +82,8 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
     yield from ("## Files", "", "| file | for |", "|---|---|")
     for name in formats:
         yield from (f"| `{path}` | {purpose} |" for path, purpose in FILES[name])
-    yield "| `bom.csv` | parts list: count, material, process, mass, size |"
+    yield "| `bom.csv` | parts list: count, material, process, mass, size, safety factors |"
+    yield "| `strength.csv` | safety factor of every joint under the loads of the jump |"
     yield (
         "| `design.json` | the design with its motor and jump model, to make this folder again: "
         "`pareto-monoped export --record design.json -o DIR` |"
@@ -100,6 +110,20 @@ def _making(product: Product) -> Iterator[str]:
         names = [_counted(unique) for unique in product.unique if unique.part.process == process]
         if names:
             yield from (f"**{process[0].upper()}{process[1:]}.** {how}", "", ", ".join(names) + ".", "")
+
+
+def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor]) -> Iterator[str]:
+    """The factors, and whether anybody asked for them."""
+    yield from ("## Strength", "")
+    if not record["strength"]:
+        yield from ("Strength was not asked for: this design may not hold.", "")
+    if not factors:
+        yield from ("The design does not jump, so that the loads of its joints are unknown.", "")
+        return
+    yield from ("Safety factors under the loads of the jump; `strength.csv` has formulas, loads and sources.", "")
+    yield from ("| joint | safety factor | required |", "|---|---:|---:|")
+    yield from (f"| {one.joint.name} | {one.factor:.2f} | {one.joint.required:g} |" for one in factors)
+    yield ""
 
 
 def _checks(checks: Sequence[Check]) -> Iterator[str]:
