@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -152,19 +153,7 @@ class ActuatorMap:
         """Index into ``entries`` of the gearbox for each ratio, shape (n,) -> (n,); -1 where there is none."""
         index = _index(np.asarray(ratios, dtype=np.float64))
         inside = (index >= 0) & (index < len(self.entries))
-        return np.where(inside, self._serving()[np.where(inside, index, 0)], -1)
-
-    def _serving(self) -> NDArray[np.intp]:
-        """For each interval the index of the entry whose gearbox serves it, shape (intervals,), or -1."""
-        own = np.arange(len(self.entries))
-        present = np.array([entry.actuator is not None for entry in self.entries])
-        serving = np.where(present, own, -1)
-        if self.settings.rules == "paper" or not present.any():
-            return serving
-        real = np.array([np.inf if entry.actuator is None else entry.actuator.ratio for entry in self.entries])
-        away = np.abs(real - (self.ratios_low + 0.5 * RATIO_STEP)[:, None])
-        nearest = np.argmin(away, axis=1)
-        return np.where(present | (away[own, nearest] > STAND_IN_WITHIN), serving, nearest)
+        return np.where(inside, _serving(self)[np.where(inside, index, 0)], -1)
 
     def stand_in(self, ratio: float) -> str:
         """One line on the gearbox that stands in at a ratio whose interval has none; '' where nothing stands in."""
@@ -232,6 +221,20 @@ class ActuatorMap:
             else:
                 runs.append([low, low + 1])
         return " or ".join(f"[{start / 10:.1f}, {stop / 10:.1f})" for start, stop in runs)
+
+
+@lru_cache(maxsize=16)
+def _serving(actuator_map: ActuatorMap) -> NDArray[np.intp]:
+    """For each interval the index of the entry whose gearbox serves it, shape (intervals,), or -1."""
+    own = np.arange(len(actuator_map.entries))
+    present = np.array([entry.actuator is not None for entry in actuator_map.entries])
+    serving = np.where(present, own, -1)
+    if actuator_map.settings.rules == "paper" or not present.any():
+        return serving
+    real = np.array([np.inf if entry.actuator is None else entry.actuator.ratio for entry in actuator_map.entries])
+    away = np.abs(real - (actuator_map.ratios_low + 0.5 * RATIO_STEP)[:, None])
+    nearest = np.argmin(away, axis=1)
+    return np.where(present | (away[own, nearest] > STAND_IN_WITHIN), serving, nearest)
 
 
 def cures(entry: MapEntry) -> tuple[str, ...]:
