@@ -4,6 +4,7 @@ from pareto_monoped.actuator.external_layout import ExternalLayout
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     RING_GROOVE_MM,
+    SPIGOT_MM,
     casing_dowel_holes,
     casing_holes,
     motor_holes,
@@ -16,11 +17,12 @@ from pareto_monoped.actuator.features import (
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
-from pareto_monoped.geometry.screws import M3, screw_part
-from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.geometry.screws import M3, screw_part, tapped
+from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 
 BACK_BORE_MM = 8.0
@@ -72,6 +74,10 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
                 Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"),
             ),
+            features=(
+                tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
+                bored(Circle(radius_mm=at.r_ring), z_flange, at.z_gear_front, enters="low"),
+            ),
         ),
         Part(
             name="bore_retaining_ring",
@@ -111,6 +117,12 @@ def _casing_and_backplate(
             process="machined",
             group=Group.HOUSING,
             grade=ALLOYS["aw_6082_t6"],
+            features=(
+                tapped(M3, (threads,), shell.z_web, z_flange, enters="high"),
+                tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
+                bored(Circle(radius_mm=at.r_ring), at.z_gear_back, z_flange, enters="high"),
+                bored(Circle(radius_mm=at.r_casing), z_plate, shell.z_web, enters="low"),
+            ),
             note="bore and faces in one clamping",
         ),
         Part(
@@ -132,6 +144,7 @@ def _casing_and_backplate(
             process="machined",
             group=Group.HOUSING,
             grade=ALLOYS["aw_6082_t6"],
+            features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
             note="step to fit the casing",
         ),
     )

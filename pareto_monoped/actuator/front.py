@@ -16,12 +16,13 @@ from pareto_monoped.actuator.features import (
 )
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import M3, clearance, screw_part
-from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
+from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 
 _BUSH_PLAY_MM = 0.2
@@ -68,6 +69,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     carrier, gears = data.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
+    pin_tap = pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM
     pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
     stands_out = carrier.planet_clearance_mm - _BUSH_PLAY_MM
     return (
@@ -81,6 +83,15 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.PLANET,
             grade=gear_grade(settings, settings.gear_steels.planet),
             accuracy_class=gear_accuracy(settings),
+            features=(
+                bored(
+                    Circle(radius_mm=0.5 * data.gears.planet_bore_mm),
+                    at.z_gear_back,
+                    at.z_gear_front,
+                    enters="both",
+                    pressed=True,
+                ),
+            ),
             note=gear_note(gears.planet(data.gears.backlash_mm), settings),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush"),
             count=gears.planets,
@@ -106,14 +117,19 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=(
-                *slab(pin_low, pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM, pin, M3.core),
-                *slab(pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM, pin_front, pin),
+                *slab(pin_low, pin_tap, pin, M3.core),
+                *slab(pin_tap, pin_front, pin),
             ),
             process="machined",
             group=Group.OUTPUT,
             grade=ALLOYS["dowel"],
             fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="m6"),),
-            note="dowel, M3 thread in the rear end",
+            features=(
+                tapped(M3, (Circle(radius_mm=M3.core),), pin_low, pin_tap, enters="low", usable_mm=_PIN_THREAD_MM),
+                turned(pin, pin_low, 1.0, pressed=True),
+                turned(pin, pin_front, -1.0, pressed=True),
+            ),
+            note="dowel",
             joint=Joint(kind=JointKind.PRESSED, how="pressed into secondary_carrier and", partner="carrier"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -190,6 +206,12 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
                 Fit(diameter_mm=data.interface.output_dowel_mm, zone="H7"),
             ),
+            features=(
+                tapped(M3, (threads,), z_diaphragm, 0.0, enters="high"),
+                bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
+                bored(pins, at.z_shoulder, z_pins, enters="low", pressed=True),
+                turned(at.r_bore, -carrier.flange_thickness_mm, -1.0),
+            ),
         ),
         Part(
             name="secondary_carrier",
@@ -204,7 +226,10 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.OUTPUT,
             grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
-            features=(clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),),
+            features=(
+                clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
+                bored(pins, z_split, at.z_secondary_front, enters="high", pressed=True),
+            ),
         ),
         Part(
             name="retaining_ring",

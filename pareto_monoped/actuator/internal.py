@@ -6,6 +6,7 @@ from pareto_monoped.actuator.encoder import encoder_parts, shaft_end
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
+    SPIGOT_MM,
     bought_bearing,
     casing_dowel_holes,
     casing_holes,
@@ -26,11 +27,12 @@ from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import M3, clearance, screw_part
-from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
+from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 
 FLANGE_DOWEL = Dowel(diameter_mm=2.5)
@@ -116,6 +118,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             group=Group.ROTOR,
             grade=ALLOYS["aw_7075_t6"],
             fits=(COUPLING_DOWEL.hole_fit,),
+            features=(tapped(M3, (_bell_holes(settings, M3.core),), z_hub, shell.z_coupling, enters="high"),),
             note=f"screwed to the bell; bore {HUB_NOTE}",
         ),
         dowel_part(
@@ -163,6 +166,7 @@ def _flange_dowel_holes(shell: InternalLayout, settings: ActuatorSettings) -> Pa
 def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
     casing, aluminium = settings.parts.casing, settings.materials.aluminium
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
+    threads = _flange_holes(shell, settings, M3.core)
     dowels, flange_dowels = casing_dowel_holes(at, settings), _flange_dowel_holes(shell, settings)
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
@@ -181,7 +185,12 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             process="machined",
             group=Group.HOUSING,
             grade=ALLOYS["aw_6082_t6"],
-            features=(clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),),
+            features=(
+                clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),
+                tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
+                tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
+                bored(Circle(radius_mm=at.r_casing), z_plate, -casing.plate_mm, enters="low"),
+            ),
             fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
             note="bore and faces in one clamping",
         ),
@@ -195,7 +204,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                     -casing.plate_mm,
                     shell.r_flange,
                     at.r_seat,
-                    _flange_holes(shell, settings, M3.core),
+                    threads,
                     flange_dowels,
                 ),
                 *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
@@ -216,6 +225,11 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
                 FLANGE_DOWEL.hole_fit,
+            ),
+            features=(
+                tapped(M3, (threads,), z_flange, -casing.plate_mm, enters="high"),
+                bored(Circle(radius_mm=at.r_seat), at.z_bearing_back, -casing.plate_mm, enters="high"),
+                bored(Circle(radius_mm=at.r_ring), at.z_gear_back, at.z_gear_front, enters="low"),
             ),
             note=note_with("{} mm outside to fit the stator", 2.0 * at.r_stator_in),
         ),
@@ -267,6 +281,17 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
         group=Group.HOUSING,
         grade=ALLOYS["aw_6082_t6"],
         fits=(Fit(diameter_mm=2.0 * rear_seat, zone="J7", seat=True),),
+        features=(
+            tapped(
+                screw_for(holes.diameter_mm, 0.5 * (holes.diameter_mm + MOTOR_TAPPED_HOLE_MM)),
+                (threads,),
+                shell.z_end,
+                shell.z_end + BACK_THREAD_MM,
+                enters="low",
+            ),
+            bored(Circle(radius_mm=rear_seat), z_plate, shell.z_seat, enters="high"),
+            turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),
+        ),
         note="step to fit the casing",
     )
 

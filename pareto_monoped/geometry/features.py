@@ -6,12 +6,20 @@ All heights are along z in the part's frame, in millimetres; every number may be
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 
 COARSE_PITCHES_MM = {2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25}
 """Pitch of the metric coarse thread by its diameter (ISO 261)."""
+
+
+CHAMFER_MM = 0.3
+"""Width of the chamfers at 45 degrees that lead one part into another: no more than the least corner radius of small
+bearings' rings (ISO 582: 0.3 mm); our own choice."""
+LEAD_IN_MM = (0.2, 0.6)
+"""Width and depth of lead-ins for press fits: 18 degrees, where 5 to 20 are usual; our own choice."""
 
 
 class Cone(StrEnum):
@@ -164,3 +172,51 @@ class CountersunkHead:
 
 
 Feature = Hole | ShaftEnd | CountersunkHead
+
+
+def bored(
+    shape: Circle | Pattern,
+    low_mm: Numbers,
+    high_mm: Numbers,
+    *,
+    enters: Literal["low", "high", "both"],
+    pressed: bool = False,
+) -> Hole:
+    """Bores that take a bearing, bush or pin, or another part's step, with a cone where it enters.
+
+    Args:
+        shape: as it stands in the prisms.
+        low_mm: height of its lower end.
+        high_mm: height of its upper end.
+        enters: the end or ends at which something enters.
+        pressed: whether it is pressed in: a lead-in instead of a chamfer.
+    """
+    width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
+    mouth = Mouth(radius_mm=shape.radius_mm + width, depth_mm=depth, kind=Cone.LEAD_IN if pressed else Cone.CHAMFER)
+    return Hole(
+        shapes=(shape,),
+        low_mm=low_mm,
+        high_mm=high_mm,
+        low=mouth if enters != "high" else None,
+        high=mouth if enters != "low" else None,
+    )
+
+
+def turned(radius_mm: Numbers, face_mm: Numbers, inwards: float, *, pressed: bool = False) -> ShaftEnd:
+    """The end of a turned part around its axis, with a cone that leads it into a bore.
+
+    Args:
+        radius_mm: of the cylinder, the prism that ends in the face.
+        face_mm: height of its end face.
+        inwards: 1 if its material lies above the face, -1 if below.
+        pressed: whether it is pressed in: a lead-in instead of a chamfer.
+    """
+    width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
+    return ShaftEnd(
+        at=Circle(radius_mm=radius_mm),
+        face_mm=face_mm,
+        inwards=inwards,
+        width_mm=width,
+        depth_mm=depth,
+        kind=Cone.LEAD_IN if pressed else Cone.CHAMFER,
+    )

@@ -69,7 +69,7 @@ class Screw:
     def thread(self) -> Thread:
         """The thread that it is driven into."""
         diameter = 2.0 * self.shank
-        return Thread(diameter_mm=diameter, pitch_mm=COARSE_PITCHES_MM[diameter])
+        return Thread(diameter_mm=diameter, pitch_mm=COARSE_PITCHES_MM.get(diameter, 2.0 * (self.shank - self.core)))
 
     def countersink(self, hole_mm: float) -> Mouth:
         """The mouth of a hole of radius ``hole_mm`` that takes a countersunk head flush with its face."""

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part
+from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
 from pareto_monoped.leg.bearing import LIP, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -143,6 +144,7 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             ),
             grade=ALLOYS["aw_6082_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
+            features=(bored(seat, z0_mm, seat_end, enters="low"),),
             note=f"{d.far_cheek_mm:g} mm plate",
         ),
         bearing_part("base_bearing", d, z0_mm=z0_mm),
@@ -164,8 +166,12 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             prisms=(Prism(outline=Circle(radius_mm=d.rod_radius_mm), z0_mm=near_mm, z1_mm=far_mm, holes=(thread,)),),
             places_mm=places,
             grade=ALLOYS["aw_6082_t6"],
-            note=f"{2.0 * d.rod_radius_mm:g} mm tube, tapped M4 at both ends; "
-            "the test stand's carriage clamps to the rods",
+            features=(
+                tapped(M4, (thread,), near_mm, far_mm, enters="both", usable_mm=ROD_THREAD),
+                turned(d.rod_radius_mm, near_mm, 1.0),
+                turned(d.rod_radius_mm, far_mm, -1.0),
+            ),
+            note=f"{2.0 * d.rod_radius_mm:g} mm tube; the test stand's carriage clamps to the rods",
         ),
         *(
             screw_part(

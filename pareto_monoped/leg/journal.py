@@ -1,5 +1,6 @@
 """The journal on the knee actuator's back, by which the base's far cheek carries the actuator's free end."""
 
+from pareto_monoped.geometry.features import turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
@@ -66,6 +67,7 @@ def journal_parts(
             ),
             grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
+            features=(turned(d.bearing_bore_radius_mm, seat + d.bearing_width_mm, -1.0),),
             note="the bore takes the knee actuator's cables",
         ),
         screw_part(

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, clearance, cylinder, screw_part
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, clearance, cylinder, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -46,6 +47,7 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
     half_gap = 0.5 * d.gap_mm
     y_mm = -thigh_length_mm
     places = ((0.0, y_mm, half_gap - d.bearing_width_mm), (0.0, y_mm, -half_gap))
+    seat, threads = Circle(radius_mm=d.bearing_outer_radius_mm), cup_holes(0.0, M25.core, d)
     return (
         Part(
             name="knee_bearing_cup",
@@ -58,13 +60,18 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
                     outline=Circle(radius_mm=d.bearing_outer_radius_mm + _CUP_WALL),
                     z0_mm=0.0,
                     z1_mm=d.bearing_width_mm,
-                    holes=(Circle(radius_mm=d.bearing_outer_radius_mm), cup_holes(0.0, M25.core, d)),
+                    holes=(seat, threads),
                 ),
             ),
             places_mm=places,
             grade=ALLOYS["aw_6082_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
-            note="threads M2.5; the plate's lip holds the bearing outwards",
+            # One cup stands the other way round.
+            features=(
+                bored(seat, 0.0, d.bearing_width_mm, enters="both"),
+                tapped(M25, (threads,), 0.0, d.bearing_width_mm, enters="both"),
+            ),
+            note="the plate's lip holds the bearing outwards",
         ),
         *(
             screw_part(
@@ -123,7 +130,10 @@ def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
             ),
             grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
-            note="threads M3",
+            features=(
+                tapped(M3, (threads,), half_tooth, flange, enters="low"),
+                turned(d.bearing_bore_radius_mm, half_gap, -1.0),
+            ),
         ),
         Part(
             name="knee_axle_cap",
@@ -136,6 +146,7 @@ def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
             ),
             grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
+            features=(turned(d.bearing_bore_radius_mm, -half_gap, 1.0),),
         ),
         Part(
             name="knee_spacer",

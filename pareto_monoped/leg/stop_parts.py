@@ -11,7 +11,7 @@ of 60 mm. Wings: 5 kN on 2 x 2.5 mm x 18 mm of edge are 56 MPa. A foot bends ove
 
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
-from pareto_monoped.geometry.screws import M3, M4, screw_part
+from pareto_monoped.geometry.screws import M3, M4, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, polygon
 from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -271,6 +271,7 @@ def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: Join
             ),
         ),
         grade=ALLOYS["aw_6082_t6"],
+        features=(tapped(M4, (thread,), cheek, _HALF_WEB, enters="low", usable_mm=_SCREW_THREAD),),
         note="slides onto two rods and stands on the near cheek",
     )
 

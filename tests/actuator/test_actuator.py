@@ -41,7 +41,9 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed(vt_map, vt8
         if part.group is Group.PLANET:
             mass = part.unit_mass_kg()
             moments = [(prism.moments(), float(prism.z1_mm - prism.z0_mm)) for prism in part.prisms]
-            spin = sum((m.xx + m.yy) * length for m, length in moments) * 1e-15 * part.material.density_kg_per_m3
+            polar = sum((m.xx + m.yy) * length for m, length in moments)
+            polar += sum(bevel.integrals()[4] + bevel.integrals()[5] for bevel in part.bevels)
+            spin = polar * 1e-15 * part.material.density_kg_per_m3
             energy += part.count * 0.5 * (mass * centre_speed**2 + spin * planet_speed**2)
         else:
             speed = sun_speed if part.group is Group.ROTOR else carrier_speed

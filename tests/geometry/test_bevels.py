@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.geometry.bevels import Bevel
-from pareto_monoped.geometry.features import CountersunkHead, Hole, Mouth, ShaftEnd
+from pareto_monoped.geometry.features import CountersunkHead, Hole, Mouth, ShaftEnd, bored, turned
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M4, clearance, tapped
@@ -125,3 +125,16 @@ def test_mass_and_inertia_count_cones():
     # Axial moment of a frustum: pi h / 10 (a^5 - b^5) / (a - b) (any table of solids).
     axial = 0.1 * np.pi * 2.0 * (6.0**5 - 5.0**5) / (6.0 - 5.0) - 0.5 * np.pi * 5.0**4 * 2.0
     assert plain.inertia_kg_m2[2, 2] - holed.inertia_kg_m2[2, 2] == pytest.approx(axial * 7.85e-12)
+
+
+def test_bores_and_turned_ends_lead_in_where_something_enters():
+    bore = Circle(radius_mm=16.0)
+    ((both_low, both_high), (press,)) = (
+        bored(bore, 0.0, 7.0, enters="both").bevels,
+        bored(bore, 0.0, 7.0, enters="high", pressed=True).bevels,
+    )
+    assert (both_low.face_mm, both_low.end_mm, both_low.edge_mm) == (0.0, 0.3, 16.3)
+    assert (both_high.face_mm, both_high.end_mm) == (7.0, 6.7)
+    assert (press.face_mm, press.end_mm, press.edge_mm) == (7.0, pytest.approx(6.4), 16.2)
+    (end,) = turned(10.0, -3.0, 1.0).bevels
+    assert (end.face_mm, end.end_mm, end.edge_mm, end.hole) == (-3.0, -2.7, 9.7, False)

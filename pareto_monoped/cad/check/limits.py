@@ -66,5 +66,6 @@ STRENGTH = Limit(
 )
 """The links of a design are rounded to 0.1 mm after the search, which moves the loads of its jump a little. A design
 that just holds in a study is not refused for that."""
+SEATS = Limit(name="heads have countersinks and screws have threads", value=0, unit="screws without")
 
 LOOSE = Limit(name="every part is held", value=0, unit="loose parts")

@@ -11,6 +11,7 @@ from pareto_monoped.cad.check import (
     mass,
     overlap,
     retention,
+    seats,
     strength,
     validity,
     watertight,
@@ -45,6 +46,7 @@ def run_checks(
         gear_mesh.check(product),
         *free_motion.check(product),
         *bolts.check(product),
+        seats.check(product),
         retention.check(product.robot),
     )
     meshes = watertight.check(product, part_files, other_files)

@@ -22,7 +22,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 from pareto_monoped.cad.kernel.cones import beveled
 from pareto_monoped.cad.shape.curves import Contour, Points, Spline, ends, on_arc
 from pareto_monoped.cad.shape.outlines import contours
-from pareto_monoped.cad.shape.stacks import regrouped
+from pareto_monoped.cad.shape.stacks import regrouped, stands_on, without_teeth
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line
@@ -42,9 +42,15 @@ def solid_of(part: Part) -> TopoDS_Shape:
 @lru_cache(maxsize=256)
 def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...] = ()) -> TopoDS_Shape:
     """The same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so parts."""
-    pieces = [piece for prism in regrouped(prisms) for piece in _extruded(prism)]
+    pieces, left = [], list(bevels)
+    # Before the fusion, pieces have few faces, which makes their cones cheap.
+    layers = [layer for prism in regrouped(prisms) for layer in without_teeth(prism, bevels)]
+    for prism in layers:
+        own = [bevel for bevel in left if stands_on(bevel, prism)]
+        left = [bevel for bevel in left if bevel not in own]
+        pieces += [beveled(piece, own) for piece in _extruded(prism)]
     pieces += [_ball(ball) for ball in balls]
-    return _only(beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), bevels))
+    return _only(beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left))
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:

@@ -1,9 +1,14 @@
 """Other prisms for the same part, chosen so that uniting them is cheap."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Prism
-from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 _TOUCH_MM = 1e-9
 
@@ -28,6 +33,55 @@ def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
             if float(bore.radius_mm) < float(widest.radius_mm)
         ]
     return result
+
+
+def stands_on(bevel: Bevel, prism: Prism) -> bool:
+    """Whether the edge of a bevel that takes away is one of this prism's, which is high enough for it."""
+    face, end = float(bevel.face_mm), float(bevel.end_mm)
+    low, high = float(prism.z0_mm), float(prism.z1_mm)
+    shapes = prism.holes if bevel.hole else (prism.outline,)
+    at_face = abs(face - (low if end > face else high)) < _TOUCH_MM
+    takes = bevel.hole or float(bevel.edge_mm) <= float(bevel.at.radius_mm)
+    return takes and bevel.at in shapes and at_face and abs(end - face) < high - low - _TOUCH_MM
+
+
+def without_teeth(prism: Prism, bevels: Sequence[Bevel]) -> tuple[Prism, ...]:
+    """A prism with teeth and bevels as two, one around the other, of which one has the teeth and no bevel.
+
+    The kernel needs seconds for a cone on a face that has hundreds of edges. Other prisms come back as they are.
+    """
+    own = [bevel for bevel in bevels if stands_on(bevel, prism)]
+    teeth = [shape for shape in (prism.outline, *prism.holes) if isinstance(shape, ExternalGear | InternalGear)]
+    if not own or len(teeth) != 1:
+        return (prism,)
+    others: list[Shape] = [hole for hole in prism.holes if hole is not teeth[0]]
+    around: list[Shape] = [
+        Circle(radius_mm=bevel.edge_mm, x_mm=x, y_mm=y) for bevel in own if bevel.hole for x, y in bevel.centres_mm()
+    ]
+    reaches = [_reach(shape) for shape in (*others, *around)]
+    if teeth[0] is prism.outline:
+        low, high = max(far for _, far in reaches), _reach(teeth[0])[0]
+    else:
+        low, high = _reach(teeth[0])[1], min(near for near, _ in reaches) if reaches else 0.0
+    if low >= high:
+        return (prism,)
+    split = Circle(radius_mm=0.5 * (low + high))
+    if teeth[0] is prism.outline:
+        return replace(prism, holes=(split,)), replace(prism, outline=split, holes=tuple(others))
+    return replace(prism, holes=(split, *others)), replace(prism, outline=split, holes=(teeth[0],))
+
+
+def _reach(shape: Shape) -> tuple[float, float]:
+    """Least and greatest distance of a shape's boundary from the origin; 0 and infinity for a kind not known here."""
+    if isinstance(shape, ExternalGear | InternalGear):
+        radii = float(shape.root_radius_mm), float(shape.tip_radius_mm)
+        return min(radii), max(radii)
+    if isinstance(shape, Circle | Pattern):
+        ring = float(shape.pitch_radius_mm) if isinstance(shape, Pattern) else 0.0
+        away = float(np.hypot(shape.x_mm, shape.y_mm))
+        radius = float(shape.radius_mm)
+        return abs(abs(ring - away) - radius) if ring + away > radius else 0.0, ring + away + radius
+    return 0.0, np.inf
 
 
 def _stacks(prisms: Sequence[Prism]) -> list[list[Prism]]:

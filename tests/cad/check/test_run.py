@@ -24,6 +24,7 @@ NAMES = [
     "the shank passes the base",
     "bolt patterns coincide",
     "bolts join parts",
+    "heads have countersinks and screws have threads",
     "every part is held",
 ]
 
