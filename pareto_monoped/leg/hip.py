@@ -79,7 +79,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             material=MATERIALS.steel,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
-            grade="12.9",
+            grade="10.9",
             note="from inside the thigh into the hip's output flange",
         ),
     )
@@ -149,7 +149,7 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
         material=MATERIALS.steel,
         count=d.mount_holes,
         pitch_radius_mm=d.mount_pitch_radius_mm,
-        grade="12.9",
+        grade="8.8",
         note="from inside the thigh into the knee actuator's case",
     )
 
@@ -208,7 +208,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             group=Group.KNEE_DRIVE,
-            grade="12.9",
+            grade="10.9",
             note="through the sprocket into the knee's output flange",
         ),
     )
