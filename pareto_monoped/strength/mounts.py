@@ -17,11 +17,7 @@ from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.materials import ALLOYS, MATERIALS
 from pareto_monoped.strength.bolted import (
-    FRICTION,
-    SLIP_SAFETY,
     head_force_n,
-    least_preload_n,
-    slip_force_n,
     thread_force_n,
 )
 from pareto_monoped.strength.drive import dowel_force_n, fastening, shank_and_thread_mm, yield_mpa
@@ -93,17 +89,12 @@ def knee_mount(s: Structure) -> tuple[float, float]:
 
 
 def hip_mount(s: Structure) -> tuple[float, float]:
-    """Torque and force at which the hip actuator's housing slips on the base's cheek, held by screws alone."""
-    d, materials = s.leg, s.settings.materials
-    screw = _screws(base_parts(_ANY_LENGTH_M, d), d.mount_pitch_radius_mm, Group.FIXED)
-    preload = least_preload_n(
-        fastening(screw),
-        shank_and_thread_mm(screw)[0],
-        steel_mpa=materials.steel.youngs_modulus_mpa,
-        clamped_mpa=materials.aluminium.youngs_modulus_mpa,
-    )
-    force = slip_force_n(float(screw.count), preload)
-    return 1e-3 * force * d.mount_pitch_radius_mm, force
+    """Torque and force that the dowels between the hip actuator's housing and the base's cheek carry."""
+    d = s.leg
+    pin = _pins(base_parts(_ANY_LENGTH_M, d), d.mount_dowel, Group.FIXED)
+    low, high = _ends(pin)
+    stress = ALLOYS[_HOUSING].yield_mpa, ALLOYS[_PLATE].yield_mpa
+    return _torque_and_force(pin, (d.hip_mount_mm - low, stress[0]), (high - d.hip_mount_mm, stress[1]))
 
 
 def _screws(parts: tuple[Part, ...], pitch_radius_mm: float, group: Group) -> Part:
@@ -214,16 +205,16 @@ JOINTS = (
         cure="release the knee's torque before its stop, or a lower knee_ratio",
     ),
     LegJoint(
-        name="hip_mount_screws",
+        name="hip_mount_dowels",
         group="joints",
-        formula=f"1 / (T / (n {FRICTION} F_V r) + F / (n {FRICTION} F_V))",
-        source="VDI 2230-1, R12; both loads summed",
-        required=SLIP_SAFETY,
-        required_source="VDI 2230-1, R12: against slip under static load",
+        formula=_DOWELS,
+        source=_SOURCE,
+        required=SHAPE_SAFETY,
+        required_source=_SHAPE,
         loads=("peak_gear_torque_hip_n_m", "peak_foot_force_n"),
         capacity=hip_mount,
         factor=dowels_under,
-        parts=("hip_mount_screw", "base_near_cheek"),
+        parts=("hip_mount_dowel", "base_near_cheek"),
         cure="release the hip's torque before its stop, or a lower hip_ratio",
     ),
     LegJoint(

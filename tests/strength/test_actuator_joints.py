@@ -78,9 +78,14 @@ def test_dowels_of_the_outputs_by_hand(vt8020):
     assert torque == pytest.approx(0.012 * force)
     torque, force = mounts.knee_output(s)
     width = s.leg.chain.sprocket_width_mm
-    assert force <= 3 * 4.0 * width * 490.0 + 1e-6
+    # A pin of 20 mm in the middle of 4.5 mm of flange, 12.2 mm of coupling and the sprocket's width.
+    spare = s.leg.output_thread_mm + s.leg.knee_mount_mm + 0.5 * width - 20.0
+    engaged = min(s.leg.output_thread_mm, width) - 0.5 * spare
+    assert 0.0 <= spare < 2.0
+    assert force == pytest.approx(min(3 * 4.0 * engaged * 460.0, 9.0 * np.pi * 1300.0 / np.sqrt(3.0)))
     assert torque == pytest.approx(0.012 * force)
-    # Six of 3 mm in the outer plate.
+    # Three of 3 mm in the hip's housing, six in the outer plate.
+    assert mounts.hip_mount(s)[1] == pytest.approx(3 * 3.0 * 4.5 * 250.0)
     torque, force = mounts.knee_mount(s)
     assert force == pytest.approx(6 * 3.0 * s.leg.plate_mm * 250.0)
     assert torque == pytest.approx(1e-3 * s.leg.mount_pitch_radius_mm * force)
