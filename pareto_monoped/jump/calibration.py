@@ -28,7 +28,6 @@ _STRICT = ConfigDict(extra="forbid")
 
 DEFAULT = "reference"
 _PAPER = "paper"
-_STRENGTH_BY_DEFAULT = False  # see ``strength_for``
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 # As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
@@ -376,7 +375,7 @@ def strength_for(calibration: str) -> bool:
 
     The calibration ``paper`` follows the paper's simulation, whose robot has no end stops.
     """
-    return _STRENGTH_BY_DEFAULT and calibration != _PAPER
+    return calibration != _PAPER
 
 
 def calibration_names() -> tuple[str, ...]:

@@ -30,6 +30,13 @@ _LEAST_ROD_CIRCLE_MM = 70.0  # 0.9 mm from a rod to an ear with the bumper fully
 _UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0  # from the middle, and above the lower rods
 
 
+THIGH_HALF_WIDTH_MM = 24.0
+"""Of the bar of the thigh's plates, our own layout."""
+# Width of the metal beside the windows of these plates: 9 mm for the 44 N m of the VT8020, and in proportion for more.
+# The VT8020's chain then limits the jumps before the plates do (``strength.links``).
+_THIGH_SIDE_MM, _THIGH_SIDE_N_M = 9.0, 45.0
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LegDimensions:
     """Every dimension of links and base that does not follow from the link lengths.
@@ -93,14 +100,14 @@ class LegDimensions:
     bearing_outer_radius_mm: float
     bearing_width_mm: float
     bearing_kg: float
+    thigh_window_half_width_mm: float
 
     plate_mm: float = 2.5
     shank_plate_mm: float = 3.0
     gap_mm: float = 24.0
     play_mm: float = 2.0
     hip_play_mm: float = 3.0
-    thigh_half_width_mm: float = 24.0
-    thigh_window_half_width_mm: float = 13.0
+    thigh_half_width_mm: float = THIGH_HALF_WIDTH_MM
     thigh_core_half_width_mm: float = 19.5
     thigh_core_window_half_width_mm: float = 16.0
     knee_radius_mm: float = 35.5
@@ -209,6 +216,7 @@ def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
         )
     mount, output = actuators[0].mount, actuators[0].output
     bearing = small_bearing(_BEARING_BORE_MM)
+    torque_n_m = max(actuator.peak_torque_n_m for actuator in actuators)
     motor = actuator_map.motor
     driver = motor_driver_for(motor)
     return LegDimensions(
@@ -227,11 +235,12 @@ def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
         back_pitch_radius_mm=0.5 * mount.back_bolts.pitch_circle_mm,
         back_holes=mount.back_bolts.count,
         back_screw_mm=mount.back_bolts.diameter_mm,
-        chain=chain_drive_for(max(actuator.peak_torque_n_m for actuator in actuators)),
+        chain=chain_drive_for(torque_n_m),
         driver=driver,
         driver_note="" if driver.carries(motor) else f"; {driver.limit(motor)}",
         bearing_bore_radius_mm=0.5 * float(bearing.inner_diameter_mm),
         bearing_outer_radius_mm=0.5 * float(bearing.outer_diameter_mm),
         bearing_width_mm=float(bearing.width_mm),
         bearing_kg=float(bearing.mass_kg),
+        thigh_window_half_width_mm=THIGH_HALF_WIDTH_MM - _THIGH_SIDE_MM * max(1.0, torque_n_m / _THIGH_SIDE_N_M),
     )
