@@ -52,7 +52,7 @@ def test_the_partner_of_a_joint_is_another_part_of_its_unit():
         if unit.name == "foot":
             partners = {"foot_block"}  # of the shank
         elif unit.name == "thigh":
-            partners |= {"knee_sprocket"}  # of the shank
+            partners |= {"knee_axle"}  # of the shank
         assert part.joint.partner in partners
         assert part.joint.text.split()[-1] == part.joint.partner
 

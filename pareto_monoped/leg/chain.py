@@ -18,10 +18,11 @@ from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm along the strand.
 _STRAIGHT = 4  # pitches of a piece beside its sprocket, with the knee in the middle of its range
-_FORK_BOTTOM, _FORK_ROOT = 6.5, 10.0  # from the pin to the bottom of the fork's slot and to the stud
-_HALF_FORK, _CHEEK = 4.0, 1.6  # half width of a fork, and thickness of its cheeks
+FORK_BOTTOM, FORK_ROOT = 6.5, 10.0  # from the pin to the bottom of the fork's slot and to the stud
+HALF_FORK, CHEEK = 4.0, 1.6  # half width of a fork, and thickness of its cheeks
 _STUD_DEPTH = 10.5  # in the bar, in the middle of the travel
-TRAVEL = 4.0  # of either end to either side, for assembly and wear: 1.3 diameters of thread are left
+TRAVEL = 4.0  # of either end to either side, for assembly and wear
+LEAST_ENGAGED = _STUD_DEPTH - TRAVEL  # of a stud: 1.3 diameters
 _TAPPED = 16.0  # depth of the bar's threads
 _NUT, _NUT_FLATS = 2.7, 8.0  # height and width across flats of a thin nut M5 (ISO 4035)
 _SPARE = 0.3  # between nut and fork at the short end of the travel
@@ -82,7 +83,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             )
             for end, y_mm, sign, sprocket in (
                 ("hip", 0.0, 1.0, "drive_sprocket"),
-                ("knee", -length_mm, -1.0, "knee_sprocket"),
+                ("knee", -length_mm, -1.0, "knee_axle"),
             )
         ),
         *_turnbuckles(length_mm - 2.0 * reach, places, d),
@@ -91,7 +92,7 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions) -> tuple[Part, ...]:
     """The turnbuckles of both strands, ``pins_mm`` long between their pins."""
-    half_bar = 0.5 * pins_mm - _FORK_ROOT - TRAVEL - _NUT - _SPARE
+    half_bar = 0.5 * pins_mm - FORK_ROOT - TRAVEL - _NUT - _SPARE
     cut = f", {2.0 * float(half_bar):.1f} mm long" if np.ndim(half_bar) == 0 else ""
     return (
         Part(
@@ -265,13 +266,13 @@ def _end(side: float, d: LegDimensions) -> tuple[Prism, ...]:
     """A fork around the chain's last link, around its pin, with a stud towards the turnbuckle's middle."""
     stud = 0.5 * _STUD
     half_slot = 0.5 * d.chain.inner_link_mm + _SLOT_PLAY
-    half_fork = half_slot + _CHEEK
-    tip = _FORK_ROOT + TRAVEL + _NUT + _SPARE + _STUD_DEPTH
-    cheek = _across(-_FORK_BOTTOM, _HALF_FORK, side, _HALF_FORK)
+    half_fork = half_slot + CHEEK
+    tip = FORK_ROOT + TRAVEL + _NUT + _SPARE + _STUD_DEPTH
+    cheek = _across(-FORK_BOTTOM, HALF_FORK, side, HALF_FORK)
     return (
         Prism(outline=cheek, z0_mm=-half_fork, z1_mm=-half_slot),
         Prism(outline=Circle(radius_mm=0.5 * d.chain.pin_diameter_mm), z0_mm=-half_slot, z1_mm=half_slot),
         Prism(outline=cheek, z0_mm=half_slot, z1_mm=half_fork),
-        Prism(outline=_across(-_FORK_ROOT, -_FORK_BOTTOM, side, _HALF_FORK), z0_mm=-half_fork, z1_mm=half_fork),
-        Prism(outline=_across(-tip, -_FORK_ROOT, side, stud), z0_mm=-stud, z1_mm=stud),
+        Prism(outline=_across(-FORK_ROOT, -FORK_BOTTOM, side, HALF_FORK), z0_mm=-half_fork, z1_mm=half_fork),
+        Prism(outline=_across(-tip, -FORK_ROOT, side, stud), z0_mm=-stud, z1_mm=stud),
     )

@@ -2,15 +2,16 @@
 
 import numpy as np
 
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M25, clearance, cylinder, screw_part, tapped
+from pareto_monoped.geometry.screws import LENGTHS_MM, M4, M25, cylinder, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.sprocket import BORE_RADIUS, HEAD_PLAY, sprocket_prisms, sprocket_screws
+from pareto_monoped.leg.sprocket import relief_holes, sprocket_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the cups, mm.
@@ -19,8 +20,9 @@ _CUP_SCREWS = 4  # M2.5, in the middle of that wall
 _CUP_THREAD = 6.0  # usable depth in a cup, which is as deep as the bearing is wide
 # Our own layout of the axle, mm.
 _BOLTS, _BOLT_PITCH_RADIUS = 4, 5.5  # M4: 2.35 mm of metal between their holes and the bearing's seat
-_FLANGE_RIM = 1.0  # less than the output flange's radius: 2.25 mm of metal outside the sprocket's threads
-_FLANGE_PLAY = 0.4  # to the bearing's outer ring; leaves 3.2 mm of thread for the sprocket's screws
+AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between them: 0.8 mm of metal between the holes
+_DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
+DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
 # The nut of an axle bolt, M4 (ISO 4032), mm.
 _NUT_HEIGHT = 3.2
 _NUT_RADIUS = 3.68  # of a disc with the nut's area, 7 mm across flats
@@ -101,70 +103,97 @@ def axle_holes() -> Pattern:
     return Pattern(radius_mm=M4.hole, pitch_radius_mm=_BOLT_PITCH_RADIUS, count=_BOLTS, phase_rad=np.pi / 4)
 
 
+def axle_dowels() -> Pattern:
+    """The holes of the dowels by which the axle turns a plate of the shank."""
+    return AXLE_DOWEL.holes(2.0 * _DOWEL_PITCH_RADIUS, _BOLTS, 0.0)
+
+
 def axle_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns in the thigh's knee bearings: two half axles with the sprocket between them, clamped by four bolts."""
-    return (*_half_axles(d), *_sprocket(d), _axle_bolt(d))
+    """What turns in the thigh's knee bearings: the axle with its teeth, clamped between the shank's plates."""
+    return (_axle(d), *_dowels(d), _spacer(d), _axle_bolt(d))
 
 
-def _half_axles(d: LegDimensions) -> tuple[Part, ...]:
-    """Both halves of the axle, and the spacers that clamp the bearings' inner rings between axle and shank."""
+def _axle(d: LegDimensions) -> Part:
+    """Axle and sprocket in one piece: no joint between them has to carry the chain's torque.
+
+    It goes in from the inside of the thigh before the second plate closes the sandwich, as any axle with shoulders.
+    """
+    half_gap, half_tooth, shoulder = 0.5 * d.shank_gap_mm, 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d)
+    bolts, dowels, blind = axle_holes(), axle_dowels(), half_gap - DOWEL_DEPTH
+
+    def both(radius_mm: float, low_mm: float, high_mm: float, *holes: Pattern) -> tuple[Prism, Prism]:
+        disc = Circle(radius_mm=radius_mm)
+        return (
+            Prism(outline=disc, z0_mm=-high_mm, z1_mm=-low_mm, holes=(bolts, *holes)),
+            Prism(outline=disc, z0_mm=low_mm, z1_mm=high_mm, holes=(bolts, *holes)),
+        )
+
+    return Part(
+        name="knee_axle",
+        role=Role.SPROCKET,
+        material=MATERIALS.aluminium,
+        process="machined",
+        prisms=(
+            Prism(
+                outline=sprocket_outline(d.chain),
+                z0_mm=-half_tooth,
+                z1_mm=half_tooth,
+                holes=(bolts, relief_holes(d)),
+            ),
+            *both(SHOULDER_RADIUS, half_tooth, shoulder),
+            *both(d.bearing_bore_radius_mm, shoulder, blind),
+            *both(d.bearing_bore_radius_mm, blind, half_gap, dowels),
+        ),
+        grade=ALLOYS["aw_7075_t6"],
+        fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True), AXLE_DOWEL.hole_fit),
+        features=(
+            turned(d.bearing_bore_radius_mm, half_gap, -1.0),
+            turned(d.bearing_bore_radius_mm, -half_gap, 1.0),
+        ),
+        note=f"axle and sprocket in one piece; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
+    )
+
+
+def _dowels(d: LegDimensions) -> tuple[Part, ...]:
+    """The dowels between axle and plates, flush with the plates' outer faces."""
+    holes, face = axle_dowels(), 0.5 * d.shank_gap_mm + d.shank_plate_mm
+    return tuple(
+        dowel_part(
+            f"knee_axle_dowel_{side}",
+            AXLE_DOWEL,
+            end_mm=sign * face,
+            room_mm=d.shank_plate_mm + DOWEL_DEPTH,
+            direction=-sign,
+            material=MATERIALS.steel,
+            count=holes.count,
+            pitch_radius_mm=holes.pitch_radius_mm,
+            phase_rad=holes.phase_rad,
+            partner="knee_axle",
+            note="holes reamed together with the plate",
+        )
+        for side, sign in (("near", -1.0), ("far", 1.0))
+    )
+
+
+def _spacer(d: LegDimensions) -> Part:
+    """The spacers that clamp the bearings' inner rings between axle and shank."""
     half_gap, half_thigh_gap = 0.5 * d.shank_gap_mm, 0.5 * d.gap_mm
-    half_tooth, shoulder, flange = 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d), _flange_z_mm(d)
-    bolts = axle_holes()
-    threads = Pattern(radius_mm=M3.core, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
-
-    def disc(radius_mm: float, z0_mm: float, z1_mm: float, *holes: Pattern) -> Prism:
-        return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=z0_mm, z1_mm=z1_mm, holes=(bolts, *holes))
-
-    return (
-        Part(
-            name="knee_axle",
-            role=Role.SHAFT,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                disc(BORE_RADIUS, -half_tooth, half_tooth),
-                disc(d.coupler_radius_mm - _FLANGE_RIM, half_tooth, flange, threads),
-                disc(SHOULDER_RADIUS, flange, shoulder),
-                disc(d.bearing_bore_radius_mm, shoulder, half_gap),
-            ),
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
-            features=(
-                tapped(M3, (threads,), half_tooth, flange, enters="low"),
-                turned(d.bearing_bore_radius_mm, half_gap, -1.0),
+    return Part(
+        name="knee_spacer",
+        role=Role.SPACER,
+        material=MATERIALS.aluminium,
+        process="machined",
+        prisms=(
+            Prism(
+                outline=Circle(radius_mm=SHOULDER_RADIUS),
+                z0_mm=0.0,
+                z1_mm=half_gap - half_thigh_gap,
+                holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
             ),
         ),
-        Part(
-            name="knee_axle_cap",
-            role=Role.SHAFT,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                disc(d.bearing_bore_radius_mm, -half_gap, -shoulder),
-                disc(SHOULDER_RADIUS, -shoulder, -half_tooth),
-            ),
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
-            features=(turned(d.bearing_bore_radius_mm, -half_gap, 1.0),),
-        ),
-        Part(
-            name="knee_spacer",
-            role=Role.SPACER,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=SHOULDER_RADIUS),
-                    z0_mm=0.0,
-                    z1_mm=half_gap - half_thigh_gap,
-                    holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
-                ),
-            ),
-            places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
-            grade=ALLOYS["aw_6082_t6"],
-            note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
-        ),
+        places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
+        grade=ALLOYS["aw_6082_t6"],
+        note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
     )
 
 
@@ -173,49 +202,8 @@ def _shoulder_z_mm(d: LegDimensions) -> float:
     return 0.5 * d.gap_mm - d.bearing_width_mm
 
 
-def _flange_z_mm(d: LegDimensions) -> float:
-    """Height z of the end of the axle's flange, which carries the sprocket."""
-    return _shoulder_z_mm(d) - _FLANGE_PLAY
-
-
-def _sprocket(d: LegDimensions) -> tuple[Part, ...]:
-    """The sprocket and the screws that hold it on the axle's flange."""
-    half_tooth = 0.5 * d.chain.sprocket_width_mm
-    prisms = sprocket_prisms(d, M3.countersunk + HEAD_PLAY)
-    return (
-        Part(
-            name="knee_sprocket",
-            role=Role.SPROCKET,
-            material=MATERIALS.aluminium,
-            process="machined",
-            grade=ALLOYS["aw_7075_t6"],
-            prisms=prisms,
-            features=(
-                clearance(
-                    M3, (sprocket_screws(d, M3.hole),), d.sprocket_recess_mm - half_tooth, half_tooth, countersunk="low"
-                ),
-            ),
-            note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
-        ),
-        screw_part(
-            "knee_sprocket_screw",
-            M3,
-            head="countersunk",
-            seat_mm=d.sprocket_recess_mm - half_tooth,
-            grip_mm=2.0 * half_tooth - d.sprocket_recess_mm,
-            room_mm=_flange_z_mm(d) - half_tooth,
-            direction=1.0,
-            material=MATERIALS.steel,
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
-            grade="10.9",
-            note="flush, into the axle; the four long bolts clamp the sprocket as well",
-        ),
-    )
-
-
 def _axle_bolt(d: LegDimensions) -> Part:
-    """The bolts through shank plates, spacers, axle and sprocket."""
+    """The bolts through shank plates, spacers and axle."""
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
     length = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
     return Part(

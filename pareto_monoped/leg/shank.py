@@ -8,7 +8,7 @@ from pareto_monoped.geometry.screws import M3, M4, clearance
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.knee import axle_holes, axle_parts
+from pareto_monoped.leg.knee import AXLE_DOWEL, axle_dowels, axle_holes, axle_parts
 from pareto_monoped.leg.outlines import rounded
 from pareto_monoped.leg.sandwich import (
     BRIDGE,
@@ -81,6 +81,7 @@ def _plates(
     outline = _outline(flat_mm, d)
     holes: tuple[Shape, ...] = (
         axle_holes(),
+        axle_dowels(),
         fork_window,
         *windows_between(bridges, d.shank_window_half_width_mm),
         *bolted,
@@ -102,6 +103,7 @@ def _plates(
                 for screw, shapes in ((M3, bolted), (M4, thick))
             ),
             grade=ALLOYS["aw_6082_t6"],
+            fits=(AXLE_DOWEL.hole_fit,),
             note=f"{d.shank_plate_mm:g} mm sheet",
         )
         for side, low, outside in sides

@@ -1,4 +1,4 @@
-"""The sprocket of hip and knee: its teeth (ISO 606), bore, screw holes and lightening holes."""
+"""The sprockets of hip and knee: their teeth (ISO 606) and lightening holes; bore and screw holes of the hip's."""
 
 from functools import lru_cache
 
@@ -12,7 +12,7 @@ from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.leg.dimensions import LegDimensions
 
 # Our own layout, mm.
-BORE_RADIUS = 8.5  # takes the neck of the knee's axle; countersinks of its screws stay 0.1 mm outside
+_BORE_RADIUS = 8.5
 _RELIEF_RADIUS, _RELIEF_PITCH_RADIUS = 3.3, 19.0  # one to a tooth, between screws and teeth: 2.3 mm to the roots
 HEAD_PLAY = 0.1  # around a sunk screw head
 
@@ -61,6 +61,11 @@ def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
 
 
+def relief_holes(d: LegDimensions) -> Pattern:
+    """The holes that lighten a sprocket."""
+    return Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=d.chain.teeth)
+
+
 def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
     """The sprocket, with holes for its screws and dowels.
 
@@ -78,10 +83,10 @@ def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
             z0_mm=z0_mm,
             z1_mm=z1_mm,
             holes=(
-                Circle(radius_mm=BORE_RADIUS),
+                Circle(radius_mm=_BORE_RADIUS),
                 sprocket_screws(d, screw_radius_mm),
                 d.drive_dowel,
-                Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=d.chain.teeth),
+                relief_holes(d),
             ),
         )
 

@@ -4,9 +4,7 @@ A bumper lies between the end lips of its seat and is bonded to its floor. Seats
 plates: their wings stand on the plates' edges, which carry the force, and their feet reach in between, where a bolt
 holds them.
 
-Forces, for the strength of what follows: a knee that arrives with 15 J squeezes the bumper with 5 kN at most at a lever
-of 60 mm. Wings: 5 kN on 2 x 2.5 mm x 18 mm of edge are 56 MPa. A foot bends over 24 mm between the plates by
-5 kN x 24 mm / 8 = 15 N m, on a section of 13 mm x 10 mm: 70 MPa. EN AW-6082 T6 yields at 250 MPa.
+What they carry is computed in ``strength.stop_seats``.
 """
 
 from pareto_monoped.geometry.parts import Part, Prism
@@ -32,10 +30,10 @@ LIP, LIP_THICKNESS = 3.0, 1.5  # of a seat at either end of its bumper, above it
 # Our own layout of seats and strikers on the thigh, mm.
 WING = 2.5  # from the face to the edges of the plates
 BOLT_DEPTH = 6.5  # of the bolt's axis: 1.9 mm of plate around its hole, which carries nothing
-_FOOT_DEPTH, _HALF_FOOT = 10.0, 4.5
+FOOT_DEPTH, HALF_FOOT = 10.0, 4.5
 # Our own layout of the shank's striker, mm.
-_HEAD, _HALF_HEAD = 11.0, 5.0  # depth behind a face, and half width there
-_TOE = 3.0  # depth at a face's ends
+HEAD, HALF_HEAD = 11.0, 5.0  # depth behind a face, and half width there
+TOE = 3.0  # depth at a face's ends
 _HALF_SPINE = 3.0  # half thickness of the web between the heads
 _HEAD_BOLT = (0.0, 5.5)  # along and behind either face
 # Our own layout of the base's seats, mm.
@@ -83,8 +81,8 @@ def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: Joi
         (-end, 0.0),
         (end, 0.0),
         (end, WING),
-        (_HALF_FOOT, _FOOT_DEPTH),
-        (-_HALF_FOOT, _FOOT_DEPTH),
+        (HALF_FOOT, FOOT_DEPTH),
+        (-HALF_FOOT, FOOT_DEPTH),
         (-end, WING),
     )
     x, y = face.point(0.0, BOLT_DEPTH)
@@ -148,9 +146,7 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
     holes = tuple(Circle(radius_mm=sleeve_hole(M4), x_mm=x, y_mm=y) for x, y, _ in shank_stop_bolts(d))
 
     def head(face: Face, hole: Circle) -> tuple[Prism, ...]:
-        outline = face.polygon(
-            (-end, 0.0), (end, 0.0), (end, _TOE), (_HALF_HEAD, _HEAD), (-_HALF_HEAD, _HEAD), (-end, _TOE)
-        )
+        outline = face.polygon((-end, 0.0), (end, 0.0), (end, TOE), (HALF_HEAD, HEAD), (-HALF_HEAD, HEAD), (-end, TOE))
         return tuple(
             Prism(outline=outline, z0_mm=low, z1_mm=high, holes=(hole,))
             for low, high in ((-half_gap, -_HALF_SPINE), (_HALF_SPINE, half_gap))
@@ -187,15 +183,15 @@ def _striker_outline(d: LegDimensions) -> Path:
     points = (
         extension.point(-end, 0.0),
         extension.point(end, 0.0),
-        extension.point(end, _TOE),
-        extension.point(_HALF_HEAD, _HEAD),
+        extension.point(end, TOE),
+        extension.point(HALF_HEAD, HEAD),
         flexion.point(-end, 0.0),
         flexion.point(end, 0.0),
-        flexion.point(end, _TOE),
-        flexion.point(_HALF_HEAD, _HEAD),
-        flexion.point(-end, _HEAD),
-        extension.point(-_HALF_HEAD, _HEAD),
-        extension.point(-end, _TOE),
+        flexion.point(end, TOE),
+        flexion.point(HALF_HEAD, HEAD),
+        flexion.point(-end, HEAD),
+        extension.point(-HALF_HEAD, HEAD),
+        extension.point(-end, TOE),
     )
     return polygon(points)
 

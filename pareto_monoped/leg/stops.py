@@ -20,7 +20,7 @@ _HIP_LEVER_TO_ROD = 25.0  # mm: the thigh's striker passes 2 mm from the seat's 
 MOST_COMPRESSION = 0.5
 """Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here.
 
-A limit of the design, which the highest jumps exceed in simulation (docs/model.md, on contact, friction and stops).
+A limit of the design, which ``stop_safety`` holds (``strength.stops``).
 """
 
 

@@ -18,7 +18,7 @@ _FILLET_GAP = 0.5  # from where a fillet would touch the round end
 _EAR_FOOT = 14.0  # from an ear's end along the bar to the middle of its fillet
 _SPARE = 1.0  # of an edge beyond the seat or striker that stands on it
 _FRONT_FILLET = 31.0  # of the middle of the fillet before the knee above its axis, next to the round end
-_HEEL_WIDTH = 22.0  # of the heel's tip: 5 kN at 18 mm from where it is 23 mm wide are 200 MPa in both plates
+HEEL_WIDTH = 22.0  # of the heel's tip; what it carries is computed in ``strength.stop_seats``
 _HEEL_FILLET = 5.0  # radius, between heel and knee
 
 
@@ -78,13 +78,20 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
     )
 
 
+def heel_arm_mm(d: LegDimensions) -> float:
+    """Distance of the bumper's force from the heel's root, where the fillet begins.
+
+    The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
+    """
+    stop = knee_stop(d)
+    high = stop.bumper.diameter_mm + WING - _HEEL_FILLET
+    return stop.lever_mm - float(np.sqrt((d.knee_radius_mm + _HEEL_FILLET + _FILLET_GAP) ** 2 - high**2))
+
+
 def _heel(face: Face, d: LegDimensions) -> tuple[Pulley, ...]:
     """The heel with the seat for extension, from behind to the front; its front runs straight up past the knee."""
     stop = knee_stop(d)
-    # The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
-    high = stop.bumper.diameter_mm + WING - _HEEL_FILLET
-    out = float(np.sqrt((d.knee_radius_mm + _HEEL_FILLET + _FILLET_GAP) ** 2 - high**2))
-    x, y = face.point(out - stop.lever_mm, WING - _HEEL_FILLET)
+    x, y = face.point(-heel_arm_mm(d), WING - _HEEL_FILLET)
     root = Pulley(x_mm=x, y_mm=y, radius_mm=_HEEL_FILLET, inside=False)
     end = stop.half_face_mm
-    return root, _corner(face, end), _corner(face, end, _HEEL_WIDTH - 2.0 * _CORNER)
+    return root, _corner(face, end), _corner(face, end, HEEL_WIDTH - 2.0 * _CORNER)

@@ -58,5 +58,5 @@ def test_the_hip_s_output_turns_with_the_thigh_and_the_sun_by_the_ratio(product)
 def test_the_chain_drive_turns_with_the_shank(product):
     bent = instances(product.robot, Pose(hip_rad=0.3, knee_rad=0.8))
     drive = next(i for i in bent if i.name == "thigh/drive_sprocket").world
-    driven = next(i for i in bent if i.name == "shank/knee_sprocket").world
+    driven = next(i for i in bent if i.name == "shank/knee_axle").world
     assert drive[:3, :3] == pytest.approx(driven[:3, :3], abs=1e-12)

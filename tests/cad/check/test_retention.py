@@ -55,7 +55,7 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
         ("thigh/turnbuckle_end_hip", {"thigh/turnbuckle_bar", "thigh/turnbuckle_nut_hip"}),
         ("thigh/drive_sprocket", {"thigh/drive_coupling"}),
         ("thigh/knee_bearing", {"shank/knee_axle", "foot/foot"}),
-        ("shank/knee_bolt", {"shank/shank_plate_far", "foot/foot"}),
+        ("shank/knee_axle", {"shank/shank_plate_far", "foot/foot"}),
         ("shank/foot_bolt", {"shank/foot_block", "foot/foot"}),
     ],
 )
