@@ -21,7 +21,6 @@ from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
 from pareto_monoped.geometry.dowels import dowel_part
-from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import Screw, clearance, screw_for, screw_part
@@ -32,9 +31,6 @@ _MOTOR_THREAD_MM = 5.0
 """How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
 _HUB_MM = 3.0
 """Metal around the spline in the coupling; our own choice."""
-_SCREWS_ALONE = 0.5
-"""Circle of the turning face's screws over the motor's diameter from which their friction carries the torque without
-dowels: M3 of 8.8 on the VT8020's 71.5 mm hold six times its peak torque."""
 _SHAFT_MM, _SHAFT_BORE_MM = 4.0, 4.5
 """Radii of a framed motor's shaft and of its bore in the base. The data sheets show no dimension of it; our own
 assumption, with the rear end flush with the base."""
@@ -107,52 +103,44 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
                 r_coupling,
                 spline,
                 through,
-                *_dowel_holes(motor),
+                _dowel_holes(motor),
                 *_coupling_windows(float(spline.tip_radius_mm), output),
             ),
             process="machined",
             group=Group.ROTOR,
             grade=ALLOYS["aw_7075_t6"],
-            fits=_dowel_fits(motor),
+            fits=(COUPLING_DOWEL.hole_fit,),
             features=(
                 clearance(_output_screw(output), (through,), shell.z_motor, shell.z_coupling, countersunk="high"),
             ),
             note=f"screwed to the motor's turning face; bore {HUB_NOTE}",
         ),
-        *_coupling_dowels(shell, motor, settings),
+        _coupling_dowels(shell, motor, settings),
     )
 
 
-def _dowel_holes(motor: Motor) -> tuple[Pattern, ...]:
-    """One hole for a dowel between every two screws of the turning face, where its circle is small."""
+def _dowel_holes(motor: Motor) -> Pattern:
+    """One hole for a dowel between every two screws of the turning face, whose friction alone carries too little."""
     output = _output(motor)
-    if output.pitch_circle_mm > _SCREWS_ALONE * motor.outer_diameter_mm:
-        return ()
-    return (COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count),)
+    return COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count)
 
 
-def _dowel_fits(motor: Motor) -> tuple[Fit, ...]:
-    return (COUPLING_DOWEL.hole_fit,) if _dowel_holes(motor) else ()
-
-
-def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
+def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
     """The dowels through the coupling into the motor's turning face."""
-    return tuple(
-        dowel_part(
-            "coupling_dowel",
-            COUPLING_DOWEL,
-            end_mm=shell.z_motor - shell.base_mm,
-            room_mm=shell.base_mm + settings.parts.coupling.thickness_mm + DOWEL_STANDS_OUT_MM,
-            direction=1.0,
-            material=settings.materials.steel,
-            count=holes.count,
-            pitch_radius_mm=holes.pitch_radius_mm,
-            phase_rad=holes.phase_rad,
-            group=Group.ROTOR,
-            partner="coupling",
-            note="drill and ream the turning face through the coupling",
-        )
-        for holes in _dowel_holes(motor)
+    holes = _dowel_holes(motor)
+    return dowel_part(
+        "coupling_dowel",
+        COUPLING_DOWEL,
+        end_mm=shell.z_motor - shell.base_mm,
+        room_mm=shell.base_mm + settings.parts.coupling.thickness_mm + DOWEL_STANDS_OUT_MM,
+        direction=1.0,
+        material=settings.materials.steel,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
+        group=Group.ROTOR,
+        partner="coupling",
+        note="drill and ream the turning face through the coupling",
     )
 
 
@@ -233,7 +221,7 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
                     z_motor,
                     at.r_motor,
                     _rotor_holes(_output(motor), _ROTOR_TAPPED_MM),
-                    *_dowel_holes(motor),
+                    _dowel_holes(motor),
                 ),
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
                 *shaft_end(z_plate, z_motor - base, _SHAFT_MM),

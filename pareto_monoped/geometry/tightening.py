@@ -1,4 +1,4 @@
-"""Tightening of metric screws after VDI 2230-1 in its short form: assembly preload, tightening torque, thread locking."""
+"""Tightening of metric screws after VDI 2230-1 in its short form: preload, tightening torque, thread locking."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -19,7 +19,7 @@ _UTILISATION = {"cap": 0.9, "hexagon": 0.9, "countersunk": 0.75}
 """Share of the proof stress used (VDI 2230-1: 0.9). Countersunk heads carry 80 percent of a screw (ISO 10642) and their
 key is smaller."""
 _BEARING_SHARE = 0.94
-"""Outer diameter of a head's bearing face over that of the head: 5.07 to 5.5 mm for M3, 12.33 to 13 for M8 (ISO 4762)."""
+"""Outer diameter of a head's bearing face over that of the head: M3 5.07 of 5.5 mm, M8 12.33 of 13 (ISO 4762)."""
 _COUNTERSINK_RAD = 0.25 * np.pi
 """Half the angle of a countersunk head."""
 LOCKER = "medium-strength thread locker"

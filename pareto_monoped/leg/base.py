@@ -1,7 +1,10 @@
 """The base frame: two cheeks joined by four rods; it carries the hip actuator and the knee actuator's free end."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
@@ -74,8 +77,22 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
     """The plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
     mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
+    mount_dowels = replace(d.mount_dowel, count=d.mount_dowels // 2)
     seats = holes_at(hip_seat_screws(d), M4.hole)
     return (
+        dowel_part(
+            "hip_mount_dowel",
+            Dowel(diameter_mm=d.mount_dowel_mm),
+            end_mm=z0 - d.mount_thread_mm,
+            room_mm=d.mount_thread_mm + d.cheek_mm,
+            direction=1.0,
+            material=MATERIALS.steel,
+            count=mount_dowels.count,
+            pitch_radius_mm=mount_dowels.pitch_radius_mm,
+            phase_rad=mount_dowels.phase_rad,
+            partner="base_near_cheek",
+            note="into every second of the holes in the hip actuator's case; ream them together",
+        ),
         Part(
             name="base_near_cheek",
             role=Role.PLATE,
@@ -89,6 +106,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                     holes=(
                         Circle(radius_mm=d.coupler_radius_mm + _BORE_PLAY),
                         mount,
+                        mount_dowels,
                         # One below each gap between the screws.
                         Pattern(
                             radius_mm=_RELIEF_RADIUS,

@@ -79,7 +79,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             material=MATERIALS.steel,
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
-            grade="12.9",
+            grade="10.9",
             note="from inside the thigh into the hip's output flange",
         ),
     )
@@ -101,11 +101,12 @@ def _output_dowels(
     partner: str,
     group: Group = Group.FIXED,
 ) -> Part:
-    """The dowels into an output flange, from the face at ``end_mm``."""
+    """The dowels into an output flange, in the middle of their holes, which begin at ``end_mm``."""
+    spare_mm = room_mm - float(_output_dowel(d).length_mm(room_mm))
     return dowel_part(
         name,
         _output_dowel(d),
-        end_mm=end_mm,
+        end_mm=end_mm + direction * 0.5 * spare_mm,
         room_mm=room_mm,
         direction=direction,
         material=MATERIALS.steel,
@@ -149,7 +150,7 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
         material=MATERIALS.steel,
         count=d.mount_holes,
         pitch_radius_mm=d.mount_pitch_radius_mm,
-        grade="12.9",
+        grade="8.8",
         note="from inside the thigh into the knee actuator's case",
     )
 
@@ -190,9 +191,9 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             "drive_dowel",
             d,
             d.drive_dowel,
-            end_mm=-half_tooth,
+            end_mm=d.knee_mount_mm + d.output_thread_mm,
             room_mm=d.knee_mount_mm + half_tooth + d.output_thread_mm,
-            direction=1.0,
+            direction=-1.0,
             partner="drive_coupling",
             group=Group.KNEE_DRIVE,
         ),
@@ -208,7 +209,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             count=d.output_holes,
             pitch_radius_mm=d.output_pitch_radius_mm,
             group=Group.KNEE_DRIVE,
-            grade="12.9",
+            grade="10.9",
             note="through the sprocket into the knee's output flange",
         ),
     )

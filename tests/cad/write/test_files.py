@@ -160,7 +160,8 @@ def test_parts_list_sizes_and_units_are_those_of_the_files(exported):
     assert (screw["torque_n_m"], screw["lock"]) == ("1.9", "medium-strength thread locker")
     for row in rows:
         if "_screw" in row["part"]:
-            assert row["torque_n_m"] and row["lock"]
+            assert row["torque_n_m"]
+            assert row["lock"]
         elif "bolt" not in row["part"] and "turnbuckle" not in row["part"]:
             assert row["torque_n_m"] == row["lock"] == ""
 

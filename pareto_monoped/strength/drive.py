@@ -1,0 +1,284 @@
+"""Joints of an actuator's drive: from the motor through coupling, spline and shaft to the sun; planet pins; ring.
+
+What turns at the motor's speed carries the gearbox's torque over the ratio: in an end stop, the rotor drives from
+behind, and the output's torque reaches back through the sun as well. All capacities are torques at the output.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pareto_monoped.actuator.front import z_pin_front
+from pareto_monoped.actuator.layout import Layout, layout
+from pareto_monoped.actuator.rating.build import load_sharing
+from pareto_monoped.geometry.gears import ExternalGear
+from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.geometry.tightening import Fastening
+from pareto_monoped.materials import ALLOYS
+from pareto_monoped.strength.bolted import FRICTION, SLIP_SAFETY, least_preload_n, slip_force_n
+from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure
+from pareto_monoped.strength.shaft_hub import (
+    BOND_SAFETY,
+    SHAPE_SAFETY,
+    bearing_force_n,
+    bond_torque_n_m,
+    pin_bending_force_n,
+    shear_force_n,
+    spline_torque_n_m,
+    torsion_torque_n_m,
+)
+
+MOTOR_FACE_MPA = ALLOYS["aw_6082_t6"].yield_mpa
+"""Yield of a motor's turning face and bell, whose alloy makers do not publish; our own assumption."""
+_SHAPE = "our own choice: dowels and teeth that share a load do not quite share it evenly"
+_SLIP = "VDI 2230-1, R12: against slip under static load"
+
+
+def one(s: Structure, role: Role, group: Group) -> Part:
+    """The actuator's only part of a role and group."""
+    (found,) = (part for part in s.actuator.parts if part.role is role and part.group is group)
+    return found
+
+
+def yield_mpa(part: Part) -> float:
+    """Of the alloy that a part is ordered in."""
+    assert part.grade is not None
+    return part.grade.yield_mpa
+
+
+def layout_of(s: Structure) -> Layout:
+    """The heights and radii of the actuator."""
+    a = s.actuator
+    return layout(a.motor, a.family, a.gears, a.face_width_mm, s.settings)
+
+
+def engaged_mm(pin: Part, other: Part) -> float:
+    """Length over which a circle of pins stands in the holes that another part of the same frame has for them."""
+    low, high = min(float(p.z0_mm) for p in pin.prisms), max(float(p.z1_mm) for p in pin.prisms)
+    return sum(
+        max(0.0, min(high, float(prism.z1_mm)) - max(low, float(prism.z0_mm)))
+        for prism in other.prisms
+        if any(_holds(hole, pin) for hole in prism.holes)
+    )
+
+
+def _holds(hole: object, pin: Part) -> bool:
+    outline = pin.prisms[0].outline
+    if not isinstance(hole, Pattern) or not isinstance(outline, Circle):
+        return False
+    of_hole = [float(v) for v in (hole.radius_mm, hole.pitch_radius_mm, hole.phase_rad, hole.count)]
+    of_pin = [float(v) for v in (outline.radius_mm, pin.pitch_radius_mm, pin.phase_rad, pin.count)]
+    return np.allclose(of_hole, of_pin)
+
+
+def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
+    """Transverse force at which the weakest layer of a circle of dowels yields, or the dowels between them.
+
+    Args:
+        pin: the dowels.
+        layers: of each part that they join: engaged length in mm, yield stress in MPa.
+    """
+    outline = pin.prisms[0].outline
+    assert isinstance(outline, Circle)
+    diameter = 2.0 * float(outline.radius_mm)
+    holes = min(bearing_force_n(diameter, length, stress) for length, stress in layers)
+    return float(pin.count) * min(holes, shear_force_n(diameter, yield_mpa(pin)))
+
+
+def spline(s: Structure) -> float:
+    """Output torque at which the spline yields the coupling."""
+    coupling = one(s, Role.COUPLING, Group.ROTOR)
+    hub, teeth = _spline(coupling)
+    length = float(hub.z1_mm) - float(hub.z0_mm)
+    torque = spline_torque_n_m(
+        float(teeth.teeth), float(teeth.base_radius_mm), float(teeth.tip_radius_mm), length, yield_mpa(coupling)
+    )
+    return s.actuator.ratio * torque
+
+
+def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
+    """The slab of the coupling with the spline, and the spline."""
+    ((hub, teeth),) = (
+        (prism, hole) for prism in coupling.prisms for hole in prism.holes if isinstance(hole, ExternalGear)
+    )
+    return hub, teeth
+
+
+def shaft(s: Structure) -> float:
+    """Output torque at which the sun's shaft yields between spline and teeth, at its thinnest."""
+    sun, (hub, _) = one(s, Role.GEAR, Group.ROTOR), _spline(one(s, Role.COUPLING, Group.ROTOR))
+    toothed = [prism for prism in sun.prisms if isinstance(prism.outline, ExternalGear)]
+    low, high = float(hub.z0_mm), max(float(prism.z1_mm) for prism in toothed)
+    loaded = [prism.outline for prism in sun.prisms if low <= prism.z0_mm and prism.z1_mm <= high]
+    radii = [float(shape.root_radius_mm) for shape in loaded if isinstance(shape, ExternalGear)]
+    radii += [float(shape.radius_mm) for shape in loaded if isinstance(shape, Circle)]
+    return s.actuator.ratio * torsion_torque_n_m(min(radii), s.settings.gear_steels.sun.yield_mpa)
+
+
+def coupling_dowels(s: Structure) -> float:
+    """Output torque at which the dowels between motor and coupling yield a hole."""
+    pin = one(s, Role.PIN, Group.ROTOR)
+    coupling, rotor = one(s, Role.COUPLING, Group.ROTOR), one(s, Role.MOTOR_ROTOR, Group.ROTOR)
+    force = dowel_force_n(
+        pin, (engaged_mm(pin, coupling), yield_mpa(coupling)), (engaged_mm(pin, rotor), MOTOR_FACE_MPA)
+    )
+    return s.actuator.ratio * 1e-3 * force * float(pin.pitch_radius_mm)
+
+
+def screw_slip_torque_n_m(screw: Part, s: Structure) -> float:
+    """Torque about the actuator's axis at which a circle of screws slips."""
+    materials = s.settings.materials
+    preload = least_preload_n(
+        fastening(screw),
+        shank_and_thread_mm(screw)[0],
+        steel_mpa=materials.steel.youngs_modulus_mpa,
+        clamped_mpa=materials.aluminium.youngs_modulus_mpa,
+    )
+    return 1e-3 * slip_force_n(float(screw.count), preload) * float(screw.pitch_radius_mm)
+
+
+def fastening(screw: Part) -> Fastening:
+    """How a screw is tightened."""
+    assert screw.fastening is not None
+    return screw.fastening
+
+
+def shank_and_thread_mm(screw: Part) -> tuple[float, float]:
+    """Length of a screw's shank, which is its grip, and of its thread, which is drawn thinner."""
+    nominal = 0.5 * fastening(screw).thread.diameter_mm
+    spans = {
+        float(prism.outline.radius_mm): float(prism.z1_mm) - float(prism.z0_mm)
+        for prism in screw.prisms
+        if isinstance(prism.outline, Circle)
+    }
+    shank = min(spans, key=lambda radius: abs(radius - nominal))
+    return spans[shank], spans[min(spans)]
+
+
+def housing_screws(s: Structure) -> float:
+    """Output torque of the motor at which a joint of the housing slips that carries the motor's reaction.
+
+    In the ESSPG, base, backplate and casing pass it on to the ring housing. In the ISSPG, the stator is bonded onto the
+    ring housing.
+    """
+    a = s.actuator
+    if a.family == "ISSPG":
+        stator = one(s, Role.MOTOR_STATOR, Group.HOUSING)
+        length = max(float(p.z1_mm) for p in stator.prisms) - min(float(p.z0_mm) for p in stator.prisms)
+        return a.ratio * bond_torque_n_m(float(layout_of(s).r_stator_in), length) / BOND_SAFETY * SLIP_SAFETY
+    at_least_mm = _RING_SHARE * a.motor.outer_diameter_mm
+    screws = [
+        part
+        for part in a.parts
+        if part.role is Role.STATOR_SCREW
+        or (part.role is Role.SCREW and part.group is Group.HOUSING and float(part.pitch_radius_mm) > at_least_mm)
+    ]
+    return a.ratio * min(screw_slip_torque_n_m(part, s) for part in screws)
+
+
+_RING_SHARE = 0.35
+"""Circle of the housing's own screws over the motor's diameter at least: those of small parts lie further in."""
+
+
+def ring(s: Structure) -> float:
+    """Output torque at which the ring turns in its housing, bonded; the ring takes the share 1 - 1 / i of it."""
+    at = layout_of(s)
+    return bond_torque_n_m(float(at.r_ring), s.actuator.face_width_mm) / (1.0 - 1.0 / s.actuator.ratio)
+
+
+def ring_housing(s: Structure) -> float:
+    """Output torque at which the dowels between ring housing and casing yield a hole; infinite in an ESSPG."""
+    pins = [part for part in s.actuator.parts if part.role is Role.PIN and part.group is Group.HOUSING]
+    if not pins:
+        return float(np.inf)
+    (pin,) = pins
+    layers = []
+    for part in s.actuator.parts:
+        if part.role is Role.HOUSING and (length := engaged_mm(pin, part)) > 0.0:
+            layers.append((length, yield_mpa(part)))
+    return 1e-3 * dowel_force_n(pin, *layers) * float(pin.pitch_radius_mm)
+
+
+def pin_bending(s: Structure) -> float:
+    """Output torque at which a planet's pin yields in bending."""
+    return planet_pins(s)[0]
+
+
+def pin_seat(s: Structure) -> float:
+    """Output torque at which a planet's pin yields its shorter seat."""
+    return planet_pins(s)[1]
+
+
+def planet_pins(s: Structure) -> tuple[float, float]:
+    """Output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
+    a, at, carrier = s.actuator, layout_of(s), s.settings.parts.carrier
+    (pin,) = (part for part in a.parts if part.role is Role.PIN and part.group is Group.OUTPUT)
+    seats_mm = (
+        z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm) - float(at.z_shoulder),
+        carrier.pin_depth_mm,
+    )
+    span = float(at.z_shoulder - at.z_secondary_front)
+    bending = pin_bending_force_n(carrier.pin_diameter_mm, span, yield_mpa(pin))
+    # Half of the load on either seat, one of which is short.
+    seat = 2.0 * bearing_force_n(carrier.pin_diameter_mm, min(seats_mm), ALLOYS["aw_7075_t6"].yield_mpa)
+    lever_m = 1e-3 * float(at.r_pins) * float(a.gears.planets) / float(load_sharing(a.gears.planets, s.settings))
+    return bending * lever_m, seat * lever_m
+
+
+_Row = tuple[str, str, str, tuple[float, str], Callable[[Structure], float], tuple[str, ...]]
+"""Name, formula, source, required factor with its reason, capacity, parts: of rows that the gearbox's torque loads."""
+
+
+def _rows() -> tuple[ActuatorJoint, ...]:
+    shape = (SHAPE_SAFETY, _SHAPE)
+    bond = (BOND_SAFETY, "our own choice: a bond cannot be inspected")
+    dowels, pins = "Roloff/Matek, 9.2: pressure in the holes of pins", ("planet_pin",)
+    table: tuple[_Row, ...] = (
+        ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", shape, spline, ("sun", "coupling")),
+        ("sun_shaft", "tau_y pi r^3 / 2 i / T", "torsion, von Mises", shape, shaft, ("sun",)),
+        ("coupling_dowels", "n d l Rp0.2 r i / T", dowels, shape, coupling_dowels, ("coupling_dowel",)),
+        ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", bond, ring, ("ring",)),
+        ("ring_housing_dowels", "n d l Rp0.2 r / T", dowels, shape, ring_housing, ("ring_housing_dowel",)),
+        ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", shape, pin_bending, pins),
+        ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", dowels, shape, pin_seat, pins),
+    )
+    cure = "release the {}'s torque before its stop, or another {}_ratio"
+    gearbox = tuple(
+        ActuatorJoint(
+            name=f"{side}_{name}",
+            group="joints",
+            side=side,
+            formula=formula,
+            source=source,
+            required=required,
+            required_source=reason,
+            loads=(f"peak_gear_torque_{side}_n_m",),
+            capacity=capacity,
+            parts=parts,
+            cure=cure.format(side, side),
+        )
+        for side in SIDES
+        for name, formula, source, (required, reason), capacity, parts in table
+    )
+    reaction = tuple(
+        ActuatorJoint(
+            name=f"{side}_motor_reaction",
+            group="joints",
+            side=side,
+            formula=f"n {FRICTION} F_V r i / T; ISSPG: bond of the stator, brought to the same required factor",
+            source="VDI 2230-1; bonded cylinder, ISO 10123",
+            required=SLIP_SAFETY,
+            required_source=_SLIP,
+            loads=(f"peak_torque_{side}_n_m",),
+            capacity=housing_screws,
+            parts=("backplate_screw", "casing_screw", "stator_screw", "motor_stator"),
+            cure="larger screws",
+        )
+        for side in SIDES
+    )
+    return gearbox + reaction
+
+
+JOINTS = _rows()
