@@ -8,7 +8,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import SunNeck, sun_neck
-from pareto_monoped.geometry.screws import LENGTHS_MM
+from pareto_monoped.geometry.screws import LENGTHS_MM, screw_for
 from pareto_monoped.geometry.shapes import Numbers
 
 _BORE_RING_MM = 1.5
@@ -49,15 +49,16 @@ class ExternalLayout:
     r_web: Numbers
     r_bolts: Numbers
     neck: SunNeck
+    coupling_mm: float
     base_mm: float
 
 
 def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> ExternalLayout:
     """The layout of an ESSPG behind its front, for one gear set or for arrays of them."""
-    casing, coupling = settings.parts.casing, settings.parts.coupling
+    casing, coupling_mm = settings.parts.casing, _coupling_mm(motor, settings)
     assert motor.framed is not None
     z_coupling = at.z_secondary_back - casing.motor_carrier_clearance_mm
-    z_motor = z_coupling - coupling.thickness_mm
+    z_motor = z_coupling - coupling_mm
     z_plate = z_motor - motor.framed.length_mm
     z_groove_back = at.z_bearing_back - _BORE_RING_MM
     z_flange = at.z_gear_back + _RING_STEP_MM
@@ -80,7 +81,17 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
         r_web=np.maximum(r_flange, at.r_casing + casing.wall_mm),
         r_bolts=r_tube + _FLANGE_BOLTS_MM,
         neck=sun_neck(at, settings),
-        base_mm=_frame_base_mm(motor, coupling.thickness_mm),
+        coupling_mm=coupling_mm,
+        base_mm=_frame_base_mm(motor, coupling_mm),
+    )
+
+
+def _coupling_mm(motor: Motor, settings: ActuatorSettings) -> float:
+    """Thickness of the coupling, in which the heads of its countersunk screws must find room, in steps of 0.1 mm."""
+    assert motor.output_holes is not None
+    screw = screw_for(motor.output_holes.diameter_mm, 0.0)
+    return max(
+        settings.parts.coupling.thickness_mm, float(np.ceil(10.0 * (screw.countersunk - screw.shank) - 1e-9)) / 10.0
     )
 
 
