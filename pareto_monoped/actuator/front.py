@@ -54,6 +54,9 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
         return slab(low, high, shape, bore)
     rim = np.where(recessed, rim, hub)[()]
     depth = 0.5 * (1.0 - data.planet_web_share) * at.face_width_mm
+    if settings.rules != "paper":  # whose face widths are not rounded either
+        step = settings.parts.rating.face_step_mm
+        depth = np.round(depth / step) * step
     return (
         *slab(low, low + depth, shape, rim),
         *tube(low, low + depth, hub, bore),

@@ -21,6 +21,7 @@ from pareto_monoped.cad.write.checks_record import checks_record
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, require_free, write
 from pareto_monoped.cad.write.formats import chosen_formats
+from pareto_monoped.cad.write.parameters import equations, parameters, parameters_csv
 from pareto_monoped.cad.write.parts_list import parts_list
 from pareto_monoped.cad.write.readme import readme
 from pareto_monoped.cad.write.strength_table import strength_table
@@ -142,6 +143,9 @@ def export_design(
             files.write_models(folder, product, shown, simulated, built, calibration, wanted)
             write(folder, "bom.csv", parts_list(product, factors))
             write(folder, "strength.csv", strength_table(factors))
+            dimensions = parameters(product, leg_dimensions(actuator_map))
+            write(folder, "parameters.csv", parameters_csv(dimensions))
+            write(folder, "monoped_equations.txt", equations(dimensions))
             write(folder, "checks.json", checks_record(checks))
             write(folder, "README.md", readme(record, product, checks, wanted, factors))
             for name, picture in pictures.items():

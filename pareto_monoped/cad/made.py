@@ -16,7 +16,15 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 
-_ALWAYS = ("README.md", "bom.csv", "strength.csv", "checks.json", RECORD)
+_ALWAYS = (
+    "README.md",
+    "bom.csv",
+    "strength.csv",
+    "parameters.csv",
+    "monoped_equations.txt",
+    "checks.json",
+    RECORD,
+)
 """Files of every export."""
 _NOT_COMPARED = ("jumps", "formats", "files")
 """Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""

@@ -83,6 +83,8 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
     for name in formats:
         yield from (f"| `{path}` | {purpose} |" for path, purpose in FILES[name])
     yield "| `bom.csv` | parts list: count, material, process, mass, size, safety factors |"
+    yield "| `parameters.csv` | all dimensions by name: value, unit, part, meaning |"
+    yield "| `monoped_equations.txt` | the same as global variables: SolidWorks links a model to this file |"
     yield "| `strength.csv` | safety factor of every joint under the loads of the jump |"
     yield (
         "| `design.json` | the design with its motor and jump model, to make this folder again: "
