@@ -26,7 +26,7 @@ class ChainDrive:
         kg_per_m: mass per length, from makers' catalogues.
         breaking_n: least breaking load.
         teeth: of a sprocket, our own choice.
-        sprocket_width_mm: of the teeth, 0.93 of the chain's inner width.
+        sprocket_width_mm: of the teeth, 0.93 of the chain's inner width with h14 (ISO 606), in steps of 0.2 mm.
     """
 
     name: str
@@ -87,9 +87,9 @@ CHAIN_DRIVES = tuple(
         breaking_n,
         sprocket_width_mm,
     ) in (
-        ("081", 3.3, 5.8, 10.2, 3.66, 9.91, 0.28, 8000.0, 3.05),
-        ("083", 4.88, 7.9, 12.9, 4.09, 10.3, 0.42, 11600.0, 4.55),
-        ("084", 4.88, 8.8, 14.8, 4.09, 11.15, 0.59, 15600.0, 4.55),
+        ("081", 3.3, 5.8, 10.2, 3.66, 9.91, 0.28, 8000.0, 3.0),
+        ("083", 4.88, 7.9, 12.9, 4.09, 10.3, 0.42, 11600.0, 4.4),
+        ("084", 4.88, 8.8, 14.8, 4.09, 11.15, 0.59, 15600.0, 4.4),
     )
 )
 """From the weakest to the strongest."""

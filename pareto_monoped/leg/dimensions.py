@@ -174,8 +174,8 @@ class LegDimensions:
 
     @property
     def sprocket_recess_mm(self) -> float:
-        """Depth by which screw heads are sunk in a wide sprocket: M3 x 6 then hold it by a grip of 4.05 mm."""
-        return max(0.0, self.chain.sprocket_width_mm - 4.05)
+        """Depth by which screw heads are sunk in a wide sprocket: M3 x 6 then hold it by a grip of 4 mm."""
+        return max(0.0, self.chain.sprocket_width_mm - 4.0)
 
     @property
     def foot_flat_mm(self) -> float:

@@ -103,7 +103,9 @@ def test_last_digits_of_another_machine_do_not_make_an_export_stale(copy):
     assert is_made(copy)
 
 
-@pytest.mark.parametrize("name", ["bom.csv", "checks.json", "README.md", "model/monoped.urdf", "laser/shank_plate.dxf"])
+@pytest.mark.parametrize(
+    "name", ["bom.csv", "checks.json", "README.md", "model/monoped.urdf", "laser/shank_plate_near.dxf"]
+)
 def test_an_export_with_a_missing_or_empty_file_is_not_made(copy, name):
     (copy.folder / name).write_text("")
     assert not is_made(copy)

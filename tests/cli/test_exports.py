@@ -55,7 +55,10 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
     assert json.loads((folder / "design.json").read_text())["source"] == {"case": "nominal"}
     assert sorted(path.name for path in (folder / "laser").iterdir()) == [
         "base_near_cheek.dxf",
-        "shank_plate.dxf",
+        "hip_driver_plate.dxf",
+        "knee_driver_plate.dxf",
+        "shank_plate_far.dxf",
+        "shank_plate_near.dxf",
         "thigh_plate_inner.dxf",
         "thigh_plate_outer.dxf",
     ]

@@ -24,7 +24,9 @@ def test_chains_are_those_of_iso_606():
             drive.breaking_n,
         )
         assert (drive.pitch_mm, drive.roller_mm) == (12.7, 7.75)
-        assert drive.sprocket_width_mm == pytest.approx(0.93 * drive.inner_width_mm, abs=0.03)
+        # ISO 606 with h14 (ISO 286: 0.25 mm to 3 mm, 0.3 mm to 6 mm), in halves of whole 0.1 mm.
+        assert 0.93 * drive.inner_width_mm - 0.25 <= drive.sprocket_width_mm <= 0.93 * drive.inner_width_mm
+        assert 5.0 * drive.sprocket_width_mm == pytest.approx(round(5.0 * drive.sprocket_width_mm), abs=1e-9)
         assert drive.inner_width_mm < drive.inner_link_mm < drive.pin_mm
         assert drive.pin_diameter_mm < drive.roller_mm < drive.plate_mm
         assert drive.bearing_area_mm2 == pytest.approx(drive.pin_diameter_mm * drive.inner_link_mm)

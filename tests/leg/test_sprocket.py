@@ -35,9 +35,9 @@ def test_rollers_lie_in_the_sprockets_gaps_without_cutting_into_it():
 def test_heads_are_sunk_in_a_wide_sprocket_only(leg):
     light, heavy = (sprocket_prisms(dataclasses.replace(leg, chain=drive), 2.85) for drive in (LIGHT, HEAVY))
     (whole,) = light
-    assert (whole.z0_mm, whole.z1_mm) == (-1.525, 1.525)
+    assert (whole.z0_mm, whole.z1_mm) == (-1.5, 1.5)
     counterbored, rest = heavy
-    assert (counterbored.z0_mm, rest.z1_mm) == (-2.275, 2.275)
-    assert counterbored.z1_mm == rest.z0_mm == pytest.approx(-2.275 + 0.5)
+    assert (counterbored.z0_mm, rest.z1_mm) == (-2.2, 2.2)
+    assert counterbored.z1_mm == rest.z0_mm == pytest.approx(-2.2 + 0.4)
     # A cap head of M3 is 5.5 mm wide (ISO 4762).
     assert 2.0 * counterbored.holes[1].radius_mm > 5.5 > 2.0 * rest.holes[1].radius_mm > 3.0
