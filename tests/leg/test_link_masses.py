@@ -17,8 +17,8 @@ def mass_kg(parts, like):
     return sum(part.mass_kg() + 0.0 * like for part in parts)
 
 
-# What the end stops and narrower windows add to the thigh, 95 g of it its plates, and to the shank.
-THIGH_STOPS_KG, SHANK_STOPS_KG = 0.2200, 0.0724
+# What the end stops and narrower windows add to the thigh, 81 g of it its plates, and to the shank.
+THIGH_STOPS_KG, SHANK_STOPS_KG = 0.2060, 0.0724
 
 
 def test_links_without_their_stops_are_like_the_reference_links(leg):
@@ -34,7 +34,7 @@ def test_links_without_their_stops_are_like_the_reference_links(leg):
     assert shank / reference == pytest.approx(0.85, abs=0.06)
     # The chain's strands are bars, which weigh less per length than the chain of the reference.
     slopes = [np.polyfit(LENGTHS, mass, 1)[0] for mass in (thigh, shank)]
-    assert slopes[0] == pytest.approx(0.67, abs=0.03)
+    assert slopes[0] == pytest.approx(0.64, abs=0.06)
     assert slopes[1] == pytest.approx(0.828, rel=0.07)
 
 
