@@ -1,5 +1,7 @@
 """Joints of the actuators: capacities by hand from the dimensions of the data, and what all motors must hold."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -117,3 +119,14 @@ def test_every_motor_s_drive_holds_two_and_a_half_times_its_peak(motor):
         assert drive.housing_screws(s) >= drive.SLIP_SAFETY * peak
     assert mounts.screws_tightened(s) >= 1.0
     assert mounts.dowels_pressed(s) >= 1.0
+
+
+def test_a_pin_is_engaged_where_both_it_and_its_hole_are(vt8020):
+    """The bell's holes are 2 mm long: a pin that ends in them counts with what is inside."""
+    s = vt8020["ISSPG"]
+    pin, bell = drive.one(s, drive.Role.PIN, drive.Group.ROTOR), drive.one(s, drive.Role.MOTOR_ROTOR, drive.Group.ROTOR)
+    assert drive.engaged_mm(pin, bell) == pytest.approx(2.0)
+    (body,) = pin.prisms
+    short = replace(pin, prisms=(replace(body, z1_mm=body.z0_mm + 4.2),))
+    assert drive.engaged_mm(short, bell) == pytest.approx(1.2)
+    assert drive.engaged_mm(replace(pin, phase_rad=0.0), bell) == 0.0
