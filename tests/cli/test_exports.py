@@ -123,3 +123,11 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     assert again.stdout == f"{expected - len(made)} made, {len(made)} already there\n"
     assert len(list(folder.iterdir())) == expected
     assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
+
+
+def test_drawings_can_be_left_out(capsys, tmp_path):
+    folder = tmp_path / "case"
+    code, _, _ = run(capsys, "export", "--case", "C", "--formats", "dxf,pdf", "--no-drawings", "-o", folder)
+    assert code == 0
+    assert json.loads((folder / "design.json").read_text())["formats"] == ["dxf"]
+    assert not (folder / "drawings").exists()
