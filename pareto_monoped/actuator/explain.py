@@ -60,7 +60,7 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "length_mm": actuator.length_mm,
         "reflected_inertia_kg_m2": actuator.reflected_inertia_kg_m2,
         "efficiency_mesh": sheet.losses.efficiency_mesh,
-        "efficiency_bushes": sheet.losses.efficiency_bushes,
+        "efficiency_planets": sheet.losses.efficiency_planets,
         "efficiency_bearings": sheet.losses.efficiency_bearings,
         "efficiency_total": sheet.losses.efficiency_total,
         "bearing_life_h": sheet.bearing_life_h,
@@ -87,8 +87,11 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "efficiency_churning": sheet.losses.efficiency_churning,
         "compliance_rad_per_n_m": dataclasses.asdict(sheet.stiffness),
         "bearings": [_bearing(found) for found in sheet.bearings],
-        "bush": _bush(sheet.bush),
-        "bush_duty": _bush(sheet.bush_duty),
+        **{
+            name: _bush(load)
+            for name, load in (("bush", sheet.bush), ("bush_duty", sheet.bush_duty))
+            if load is not None
+        },
         "runner_up": None if entry.runner_up is None else {"type": entry.runner_up.family, **_best(entry.runner_up)},
         "binding": {name: CONSTRAINTS[name].says for name in entry.binding},
         "families": {
@@ -140,7 +143,6 @@ def _bearing(found: BearingService) -> dict[str, Any]:
         "dynamic_rating_n": rated.dynamic_rating_n,
         "static_rating_n": rated.static_rating_n,
         "force_n": found.force_n,
-        "tilt_n_m": found.tilt_n_m,
         "equivalent_n": found.equivalent_n,
         "tilt_rad": found.tilt_rad,
         "life_h": found.life_h,

@@ -15,22 +15,24 @@ from pareto_monoped.actuator.features import (
     tube,
 )
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
+from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.features import bored, turned
+from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
+from pareto_monoped.geometry.features import Hole, bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
-from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.materials import ALLOYS
 
-_BUSH_PLAY_MM = 0.2
-"""Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
 _PIN_THREAD_MM = 6.0
 """Of the screw in a planet pin: twice the diameter of M3."""
 _PIN_SPARE_MM = 2.0
 """How much deeper its hole is, for the tap's lead."""
+_WEB_THREAD_MM = 5.0
+"""Of the screw in a web: M3 x 10 through the second carrier. Its hole ends before the shortest web does."""
 _RIM_TOOTH_DEPTHS = 1.2
 """Least rim under the planet's roots, in tooth depths (AGMA 2001-D04, rim thickness factor 1)."""
 _RING_HEIGHT_MM = 2.0
@@ -45,7 +47,7 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
     data = settings.parts.gears
     gears = at.gears
     shape = gears.planet(data.backlash_mm)
-    bore = 0.5 * data.planet_bore_mm
+    bore = 0.5 * settings.planet_bore_mm
     hub = bore + data.planet_hub_wall_mm
     rim = shape.root_radius_mm - _RIM_TOOTH_DEPTHS * (ADDENDUM + DEDENDUM) * gears.module_mm
     recessed = rim - hub >= data.planet_recess_min_mm
@@ -67,14 +69,13 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Planets with bushes, pins and the pins' screws, ring."""
+    """Planets with their bearings, pins and the pins' screws, ring."""
     data, materials = settings.parts, settings.materials
     carrier, gears = data.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     pin_tap = pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM
     pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
-    stands_out = carrier.planet_clearance_mm - _BUSH_PLAY_MM
     return (
         Part(
             name="planet",
@@ -88,32 +89,22 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             accuracy_class=gear_accuracy(settings),
             features=(
                 bored(
-                    Circle(radius_mm=0.5 * data.gears.planet_bore_mm),
+                    Circle(radius_mm=0.5 * settings.planet_bore_mm),
                     at.z_gear_back,
                     at.z_gear_front,
                     enters="both",
-                    pressed=True,
+                    pressed=settings.planet_bearing == "bushes",
                 ),
             ),
             note=gear_note(gears.planet(data.gears.backlash_mm), settings),
-            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush"),
+            fits=planet_fits(settings),
+            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
+            if settings.planet_bearing == "bushes"
+            else None,
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
-        Part(
-            name="planet_bush",
-            role=Role.BUSH,
-            visibility=Visibility.INSIDE,
-            material=materials.bush_bronze,
-            prisms=tube(
-                at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * data.gears.planet_bore_mm, pin
-            ),
-            process="bought",
-            group=Group.PLANET,
-            note=f"PTFE bronze bush, {stands_out:g} mm longer than the planet on either side",
-            count=gears.planets,
-            pitch_radius_mm=at.r_pins,
-        ),
+        *planet_bearing_parts(at, settings),
         Part(
             name="planet_pin",
             role=Role.PIN,
@@ -167,13 +158,19 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     )
 
 
+def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
+    """Tolerance of the planets' bores: with needles, a raceway that leaves them 1 to 24 um on a pin of m6."""
+    zone = "H7" if settings.planet_bearing == "bushes" else "F7"
+    return (Fit(diameter_mm=settings.planet_bore_mm, zone=zone, seat=True),)
+
+
 def z_pin_front(thread_depth_mm: float, diaphragm_mm: float) -> float:
     """Height of the pins' front ends: behind the carrier's diaphragm."""
     return -(thread_depth_mm + diaphragm_mm)
 
 
 def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Carrier with output flange, retaining ring, main and end bearing, secondary carrier."""
+    """Carrier with output flange and webs, retaining ring, main and end bearing, secondary carrier."""
     data, materials = settings.parts, settings.materials
     carrier = data.carrier
     threads, dowels = output_holes(settings), output_dowel_holes(settings)
@@ -185,6 +182,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     z_ring = at.z_bearing_front + RETAINING_RING_MM
     z_split = at.z_secondary_front - carrier.pin_depth_mm
     r_groove = at.r_bore - RING_GROOVE_MM
+    web_holes = _web_holes(at, WEB_SCREW.hole)
     body = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
@@ -193,6 +191,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         *slab(z_pins, at.z_bearing_front, at.r_bore, seat - data.casing.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
+        *_web_prisms(at),
     )
     return (
         Part(
@@ -214,6 +213,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
                 bored(pins, at.z_shoulder, z_pins, enters="low", pressed=True),
                 turned(at.r_bore, -carrier.flange_thickness_mm, -1.0),
+                *_web_threads(at),
             ),
         ),
         Part(
@@ -222,8 +222,8 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             visibility=Visibility.INSIDE,
             material=materials.aluminium,
             prisms=(
-                *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins),
-                *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws),
+                *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins, *web_holes),
+                *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws, *web_holes),
             ),
             process="machined",
             group=Group.OUTPUT,
@@ -232,6 +232,10 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             features=(
                 clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
                 bored(pins, z_split, at.z_secondary_front, enters="high", pressed=True),
+                *(
+                    clearance(WEB_SCREW, (hole,), at.z_secondary_back, at.z_secondary_front, countersunk="low")
+                    for hole in web_holes
+                ),
             ),
         ),
         Part(
@@ -254,5 +258,66 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             0.0,
             Group.OUTPUT,
             "carries the sun's end in the carrier",
+        ),
+        *_web_screws(at, settings),
+    )
+
+
+def _has_webs(at: Layout) -> bool:
+    """Whether there are webs, or may be in arrays."""
+    return bool(np.any(at.webs.present))
+
+
+def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
+    """Holes of the screws into the webs."""
+    if not _has_webs(at):
+        return ()
+    webs = at.webs
+    return (Pattern(radius_mm=radius_mm, pitch_radius_mm=webs.r_screw_mm, count=webs.count, phase_rad=webs.phase_rad),)
+
+
+def _web_prisms(at: Layout) -> tuple[Prism, ...]:
+    """The webs of the carrier, tapped from behind."""
+    if not _has_webs(at):
+        return ()
+    z_tapped = _z_tapped(at)
+    return (
+        *slab(at.z_secondary_front, z_tapped, at.webs.outline, *_web_holes(at, WEB_SCREW.core)),
+        *slab(z_tapped, at.z_shoulder, at.webs.outline),
+    )
+
+
+def _web_threads(at: Layout) -> tuple[Hole, ...]:
+    """The tapped holes of the webs."""
+    return tuple(
+        tapped(WEB_SCREW, (hole,), at.z_secondary_front, _z_tapped(at), enters="low", usable_mm=_WEB_THREAD_MM)
+        for hole in _web_holes(at, WEB_SCREW.core)
+    )
+
+
+def _z_tapped(at: Layout) -> Numbers:
+    """Height of the bottoms of the webs' tapped holes."""
+    return at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
+
+
+def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """From behind through the second carrier into the webs."""
+    if not _has_webs(at):
+        return ()
+    return (
+        screw_part(
+            "web_screw",
+            WEB_SCREW,
+            head="countersunk",
+            seat_mm=at.z_secondary_back,
+            grip_mm=settings.parts.carrier.secondary_thickness_mm,
+            room_mm=_WEB_THREAD_MM,
+            direction=1.0,
+            material=settings.materials.steel,
+            count=at.webs.count,
+            pitch_radius_mm=at.webs.r_screw_mm,
+            phase_rad=at.webs.phase_rad,
+            group=Group.OUTPUT,
+            note="clamps the secondary carrier to a web",
         ),
     )

@@ -17,6 +17,7 @@ from pareto_monoped.actuator.bearings import Bearing, main_bearing, small_bearin
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import AIR_GAP_MM, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.webs import Webs, webs_of
 from pareto_monoped.geometry.shapes import Numbers
 
 Family = Literal["ISSPG", "ESSPG"]
@@ -39,6 +40,7 @@ class Layout:
     bearing: Bearing
     end_bearing: Bearing
     rear_bearing: Bearing
+    webs: Webs
     # Radii.
     r_plate: float
     r_casing: float
@@ -104,9 +106,10 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
     z_bearing_front = -(carrier.flange_thickness_mm + RING_GROOVE_WALL_MM + RETAINING_RING_MM)
     z_bearing_back = z_bearing_front - bearing.width_mm
     z_shoulder = z_bearing_back - carrier.shoulder_thickness_mm
-    z_gear_front = z_shoulder - carrier.planet_clearance_mm
+    z_gear_front = z_shoulder - settings.planet_clearance_mm
     z_gear_back = z_gear_front - face_width_mm
-    z_secondary_front = z_gear_back - carrier.planet_clearance_mm
+    z_secondary_front = z_gear_back - settings.planet_clearance_mm
+    webs = webs_of(gears, settings)
     pin_reach = 0.5 * carrier.pin_diameter_mm + carrier.pin_wall_mm
     return Layout(
         gears=gears,
@@ -114,6 +117,7 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         bearing=bearing,
         end_bearing=small_bearing(END_BEARING_BORE_MM),
         rear_bearing=small_bearing(2.0 * data.coupling.shaft_radius_mm),
+        webs=webs,
         r_plate=r_motor + casing.flange_width_mm,
         r_casing=r_motor + casing.motor_clearance_mm,
         r_bolts=r_motor + casing.bolt_offset_mm,
@@ -128,7 +132,7 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         r_ring=r_ring,
         r_carrier_in=r_pins - pin_reach,
         r_secondary_in=np.maximum(r_pins - pin_reach, gears.sun().tip_radius_mm + carrier.sun_clearance_mm),
-        r_secondary_out=r_pins + pin_reach,
+        r_secondary_out=np.maximum(r_pins + pin_reach, np.where(webs.present, webs.reach_mm, 0.0))[()],
         z_bearing_front=z_bearing_front,
         z_bearing_back=z_bearing_back,
         z_shoulder=z_shoulder,

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.actuator.carrier_data import PlanetBearing, SecondCarrier
 from pareto_monoped.materials import GEAR_GRADES, GearGrade
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -39,8 +40,9 @@ class RatingData:
         flank_finish_factor: Z_L Z_v Z_R.
         root_roughness_um: Rz of the fillets.
         reversed_bending_factor: on sigma_F,lim of the planets, whose teeth bend both ways.
-        second_carrier: what ties it to the first: the planets' ``pins`` alone, which tilt under load, or ``webs`` by
-            the planets, which keep them straight.
+        second_carrier: what ties it to the first: the planets' ``pins`` alone, which tilt under load, or ``webs``
+            between the planets as well, where the gaps have room for them.
+        planet_bearing: what the planets turn on: ``bushes``, or rows of ``needles``.
         sun_support: whether the sun is held by bearings or floats between the planets.
         load_sharing_fixed, load_sharing_floating: K_gamma for 2, 3, ... planets; the last value also beyond.
     """
@@ -66,7 +68,8 @@ class RatingData:
     flank_finish_factor: Positive
     root_roughness_um: Annotated[float, Field(ge=1.0, le=40.0)]
     reversed_bending_factor: Positive
-    second_carrier: Literal["pins", "webs"]
+    second_carrier: SecondCarrier
+    planet_bearing: PlanetBearing
     sun_support: Literal["fixed", "floating"]
     load_sharing_fixed: tuple[Positive, ...]
     load_sharing_floating: tuple[Positive, ...]
@@ -87,6 +90,12 @@ class DutyData:
     jumps: Positive
     torque_shares: tuple[Annotated[float, Field(gt=0.0, le=10.0)], ...]
     output_angles_rad: tuple[Positive, ...]
+
+    @property
+    def mean_share(self) -> float:
+        """Mean torque over the peak torque, by angle."""
+        levels = zip(self.torque_shares, self.output_angles_rad, strict=True)
+        return sum(share * angle for share, angle in levels) / sum(self.output_angles_rad)
 
     def __post_init__(self) -> None:
         """Refuse levels without an angle."""

@@ -11,7 +11,7 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.rating.width import STRENGTH_RULES
+from pareto_monoped.actuator.rating.width import LOAD_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.errors import DesignError, MotorError
@@ -130,7 +130,7 @@ class ActuatorMap:
             return
         for entry in self.entries:
             for weak in entry.forbidden_by.values():
-                if weak and set(weak) <= set(STRENGTH_RULES):
+                if weak and set(weak) <= set(LOAD_RULES):
                     raise MotorError(
                         f"{source}: no gearbox is strong enough at any ratio from {RATIO_LOW} to {RATIO_HIGH}, in the "
                         f"way is peak_torque_n_m = {self.motor.peak_torque_n_m:.4g} ({', '.join(weak)}); "
@@ -244,7 +244,7 @@ def cures(entry: MapEntry) -> tuple[str, ...]:
     """
 
     def effort(names: tuple[ConstraintName, ...]) -> tuple[bool, bool, int]:
-        return not names, not set(names) <= set(STRENGTH_RULES), len(names)
+        return not names, not set(names) <= set(LOAD_RULES), len(names)
 
     names = min(entry.forbidden_by.values(), key=effort, default=())
     found = tuple(dict.fromkeys(cure for name in names for cure in CONSTRAINTS[name].cures))

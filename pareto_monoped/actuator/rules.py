@@ -12,6 +12,8 @@ from pareto_monoped.actuator.layout import END_BEARING_BORE_MM, Family, Layout, 
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
+from pareto_monoped.actuator.service.output import output_margin
+from pareto_monoped.actuator.service.planets import planet_margin
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.design import RULE_SETS, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
@@ -98,7 +100,7 @@ def _sun_rim(sets: CandidateSets) -> Numbers:
 
 
 def _planet_rim(sets: CandidateSets) -> Numbers:
-    bore = 0.5 * sets.settings.parts.gears.planet_bore_mm
+    bore = 0.5 * sets.settings.planet_bore_mm
     return sets.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
@@ -152,6 +154,16 @@ def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
         return strength_margins(stage.safeties(sets.face_width_mm), stage)[rule]
 
     return margin
+
+
+def _output_bearing(sets: CandidateSets) -> Numbers:
+    return output_margin(sets.gears.ratio * sets.motor.peak_torque_n_m, sets.at, sets.settings)
+
+
+def _planet_bearing(sets: CandidateSets) -> Numbers:
+    if sets.strength is not None:
+        return sets.strength["planet_bearing"]
+    return planet_margin(sets.gears, sets.face_width_mm, sets.motor, sets.settings)
 
 
 CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
@@ -263,14 +275,14 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         says="S_H of every flank at least flank_safety within the face width allowed",
         source="ISO 6336-2, ISO 6336-6",
         margin=_strength("flank_strength"),
-        cures=("a larger sun", "a harder steel", "carriers tied by webs"),
+        cures=("a larger sun", "a harder steel", "more planets"),
         rule_sets=("iso6336",),
     ),
     "root_strength": Constraint(
         says="S_F of every root at least root_safety within the face width allowed",
         source="ISO 6336-3, ISO 6336-6",
         margin=_strength("root_strength"),
-        cures=("a larger module in a thicker ring", "a stronger steel", "carriers tied by webs"),
+        cures=("a larger module in a thicker ring", "a stronger steel", "more planets"),
         rule_sets=("iso6336",),
     ),
     "overload_strength": Constraint(
@@ -278,6 +290,20 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         source="ISO 6336-2 and -3, static limits",
         margin=_strength("overload_strength"),
         cures=("a softer end stop", "a stronger steel"),
+        rule_sets=("iso6336",),
+    ),
+    "output_bearing": Constraint(
+        says="L10, s0 and tilt of both bearings of the knee's output keep their limits",
+        source="ISO 281, ISO 76, SKF; limits in data/service.toml",
+        margin=_output_bearing,
+        cures=("a larger sprocket", "a stronger bearing in the catalogue"),
+        rule_sets=("iso6336",),
+    ),
+    "planet_bearing": Constraint(
+        says="L10 and s0 of the planets' needles keep their limits, or pv of their bushes",
+        source="ISO 281, ISO 76; limits in data/service.toml",
+        margin=_planet_bearing,
+        cures=("more planets", "a wider face", "thicker pins"),
         rule_sets=("iso6336",),
     ),
 }

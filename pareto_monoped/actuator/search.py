@@ -16,7 +16,7 @@ from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.sheet import ratings
-from pareto_monoped.actuator.rating.width import STRENGTH_RULES
+from pareto_monoped.actuator.rating.width import LOAD_RULES, STRENGTH_RULES
 from pareto_monoped.actuator.ratiomap import (
     RATIO_HIGH,
     RATIO_LOW,
@@ -64,7 +64,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     names, broken, mass = judged.names, judged.broken, judged.mass_kg
     count = broken.sum(axis=0)
     # A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
-    weak = np.isin(names, list(STRENGTH_RULES))
+    weak = np.isin(names, list(LOAD_RULES))
     nearness = np.where(broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
     found = {}
     order = np.argsort(judged.tenths, kind="stable")
@@ -129,7 +129,7 @@ class _Judge:
         """
         data, tenths = self.settings.parts.rating, _tenths_of(gears)
         width = np.maximum(data.face_width_min_mm, data.face_modules_min * gears.module_mm)
-        unrated = dict.fromkeys(STRENGTH_RULES, np.zeros(len(width)))
+        unrated = dict.fromkeys((*STRENGTH_RULES, "planet_bearing"), np.zeros(len(width)))
         names, broken = self._rules_broken(gears, width, unrated)
         count = broken.sum(axis=0)
         near = np.flatnonzero(count <= 1)

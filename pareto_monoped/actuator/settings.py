@@ -6,7 +6,9 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from pareto_monoped.actuator.carrier_data import NeedleData, PlanetBearing, SecondCarrier, WebData
 from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
+from pareto_monoped.actuator.service.data import ServiceData, default_service
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, complaint
@@ -36,6 +38,8 @@ ConstraintName = Literal[
     "flank_strength",
     "root_strength",
     "overload_strength",
+    "output_bearing",
+    "planet_bearing",
 ]
 """Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings."""
 CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)
@@ -172,6 +176,8 @@ class PartData:
     interface: InterfaceData
     rating: RatingData
     duty: DutyData
+    webs: WebData
+    needles: NeedleData
 
 
 @lru_cache(maxsize=1)
@@ -211,6 +217,7 @@ class ActuatorSettings:
         parts: dimensions and safety factors.
         materials: what the parts are made of.
         steels: grades of the gears under ``iso6336``; None takes those that ``parts.rating`` names.
+        service: pace, forces and fits of the joints, and what their bearings must hold.
     """
 
     rules: RuleSet = DEFAULT_RULES
@@ -227,6 +234,7 @@ class ActuatorSettings:
     parts: PartData = field(default_factory=default_parts)
     materials: Materials = MATERIALS
     steels: GearSteels | None = None
+    service: ServiceData = field(default_factory=default_service)
 
     def __post_init__(self) -> None:
         if self.rules not in RULE_SETS:
@@ -262,3 +270,27 @@ class ActuatorSettings:
     def gear_steels(self) -> GearSteels:
         """Steel grades of the gears under ``iso6336``."""
         return chosen_steels(self.parts.rating) if self.steels is None else self.steels
+
+    @property
+    def second_carrier(self) -> SecondCarrier:
+        """What ties the second carrier to the first; the rules of the paper know pins alone."""
+        return "pins" if self.rules == "paper" else self.parts.rating.second_carrier
+
+    @property
+    def planet_bearing(self) -> PlanetBearing:
+        """What the planets turn on; the rules of the paper know bushes alone."""
+        return "bushes" if self.rules == "paper" else self.parts.rating.planet_bearing
+
+    @property
+    def planet_bore_mm(self) -> float:
+        """Bore of the planets: around a bush, or the raceway of the needles."""
+        if self.planet_bearing == "bushes":
+            return self.parts.gears.planet_bore_mm
+        return self.parts.carrier.pin_diameter_mm + 2.0 * self.parts.needles.diameter_mm
+
+    @property
+    def planet_clearance_mm(self) -> float:
+        """From a planet's teeth to the carriers on either side: free, or for a washer with its play."""
+        if self.planet_bearing == "bushes":
+            return self.parts.carrier.planet_clearance_mm
+        return self.parts.needles.washer_mm + self.parts.needles.washer_play_mm

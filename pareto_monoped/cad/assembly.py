@@ -150,7 +150,7 @@ def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator
             if radius == 0.0:
                 yield at @ turn_z(whole)
                 continue
-            around = part.phase_rad + angle
+            around = float(part.phase_rad) + angle
             yield at @ turn_z(whole + around) @ shift(radius, 0.0, 0.0) @ turn_z(spin(angle))
 
 

@@ -12,7 +12,6 @@ BEARING_COLUMNS: tuple[tuple[str, Literal["left", "right"]], ...] = (
     ("type", "left"),
     ("size, mm", "left"),
     ("force\nN", "right"),
-    ("tilt\nN m", "right"),
     ("P\nN", "right"),
     ("tilt\nmrad", "right"),
     ("L10\nh", "right"),
@@ -25,12 +24,12 @@ _LONG_H = 1e6
 
 def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[tuple[str, str]]:
     """Name and value of one line each."""
-    losses, stiffness, bush = sheet.losses, sheet.stiffness, sheet.bush
+    losses, stiffness = sheet.losses, sheet.stiffness
     sources = [
         f"{name} {100.0 * value:.1f}"
         for name, value in (
             ("mesh", losses.efficiency_mesh),
-            ("bushes", losses.efficiency_bushes),
+            ("planets", losses.efficiency_planets),
             ("bearings", losses.efficiency_bearings),
             ("churning", losses.efficiency_churning),
         )
@@ -43,12 +42,22 @@ def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[t
         ("sun's shaft", stiffness.shaft),
         ("carrier", stiffness.carrier),
     )
-    bronze = settings.materials.bush_bronze
     return [
         ("with all losses", f"{100.0 * losses.efficiency_total:.1f} %: {', '.join(sources)} %"),
         ("stiffness at output", f"{1e-3 * stiffness.stiffness_n_m_per_rad:.1f} kN m/rad"),
         ("share in giving way", ", ".join(f"{name} {100.0 * part / whole:.0f}" for name, part in shares) + " %"),
         ("backlash at output", f"{sheet.backlash_arcmin:.1f} arcmin"),
+        ("bending at output", f"{sheet.output_tilt_n_m:.1f} N m"),
+        *_bush_lines(sheet, settings),
+    ]
+
+
+def _bush_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[tuple[str, str]]:
+    """Load on the planets' bushes, where there are any."""
+    bush, in_duty, bronze = sheet.bush, sheet.bush_duty, settings.materials.bush_bronze
+    if bush is None or in_duty is None:
+        return []
+    return [
         (
             "planet bushes",
             f"{bush.pressure_mpa:.1f} MPa at {bush.speed_m_per_s:.2f} m/s: pv {bush.pv_mpa_m_per_s:.1f} MPa m/s",
@@ -56,7 +65,7 @@ def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[t
         (
             "",
             f"limit {bronze.pv_limit_mpa_m_per_s:g}, for short periods {bronze.pv_short_limit_mpa_m_per_s:g}; "
-            f"in the duty {sheet.bush_duty.pv_mpa_m_per_s:.1f}",
+            f"in the duty {in_duty.pv_mpa_m_per_s:.1f}",
         ),
     ]
 
@@ -72,7 +81,6 @@ def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
                 rated.designation,
                 f"{rated.inner_diameter_mm:g}x{rated.outer_diameter_mm:g}x{rated.width_mm:g}",
                 f"{found.force_n:.0f}",
-                f"{found.tilt_n_m:.1f}",
                 f"{found.equivalent_n:.0f}",
                 f"{1e3 * found.tilt_rad:.1f}",
                 f"{found.life_h:.0f}" if found.life_h < _LONG_H else "> 1e6",
@@ -101,10 +109,10 @@ def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "Se
     ]
     lines += [
         f"Bearing {found.place}: s0 = {found.overload_safety:.2f} under the overload, less than 1: "
-        "its balls leave marks."
+        "its balls or needles leave marks."
         for found in sheet.bearings
         if found.overload_safety < 1.0
     ]
-    if sheet.bush.pv_mpa_m_per_s > settings.materials.bush_bronze.pv_short_limit_mpa_m_per_s:
+    if sheet.bush is not None and sheet.bush.pv_mpa_m_per_s > settings.materials.bush_bronze.pv_short_limit_mpa_m_per_s:
         lines.append("Planet bushes: continuous torque at no-load speed exceeds even the limit for short periods.")
     return lines

@@ -84,7 +84,7 @@ def dowel_part(
     material: Material,
     count: Numbers,
     pitch_radius_mm: Numbers,
-    phase_rad: float,
+    phase_rad: Numbers,
     partner: str,
     group: Group = Group.FIXED,
     note: str = "",

@@ -243,7 +243,7 @@ class Part:
     process: str
     count: Numbers = 1
     pitch_radius_mm: Numbers = 0.0
-    phase_rad: float = 0.0
+    phase_rad: Numbers = 0.0
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = _HERE
     balls: tuple[Ball, ...] = ()
     group: Group = Group.FIXED

@@ -193,7 +193,7 @@ def screw_part(
     material: Material,
     count: Numbers = 1,
     pitch_radius_mm: Numbers = 0.0,
-    phase_rad: float = 0.0,
+    phase_rad: Numbers = 0.0,
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] | None = None,
     group: Group = Group.FIXED,
     role: Role = Role.SCREW,

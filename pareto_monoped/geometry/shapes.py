@@ -95,7 +95,7 @@ class Pattern:
     radius_mm: Numbers
     pitch_radius_mm: Numbers
     count: Numbers
-    phase_rad: float = 0.0
+    phase_rad: Numbers = 0.0
     x_mm: Numbers = 0.0
     y_mm: Numbers = 0.0
 
@@ -147,6 +147,51 @@ class Path:
             return _remembered(self.pieces)
         except TypeError:  # arrays have no hash
             return _boundary(self.pieces)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """The same path repeated evenly around the origin, turned each time: webs, spokes.
+
+    Moments as of ``Pattern``: exact for three and more.
+
+    Attributes:
+        path: one of them, drawn around the +x axis.
+        count: how many; those of an array may be 0.
+        phase_rad: by which the first is turned.
+    """
+
+    path: Path
+    count: Numbers
+    phase_rad: Numbers = 0.0
+
+    def moments(self) -> Moments:
+        """Those of one path, averaged over all angles."""
+        one = self.path.moments()
+        second = 0.5 * self.count * (one.xx + one.yy)
+        return Moments(self.count * one.area, 0.0, 0.0, second, second, 0.0)
+
+    def paths(self) -> list[Path]:
+        """Each path where it lies, for plain numbers."""
+        step = 2.0 * np.pi / int(self.count)
+        return [turned(self.path, float(self.phase_rad) + k * step) for k in range(int(self.count))]
+
+
+def turned(path: Path, angle_rad: float) -> Path:
+    """A path of plain numbers turned about the origin."""
+    cos, sin = float(np.cos(angle_rad)), float(np.sin(angle_rad))
+
+    def at(x: Numbers, y: Numbers) -> tuple[float, float]:
+        return float(cos * x - sin * y), float(sin * x + cos * y)
+
+    return Path(
+        tuple(
+            Line(*at(p.x0_mm, p.y0_mm), *at(p.x1_mm, p.y1_mm))
+            if isinstance(p, Line)
+            else Arc(*at(p.x_mm, p.y_mm), p.radius_mm, p.start_rad + angle_rad, p.end_rad + angle_rad)
+            for p in path.pieces
+        )
+    )
 
 
 def polygon(points: Sequence[tuple[Numbers, Numbers]]) -> Path:

@@ -1,13 +1,15 @@
-"""What joins the thigh to both actuators at the hip: couplings, drive sprocket, screws."""
+"""What joins the thigh to both actuators at the hip: couplings, drive sprocket and its far support, screws."""
 
 import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, SEAT_RADIUS, support_parts
 from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
@@ -24,9 +26,8 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _coupling_holes(d: LegDimensions, dowels: Pattern) -> tuple[Shape, ...]:
-    """Bore, holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
+    """Holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
     return (
-        Circle(radius_mm=_BORE_RADIUS),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
         dowels,
         Pattern(
@@ -41,22 +42,27 @@ def _coupling_holes(d: LegDimensions, dowels: Pattern) -> tuple[Shape, ...]:
 def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
     """What turns the thigh: a coupling between the hip's output and the inner plate, with its screws."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
+    bore, seat, holes = (
+        Circle(radius_mm=_BORE_RADIUS),
+        Circle(radius_mm=SEAT_RADIUS),
+        _coupling_holes(d, d.output_dowel),
+    )
+    layers: tuple[tuple[float, float, float, tuple[Shape, ...]], ...] = (
+        (_RADIUS, d.hip_mount_mm, BACK, (bore, *holes)),
+        (_RADIUS, BACK, -face, (seat, *holes)),
+        (BOSS_RADIUS, -face, FRONT, (seat,)),
+    )
     return (
         Part(
             name="hip_coupling",
             role=Role.COUPLING,
             material=MATERIALS.aluminium,
             process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=_RADIUS),
-                    z0_mm=d.hip_mount_mm,
-                    z1_mm=-face,
-                    holes=_coupling_holes(d, d.output_dowel),
-                ),
+            prisms=tuple(
+                Prism(outline=Circle(radius_mm=radius), z0_mm=z0, z1_mm=z1, holes=cut) for radius, z0, z1, cut in layers
             ),
             grade=ALLOYS["aw_6082_t6"],
-            fits=(_output_dowel(d).hole_fit,),
+            fits=(_output_dowel(d).hole_fit, Fit(diameter_mm=2.0 * SEAT_RADIUS, zone="R6", seat=True)),
             note="between hip output and inner plate",
         ),
         _output_dowels(
@@ -157,8 +163,9 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
 
 def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
     """What turns with the knee actuator's output: sprocket, coupling, screws."""
-    half_tooth = 0.5 * d.chain.sprocket_width_mm
+    half_tooth, holes = 0.5 * d.chain.sprocket_width_mm, _coupling_holes(d, d.drive_dowel)
     return (
+        *support_parts(d, _RADIUS, holes),
         Part(
             name="drive_sprocket",
             role=Role.SPROCKET,
@@ -177,9 +184,9 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             prisms=(
                 Prism(
                     outline=Circle(radius_mm=_RADIUS),
-                    z0_mm=half_tooth,
+                    z0_mm=half_tooth + FLANGE,
                     z1_mm=d.knee_mount_mm,
-                    holes=_coupling_holes(d, d.drive_dowel),
+                    holes=(Circle(radius_mm=_BORE_RADIUS), *holes),
                 ),
             ),
             group=Group.KNEE_DRIVE,

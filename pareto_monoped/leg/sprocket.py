@@ -12,7 +12,7 @@ from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.leg.dimensions import LegDimensions
 
 # Our own layout, mm.
-_BORE_RADIUS = 8.5
+BORE_RADIUS = 8.5
 _RELIEF_RADIUS, _RELIEF_PITCH_RADIUS = 3.3, 19.0  # one to a tooth, between screws and teeth: 2.3 mm to the roots
 HEAD_PLAY = 0.1  # around a sunk screw head
 
@@ -83,7 +83,7 @@ def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
             z0_mm=z0_mm,
             z1_mm=z1_mm,
             holes=(
-                Circle(radius_mm=_BORE_RADIUS),
+                Circle(radius_mm=BORE_RADIUS),
                 sprocket_screws(d, screw_radius_mm),
                 d.drive_dowel,
                 relief_holes(d),

@@ -12,6 +12,7 @@ from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rect
 from pareto_monoped.leg.bearing import LIP
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.drive_support import BOSS_RADIUS
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.leg.knee import cup_holes, knee_bearings
 from pareto_monoped.leg.sandwich import (
@@ -33,7 +34,7 @@ _KNEE_END = 34.0  # from the knee axis to the core above it, clear of the sprock
 _STANDOFF_RADIUS, _STANDOFF_PITCH_RADIUS = 3.5, 39.5  # around the hip: 1.8 mm or more outside the chain
 _STANDOFF_ANGLES = (np.pi / 6, np.pi / 2, 5 * np.pi / 6)  # on top of the hip, where no strand runs down to the knee
 _STANDOFF_RIM = 5.5  # of the inner plate outside the standoffs' axes: 3.4 mm around their bolts
-_INNER_BORE_RADIUS = 7.5  # lightens the inner plate within its ring of screws: 2.9 mm to their holes
+_BOSS_PLAY = 0.05  # of the inner plate around the hip coupling's boss
 _INNER_RELIEF_RADIUS, _INNER_RELIEF_PITCH_RADIUS = 5.5, 25.5  # six holes between screws and standoffs
 _OUTER_BORE_PLAY = 1.0  # of the outer plate around the knee's output flange
 # Six holes between the outer plate's bore and the circle of its mounting screws.
@@ -139,7 +140,7 @@ def _plates(
 def _inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """The inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
     return (
-        Circle(radius_mm=_INNER_BORE_RADIUS),
+        Circle(radius_mm=BOSS_RADIUS + _BOSS_PLAY),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
         d.output_dowel,
         Pattern(radius_mm=_INNER_RELIEF_RADIUS, pitch_radius_mm=_INNER_RELIEF_PITCH_RADIUS, count=6),

@@ -1,14 +1,16 @@
 """Whether the parts of an actuator fit together, from radii and heights alone: rings of material in r and z."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
-from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
+from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.geometry.shapes import Circle, Pattern, Shape, Spread
 
 # Pairs that touch or mesh by design, checked in other ways.
 MESHING = {frozenset(pair) for pair in (("planet", "sun"), ("planet", "ring"))}
@@ -38,6 +40,8 @@ class Ring:
 def outer_mm(shape: Shape) -> float:
     if isinstance(shape, Circle):
         return float(shape.radius_mm)
+    if isinstance(shape, Spread):
+        return float(max(np.hypot(*points.T).max() for points in all_polygons([shape])))
     assert isinstance(shape, ExternalGear)
     return float(shape.tip_radius_mm)
 
@@ -56,20 +60,22 @@ def rings(part: Part) -> list[Ring]:
     found = []
     for prism in part.prisms:
         r0, r1 = inner_mm(prism.holes), outer_mm(prism.outline)
+        if isinstance(prism.outline, Spread):
+            r0 = float(min(np.hypot(*points.T).min() for points in all_polygons([prism.outline])))
         if part.pitch_radius_mm:
             r0, r1 = part.pitch_radius_mm - r1, part.pitch_radius_mm + r1
-        found.append(ring_of(part, prism, r0, r1))
+        found += [ring_of(part, prism, r0, r1, place) for place in part.places_mm]
     return found
 
 
-def ring_of(part: Part, prism: Prism, r0: float, r1: float) -> Ring:
+def ring_of(part: Part, prism: Prism, r0: float, r1: float, place: tuple[float, float, float]) -> Ring:
     return Ring(
         part=part.name,
         group=part.group,
         r0=r0,
         r1=r1,
-        z0=float(prism.z0_mm),
-        z1=float(prism.z1_mm),
+        z0=float(prism.z0_mm + place[2]),
+        z1=float(prism.z1_mm + place[2]),
         outline=prism.outline,
         holes=prism.holes,
     )
@@ -85,6 +91,8 @@ def holes_for_pins(carrier: Part, pin: Part) -> bool:
     low, high = min(prism.z0_mm for prism in pin.prisms), max(prism.z1_mm for prism in pin.prisms)
     radius = pin.prisms[0].outline.radius_mm
     for prism in carrier.prisms:
+        if isinstance(prism.outline, Spread):
+            continue  # between the pins, see ``web_gap_mm``
         if prism.z1_mm <= low + 1e-9 or prism.z0_mm >= high - 1e-9:
             continue
         fitting = [
@@ -109,6 +117,8 @@ def screw_clashes(screw: Part, other: Part) -> list[str]:
         play = 0.2 if other.group != screw.group else 0.0
         for prism in other.prisms:
             if min(prism.z1_mm, body.z1_mm) - max(prism.z0_mm, body.z0_mm) < 1e-9 - play:
+                continue
+            if isinstance(prism.outline, Spread) and beside_webs_mm(prism.outline, screw) >= play:
                 continue
             if outer_mm(prism.outline) <= middle - radius - play + 1e-9:
                 continue
@@ -137,9 +147,12 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
             continue
         if a.pitch_radius_mm and b.pitch_radius_mm:
             # Planet, bush, pin and its screw on one axis: nested, seen from that axis. All others: side by side.
-            one_axis = abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
-            if one_axis and is_fastener(a) and is_fastener(b) and a.phase_rad != b.phase_rad and beside(a, b):
+            if a.phase_rad != b.phase_rad:
+                needed = clearance_mm if a.group != b.group else 0.0
+                if heights_overlap(a, b) and side_by_side_mm(a, b) < needed:
+                    found.append(f"{a.name} and {b.name}: {side_by_side_mm(a, b):.3f} mm, {needed} needed")
                 continue
+            one_axis = abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
             rings_a, rings_b = (rings_about_own_axis(part) if one_axis else rings(part) for part in (a, b))
         elif is_fastener(a) or is_fastener(b):
             screw, other = (a, b) if is_fastener(a) else (b, a)
@@ -150,9 +163,16 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
             if not holes_for_pins(carrier, parts["planet_pin"]):
                 found.append(f"{carrier.name} has no holes for the pins")
             continue
+        elif {a.role, b.role} >= {Role.CARRIER} and Group.PLANET in (a.group, b.group):
+            carrier, planet = (a, b) if a.role is Role.CARRIER else (b, a)
+            if web_gap_mm(carrier, planet) < clearance_mm:
+                found.append(f"{carrier.name} and {planet.name}: {web_gap_mm(carrier, planet):.3f} mm between them")
+            turned = replace(carrier, prisms=tuple(p for p in carrier.prisms if not isinstance(p.outline, Spread)))
+            rings_a, rings_b = rings(turned), rings(planet)
         else:
             rings_a, rings_b = rings(a), rings(b)
-        turning = a.group != b.group and not any("bearing" in name or "bush" in name for name in pair)
+        rolling = {Role.BEARING, Role.BUSH} & {a.role, b.role} or "planet_washer" in pair
+        turning = a.group != b.group and not rolling
         needed = clearance_mm if turning else 0.0
         least = min(gap_mm(x, y) for x in rings_a for y in rings_b if not x.fits(y))
         if least < needed - 1e-9:
@@ -160,28 +180,48 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
     return found
 
 
+def web_gap_mm(carrier: Part, planet: Part) -> float:
+    """Least distance of a carrier's webs from what turns with the planets, seen along the axis."""
+    webs = [prism.outline for prism in carrier.prisms if isinstance(prism.outline, Spread)]
+    if not webs:
+        return float("inf")
+    return min(beside_webs_mm(web, planet) for web in webs)
+
+
+def beside_webs_mm(web: Spread, part: Part) -> float:
+    """Least distance of webs from the instances of a part on a circle, seen along the axis."""
+    reach = max(outer_mm(prism.outline) for prism in part.prisms)
+    corners = np.concatenate(all_polygons([web], 0.001))
+    return float(np.hypot(*(corners[:, None] - centres_mm(part)[None]).T).min()) - reach
+
+
+def side_by_side_mm(a: Part, b: Part) -> float:
+    """Least distance of two parts on circles, seen along the axis."""
+    apart = np.hypot(*(centres_mm(a)[:, None] - centres_mm(b)[None]).T).min()
+    return float(apart) - sum(max(outer_mm(prism.outline) for prism in part.prisms) for part in (a, b))
+
+
+def heights_overlap(a: Part, b: Part) -> bool:
+    return any(min(x.z1, y.z1) > max(x.z0, y.z0) for x in rings(a) for y in rings(b))
+
+
+def centres_mm(part: Part) -> np.ndarray:
+    """Centres of the instances of a part on a circle, shape (n, 2)."""
+    angles = part.phase_rad + 2.0 * np.pi * np.arange(int(part.count)) / int(part.count)
+    return float(part.pitch_radius_mm) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
 def rings_about_own_axis(part: Part) -> list[Ring]:
-    return [ring_of(part, prism, inner_mm(prism.holes), outer_mm(prism.outline)) for prism in part.prisms]
+    return [
+        ring_of(part, prism, inner_mm(prism.holes), outer_mm(prism.outline), place)
+        for prism in part.prisms
+        for place in part.places_mm
+    ]
 
 
 def is_fastener(part: Part) -> bool:
     """Whether it stands in holes that other parts have for it."""
     return part.name.endswith(("_screw", "_dowel"))
-
-
-def beside(a: Part, b: Part) -> bool:
-    """Whether two fasteners on one circle stand at angles that leave room between them."""
-    turns = {
-        (k / n * 2.0 * np.pi + part.phase_rad, part.name) for part in (a, b) for n in [part.count] for k in range(n)
-    }
-    radius = max(float(prism.outline.radius_mm) for prism in a.prisms) + max(
-        float(prism.outline.radius_mm) for prism in b.prisms
-    )
-    return all(
-        2.0 * a.pitch_radius_mm * abs(np.sin(0.5 * (one - other))) >= radius
-        for (one, name), (other, its) in combinations(turns, 2)
-        if name != its
-    )
 
 
 def overlaps_within(part: Part) -> list[str]:
@@ -208,7 +248,7 @@ def overlaps_within(part: Part) -> list[str]:
 
 def pieces(part: Part) -> int:
     """Into how many pieces a part falls: prisms hold together where they share a face."""
-    own = rings_about_own_axis(part)
+    own = rings_about_own_axis(replace(part, places_mm=part.places_mm[:1]))
     left, found = set(range(len(own))), 0
     while left:
         found += 1

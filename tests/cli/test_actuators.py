@@ -25,7 +25,7 @@ KEYS = [
     "length_mm",
     "reflected_inertia_kg_m2",
     "efficiency_mesh",
-    "efficiency_bushes",
+    "efficiency_planets",
     "efficiency_bearings",
     "efficiency_total",
     "bearing_life_h",

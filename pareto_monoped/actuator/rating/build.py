@@ -1,7 +1,7 @@
 """From gear sets, motor and settings to a ``Stage`` that can be rated at any face width."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
@@ -27,7 +27,10 @@ from pareto_monoped.actuator.rating.life import (
 )
 from pareto_monoped.actuator.rating.root import root_limit_mpa, root_load_n_per_mm, static_root_limit_mpa
 from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
+from pareto_monoped.actuator.service.planets import planet_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sharing import load_sharing
+from pareto_monoped.actuator.webs import webs_of
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GearGrade
@@ -81,7 +84,11 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
         sun_mesh=sun_mesh,
         ring_mesh=ring_mesh,
         settings=settings,
-        width_low_mm=np.maximum(data.face_width_min_mm, data.face_modules_min * gears.module_mm),
+        webs=webs_of(gears, settings),
+        width_low_mm=reduce(
+            np.maximum,
+            (data.face_width_min_mm, data.face_modules_min * gears.module_mm, planet_width_mm(gears, motor, settings)),
+        ),
         width_high_mm=reach * face_limit_mm(gears, settings),
         carried=(sun_mesh.least_carried, ring_mesh.least_carried),
     )
@@ -93,17 +100,10 @@ def face_limit_mm(gears: GearSet, settings: ActuatorSettings) -> Numbers:
     return gears.module_mm * np.minimum(data.face_over_sun_max * gears.sun_teeth, data.face_modules_max)
 
 
-def load_sharing(planets: Numbers, settings: ActuatorSettings) -> Numbers:
-    """K_gamma by the number of planets, from the settings' table for the sun's support."""
-    data = settings.parts.rating
-    table = data.load_sharing_fixed if data.sun_support == "fixed" else data.load_sharing_floating
-    return np.asarray(table)[np.minimum(np.asarray(planets).astype(int) - 2, len(table) - 1)][()]
-
-
 def _rim_factors(gears: GearSet, family: Family, settings: ActuatorSettings) -> tuple[Numbers, Numbers, Numbers]:
     """Y_B of sun, planet and ring. Recesses in the planet leave a rim of 1.2 tooth depths, see ``front``."""
-    data, depth = settings.parts.gears, TOOTH_DEPTH * gears.module_mm
-    planet = external_rim_factor((gears.planet().root_radius_mm - 0.5 * data.planet_bore_mm) / depth)
+    depth = TOOTH_DEPTH * gears.module_mm
+    planet = external_rim_factor((gears.planet().root_radius_mm - 0.5 * settings.planet_bore_mm) / depth)
     wall = ring_radius_mm(gears, family, settings) - gears.ring_root_radius_mm
     ring = internal_rim_factor(wall / gears.module_mm)
     # The sun is one piece with its shaft: no rim.

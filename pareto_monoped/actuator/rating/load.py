@@ -111,27 +111,33 @@ def pin_tilt_um(
     width_mm: Numbers,
     gap_mm: float,
     pin_diameter_mm: float,
+    web_n_per_mm: Numbers,
     face_stiffness: Numbers,
     material: ElasticMaterial,
 ) -> Numbers:
     """Misalignment by the tilt of a planet on its pin.
 
-    The pins are all that ties the second carrier to the first. Each is a beam of length L, clamped in the carrier, and
-    guided without slope in the second carrier, which gives way sideways. Twice the mesh force in its middle tilts the
-    planet by 2 F L^2 / (16 E I). Both meshes hold against it with c b^3 / 12 each, the pin itself with 4 E I / L.
+    A pin is a beam of length L between both carriers, which do not let its ends turn. Twice the mesh force F in its
+    middle makes the second carrier sway by F / K, where K = 12 E I / L^3 of the pin and the stiffness of one web hold
+    it. The middle of the pin turns by 1.5 / L of the sway. Both meshes hold against that with c b^3 / 12 each. The pin
+    gives way to their moment by L / (16 E I) of itself and by (1.5 / L)^2 / K with the carrier.
 
     Args:
         force_n: F_m of one mesh.
         width_mm: face width.
         gap_mm: between planet and carrier, on either side.
         pin_diameter_mm: of the pin.
+        web_n_per_mm: stiffness of one web per pin, see ``webs``; 0 without webs.
         face_stiffness: c_gamma,beta of both meshes together.
         material: of the pin.
     """
     length = width_mm + 2.0 * gap_mm
     bending = material.youngs_modulus_mpa * np.pi * pin_diameter_mm**4 / 64.0
+    holds = 12.0 * bending / length**3 + web_n_per_mm
+    lever = 1.5 / length
     meshes = 1e3 * face_stiffness * width_mm**3 / 12.0
-    return 1e3 * width_mm * 0.5 * force_n * length / (4.0 * bending / length + meshes)
+    slope = force_n * lever / holds
+    return 1e3 * width_mm * slope / (1.0 + meshes * (length / (16.0 * bending) + lever**2 / holds))
 
 
 def face_load_factor(misalignment_um: Numbers, face_stiffness: Numbers, load_n_per_mm: Numbers) -> Numbers:

@@ -14,6 +14,7 @@ from pareto_monoped.actuator.rating import load
 from pareto_monoped.actuator.rating.geometry import ToothForm
 from pareto_monoped.actuator.rating.life import highest_share
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.webs import Webs
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GearGrade
 
@@ -130,6 +131,7 @@ class Stage:
         gears: the gear sets.
         sun_mesh, ring_mesh: the meshes.
         settings: of stage 1.
+        webs: of the carrier.
         width_low_mm, width_high_mm: least and largest face width allowed.
         carried: ``Mesh.least_carried`` of both meshes.
     """
@@ -138,6 +140,7 @@ class Stage:
     sun_mesh: Mesh
     ring_mesh: Mesh
     settings: ActuatorSettings
+    webs: Webs
     width_low_mm: Numbers
     width_high_mm: Numbers
     carried: tuple[Safeties, Safeties]
@@ -167,17 +170,16 @@ class Stage:
             load.mesh_stiffness(mesh.pair_stiffness, mesh.contact_ratio, w)
             for mesh, w in zip(meshes, applied, strict=True)
         ]
-        tilt: Numbers = 0.0
-        if data.second_carrier == "pins":
-            carrier = self.settings.parts.carrier
-            tilt = load.pin_tilt_um(
-                0.5 * (mean[0] + mean[1]) * width_mm,
-                width_mm,
-                carrier.planet_clearance_mm,
-                carrier.pin_diameter_mm,
-                load.FACE_STIFFNESS_SHARE * (stiff[0] + stiff[1]),
-                materials.steel,
-            )
+        gap = self.settings.planet_clearance_mm
+        tilt = load.pin_tilt_um(
+            0.5 * (mean[0] + mean[1]) * width_mm,
+            width_mm,
+            gap,
+            self.settings.parts.carrier.pin_diameter_mm,
+            self.webs.stiffness_n_per_mm(width_mm + 2.0 * gap, materials.aluminium),
+            load.FACE_STIFFNESS_SHARE * (stiff[0] + stiff[1]),
+            materials.steel,
+        )
         twist = load.sun_twist_um(
             mean[0], width_mm, self.sun_mesh.diameter_mm, self.gears.planets, materials.gear_steel
         )

@@ -20,6 +20,10 @@ STRENGTH_RULES = {
 """Rule -> which safety factors it is about."""
 
 
+LOAD_RULES = frozenset((*STRENGTH_RULES, "output_bearing", "planet_bearing"))
+"""Rules that a weaker motor would keep: gear sets that break no other fit, and are too weak."""
+
+
 def strength_margins(safeties: Safeties, stage: Stage) -> dict[str, Numbers]:
     """For each rule of strength, the least safety factor over the required one, less 1."""
     least = required(stage.settings)

@@ -1,8 +1,9 @@
-"""Loads on the bearings of one actuator in the present layout, and what they leave: life and static safety.
+"""Loads on the bearings of one actuator, and what they leave: life and static safety.
 
-The output's main bearing is a single row. At the knee, the chain pulls in front of it with nothing else to hold the
-output, so that the row carries the whole tilting moment. At the hip, leg and knee actuator rest in two bearings, the
-main bearing and that of the far cheek, so that neither sees a moment. End and rear bearing hold sun and rotor.
+At the knee, the chain pulls between two supports: the actuator's main bearing, a single row of balls, and a needle
+bearing in the hip coupling, on the far side of the sprocket. At the hip, leg and knee actuator rest in the main bearing
+and that of the far cheek. All four are taken as pivots: no row of balls has to carry a tilting moment. End and rear
+bearing hold sun and rotor; planets turn on bushes or needles.
 """
 
 from dataclasses import dataclass
@@ -14,15 +15,20 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.bearings import RatedBearing, rated_bearing
 from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.rating.build import load_sharing
-from pareto_monoped.actuator.rating_data import DutyData
+from pareto_monoped.actuator.needles import LIFE_EXPONENT, needle_rows
+from pareto_monoped.actuator.roller_bearings import RollerBearing, as_bearing, roller_bearing
 from pareto_monoped.actuator.service.ball_row import row_load
 from pareto_monoped.actuator.service.data import ServiceData
+from pareto_monoped.actuator.service.duty import life_turns, output_turns_per_hour
+from pareto_monoped.actuator.service.output import knee_forces_n, line_tilt_rad, main_bearing_depth_mm
+from pareto_monoped.actuator.service.planets import planet_force_n, planet_turns
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.sharing import load_sharing
 from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.roles import Group, Role
 
-Place = Literal["main, knee", "main, hip", "end", "rear"]
+Place = Literal["main, knee", "far, knee", "main, hip", "end", "rear", "planets"]
 Floats = NDArray[np.float64]
 
 
@@ -32,26 +38,36 @@ class BearingService:
 
     Attributes:
         place: which bearing, and for the main bearing at which joint.
-        bearing: of the catalogue.
-        force_n, tilt_n_m: radial force and tilting moment at the actuator's peak torque.
+        bearing: of the catalogue, or the needles of one planet.
+        force_n: radial force at the actuator's peak torque.
         equivalent_n: dynamic equivalent load there.
         tilt_rad: by which the rings turn against each other.
         life_h: L10 under the duty.
         static_safety: at the peak torque.
         overload_safety: static safety under the overload.
         turns_per_output: its speed over the output's.
+        friction_coefficient: at the radius of its bore.
     """
 
     place: Place
-    bearing: RatedBearing
+    bearing: RatedBearing | RollerBearing
     force_n: float
-    tilt_n_m: float
     equivalent_n: float
     tilt_rad: float
     life_h: float
     static_safety: float
     overload_safety: float
     turns_per_output: float
+    friction_coefficient: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Context:
+    """What every bearing of an actuator is rated with; ``levels`` are the duty's torques, the peak and the overload."""
+
+    settings: ActuatorSettings
+    service: ServiceData
+    levels: Floats
 
 
 def bearing_services(
@@ -65,43 +81,44 @@ def bearing_services(
         settings: of stage 1, with the duty.
         service: pace, forces and fits.
     """
-    duty = settings.parts.duty
+    levels = np.array([*settings.parts.duty.torque_shares, 1.0, settings.parts.rating.overload_factor])
+    context = _Context(settings=settings, service=service, levels=levels)
     main = rated_bearing(float(at.bearing.inner_diameter_mm))
-    levels = np.array([*duty.torque_shares, 1.0, settings.parts.rating.overload_factor])
-    force, moment = chain_load(actuator, at, service)
-    hip = hip_force_n(actuator, at, service)
+    near, far = (float(force) for force in knee_forces_n(actuator.peak_torque_n_m, at, service))
+    tilt = float(line_tilt_rad(actuator.peak_torque_n_m, at, service))
+    support = roller_bearing(service.drive_support_bearing)
     # Sun and rotor rest in two bearings; the carrier of an ESSPG and the motor's own bearings share the sun's load.
     sun = 0.5 * uneven_force_n(actuator, settings)
+    end = rated_bearing(float(at.end_bearing.inner_diameter_mm))
     found = [
-        _service("main, knee", main, levels * force, levels * moment, 1.0, duty, service),
-        _service("main, hip", main, levels * hip, 0.0 * levels, 1.0, duty, service),
-        _service(
-            "end",
-            rated_bearing(float(at.end_bearing.inner_diameter_mm)),
-            levels * sun,
-            0.0 * levels,
-            actuator.ratio - 1.0,
-            duty,
-            service,
-        ),
+        _balls("main, knee", main, levels * near, 1.0, context, tilt),
+        _rollers("far, knee", support, levels * far, 1.0, context, service.needle_friction_coefficient, tilt),
+        _balls("main, hip", main, levels * hip_force_n(actuator, at, service), 1.0, context),
+        _balls("end", end, levels * sun, actuator.ratio - 1.0, context),
     ]
     if actuator.family == "ISSPG":
         assert actuator.motor.frameless is not None
         rotor = 0.5 * actuator.motor.rotor_mass_share * actuator.motor.frameless.mass_kg * GRAVITY_M_PER_S2
         bearing = rated_bearing(float(at.rear_bearing.inner_diameter_mm))
-        found.append(_service("rear", bearing, levels * sun + rotor, 0.0 * levels, actuator.ratio, duty, service))
+        found.append(_balls("rear", bearing, levels * sun + rotor, actuator.ratio, context))
+    if settings.planet_bearing == "needles":
+        found.append(_needles(actuator, context))
     return tuple(found)
 
 
-def chain_load(actuator: Actuator, at: Layout, service: ServiceData) -> tuple[float, float]:
-    """Pull of the chain at the peak torque in N, and its moment about the main bearing's middle in N m."""
-    pull = actuator.peak_torque_n_m / (1e-3 * service.chain_radius_mm)
-    return pull, 1e-3 * pull * (service.chain_offset_mm + main_bearing_depth_mm(at))
-
-
-def main_bearing_depth_mm(at: Layout) -> float:
-    """How far the middle of the main bearing lies behind the output face."""
-    return -0.5 * float(at.z_bearing_front + at.z_bearing_back)
+def _needles(actuator: Actuator, context: _Context) -> BearingService:
+    """The needles of the most loaded planet."""
+    settings, gears = context.settings, actuator.gears
+    (part,) = (p for p in actuator.parts if p.role is Role.BEARING and p.group is Group.PLANET)
+    bearing = as_bearing(
+        needle_rows(actuator.face_width_mm, settings),
+        pin_mm=settings.parts.carrier.pin_diameter_mm,
+        bore_mm=settings.planet_bore_mm,
+        mass_kg=float(part.mass_kg()) / float(gears.planets),
+    )
+    force = float(planet_force_n(gears, actuator.peak_torque_n_m, settings))
+    friction = settings.parts.needles.friction_coefficient
+    return _rollers("planets", bearing, context.levels * force, float(planet_turns(gears)), context, friction)
 
 
 def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
@@ -109,7 +126,7 @@ def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
 
     The other support is the far cheek's bearing, behind the knee actuator. Both are taken as pivots.
     """
-    near = service.leg_offset_mm + main_bearing_depth_mm(at)
+    near = service.leg_offset_mm + float(main_bearing_depth_mm(at))
     far = service.chain_offset_mm + actuator.length_mm + service.far_bearing_mm
     return (service.foot_force_n + service.leg_weight_n) * far / (near + far)
 
@@ -123,36 +140,75 @@ def uneven_force_n(actuator: Actuator, settings: ActuatorSettings) -> float:
     return float(uneven * tangential / np.cos(PRESSURE_ANGLE_RAD))
 
 
-def output_turns_per_hour(duty: DutyData, service: ServiceData) -> float:
-    """Angle through which the output turns in an hour, in whole turns."""
-    return 60.0 * service.jumps_per_minute * sum(duty.output_angles_rad) / (2.0 * np.pi)
-
-
-def _service(
-    place: Place,
-    bearing: RatedBearing,
-    force: Floats,
-    moment: Floats,
-    turns: float,
-    duty: DutyData,
-    service: ServiceData,
+def _balls(
+    place: Place, bearing: RatedBearing, force: Floats, turns: float, context: _Context, tilt_rad: float = 0.0
 ) -> BearingService:
-    """Rate a bearing; the loads are those of the duty's levels, of the peak torque and of the overload."""
-    loads = row_load(bearing, force, moment, service.bearing_clearance_mm)
-    angles = np.array(duty.output_angles_rad)
-    million_turns = (bearing.dynamic_rating_n / loads.equivalent_n[: len(angles)]) ** 3  # ISO 281, clause 5.3
-    # Palmgren and Miner: each level takes its share of the turns.
-    life_turns = 1e6 / float(np.sum(angles / np.sum(angles) / million_turns))
-    peak, overload = len(angles), len(angles) + 1
+    """Rate a row of balls by the loads of its balls (ISO/TS 16281); ``force`` is at the context's levels."""
+    loads = row_load(bearing, force, 0.0 * force, context.service.bearing_clearance_mm)
+    return _rated(
+        place,
+        bearing,
+        force,
+        turns,
+        context,
+        equivalent=loads.equivalent_n,
+        static=loads.static_safety,
+        exponent=3.0,  # ISO 281, clause 5.3
+        friction=context.service.bearing_friction_coefficient,
+        tilt_rad=tilt_rad,
+    )
+
+
+def _rollers(
+    place: Place,
+    bearing: RollerBearing,
+    force: Floats,
+    turns: float,
+    context: _Context,
+    friction: float,
+    tilt_rad: float = 0.0,
+) -> BearingService:
+    """Rate a roller bearing, whose equivalent load is the radial force (ISO 281, ISO 76)."""
+    static = bearing.static_rating_n / force
+    return _rated(
+        place,
+        bearing,
+        force,
+        turns,
+        context,
+        equivalent=force,
+        static=static,
+        exponent=LIFE_EXPONENT,
+        friction=friction,
+        tilt_rad=tilt_rad,
+    )
+
+
+def _rated(
+    place: Place,
+    bearing: RatedBearing | RollerBearing,
+    force: Floats,
+    turns: float,
+    context: _Context,
+    *,
+    equivalent: Floats,
+    static: Floats,
+    exponent: float,
+    friction: float,
+    tilt_rad: float,
+) -> BearingService:
+    duty = context.settings.parts.duty
+    peak = len(duty.torque_shares)
+    lasts = life_turns(list(equivalent[:peak]), bearing.dynamic_rating_n, exponent, duty)
     return BearingService(
         place=place,
         bearing=bearing,
         force_n=float(force[peak]),
-        tilt_n_m=float(moment[peak]),
-        equivalent_n=float(loads.equivalent_n[peak]),
-        tilt_rad=float(loads.tilt_rad[peak]),
-        life_h=life_turns / (output_turns_per_hour(duty, service) * turns),
-        static_safety=float(loads.static_safety[peak]),
-        overload_safety=float(loads.static_safety[overload]),
+        equivalent_n=float(equivalent[peak]),
+        tilt_rad=tilt_rad,
+        life_h=float(lasts) / (output_turns_per_hour(duty, context.service) * turns),
+        static_safety=float(static[peak]),
+        overload_safety=float(static[peak + 1]),
         turns_per_output=turns,
+        friction_coefficient=friction,
     )

@@ -1,4 +1,4 @@
-"""Losses of one actuator by source: tooth meshes, bushes of the planets, bearings, churning."""
+"""Losses of one actuator by source: tooth meshes, planets on their pins, bearings, churning."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,10 +8,11 @@ import numpy as np
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.service.bearing_life import BearingService
 from pareto_monoped.actuator.service.data import ServiceData
+from pareto_monoped.actuator.service.planets import planet_turns
 from pareto_monoped.geometry.shapes import Numbers
 
 _PALMGREN_LOW, _PALMGREN = 160e-7, 1e-7  # N mm per mm3: Harris, Rolling Bearing Analysis, eqs. 14.11 and 14.12
-_PALMGREN_ROW = 2.0  # f0 of a single row of deep groove balls in an oil bath; 0.7 to 2 with grease
+_PALMGREN_ROW = 2.0  # f0 of a single row of deep groove balls in an oil bath, taken for needles too
 _PALMGREN_BOUND = 2000.0  # viscosity in mm2/s times speed in 1/min
 
 
@@ -21,42 +22,46 @@ class Losses:
 
     Attributes:
         efficiency_mesh: both tooth meshes.
-        efficiency_bushes: bushes of the planets on their pins.
+        efficiency_planets: bushes or needles of the planets on their pins.
         efficiency_bearings: rolling friction of the bearings under load.
         efficiency_churning: of the lubricant in the bearings, at the duty's mean speed; 1 if they churn none.
     """
 
     efficiency_mesh: float
-    efficiency_bushes: float
+    efficiency_planets: float
     efficiency_bearings: float
     efficiency_churning: float
 
     @property
     def efficiency_total(self) -> float:
         """All sources together."""
-        return self.efficiency_mesh * self.efficiency_bushes * self.efficiency_bearings * self.efficiency_churning
+        return self.efficiency_mesh * self.efficiency_planets * self.efficiency_bearings * self.efficiency_churning
 
 
-def bush_loss(gears: GearSet, pin_diameter_mm: float, friction: float) -> Numbers:
-    """Power that the planets' bushes take, over the output power.
+def planet_bearing_loss(gears: GearSet, pin_diameter_mm: float, friction: float) -> Numbers:
+    """Power that the planets' bushes or needles take, over the output power.
 
     Each pin passes its share of the output torque to the carrier: n F = T / r, with the carrier's radius r. Against the
     carrier, a planet turns at Nr / Np of the output's speed (Willis). The friction mu F acts at the pin's radius.
     """
-    turns = gears.ring_teeth / gears.planet_teeth
-    return friction * 0.5 * pin_diameter_mm * turns / gears.carrier_radius_mm
+    return friction * 0.5 * pin_diameter_mm * planet_turns(gears) / gears.carrier_radius_mm
 
 
-def bearing_loss(bearings: Sequence[BearingService], peak_torque_n_m: float, service: ServiceData) -> float:
+def bearing_loss(bearings: Sequence[BearingService], peak_torque_n_m: float) -> float:
     """Power that rolling friction takes at the peak torque, over the output power.
 
     Simple friction model: M = mu P d / 2 with the equivalent load P and the bore d (SKF, Rolling bearings, section
     bearing friction).
     """
     friction_n_m = sum(
-        0.5e-3 * found.equivalent_n * found.bearing.inner_diameter_mm * found.turns_per_output for found in bearings
+        0.5e-3
+        * found.friction_coefficient
+        * found.equivalent_n
+        * found.bearing.inner_diameter_mm
+        * found.turns_per_output
+        for found in bearings
     )
-    return service.bearing_friction_coefficient * friction_n_m / peak_torque_n_m
+    return friction_n_m / peak_torque_n_m
 
 
 def churning_loss(bearings: Sequence[BearingService], peak_torque_n_m: float, service: ServiceData) -> float:
@@ -68,7 +73,8 @@ def churning_loss(bearings: Sequence[BearingService], peak_torque_n_m: float, se
         rpm = service.mean_speed_rad_per_s * found.turns_per_output * 30.0 / np.pi
         flow = service.lubricant_viscosity_mm2_per_s * rpm
         factor = _PALMGREN_LOW if flow < _PALMGREN_BOUND else _PALMGREN * flow ** (2.0 / 3.0)
-        drag_n_m += 1e-3 * _PALMGREN_ROW * factor * found.bearing.pitch_diameter_mm**3 * found.turns_per_output
+        pitch_mm = 0.5 * (found.bearing.inner_diameter_mm + found.bearing.outer_diameter_mm)
+        drag_n_m += 1e-3 * _PALMGREN_ROW * factor * pitch_mm**3 * found.turns_per_output
     return drag_n_m / peak_torque_n_m
 
 
@@ -95,7 +101,7 @@ def bush_load(
 ) -> BushLoad:
     """Load on each planet's bush at a torque and a speed of the output."""
     force_n = 1e3 * output_torque_n_m / (float(gears.planets) * float(gears.carrier_radius_mm))
-    turns = float(gears.ring_teeth) / float(gears.planet_teeth)
+    turns = float(planet_turns(gears))
     return BushLoad(
         pressure_mpa=force_n / (pin_diameter_mm * length_mm),
         speed_m_per_s=0.5e-3 * pin_diameter_mm * turns * output_speed_rad_per_s,

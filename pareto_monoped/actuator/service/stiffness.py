@@ -75,16 +75,17 @@ def mesh_compliance(actuator: Actuator) -> float:
 def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> float:
     """Of the pins, in rad / (N m).
 
-    A pin is clamped in both carriers. A second carrier that is held by the pins alone follows them around the axis, but
-    does not let their ends turn: under a uniform load F over the length L between the carriers, the mean deflection of
-    a beam that is clamped at one end and guided at the other is F L^3 / (45 E I). Webs hold the second carrier as well:
-    F L^3 / (720 E I), clamped at both ends.
+    A pin is a beam of length L between both carriers, which do not let its ends turn, under a uniform load F. Between
+    carriers that stand still its mean deflection is F L^3 / (720 E I). Half the load goes to the second carrier and
+    makes it sway by F / (2 K), where K = 12 E I / L^3 of the pin and the stiffness of one web hold it. Half of the sway
+    is added.
     """
-    divisor = 45.0 if settings.parts.rating.second_carrier == "pins" else 720.0
     length_mm = float(at.z_shoulder - at.z_secondary_front)
     second_moment_mm4 = np.pi * settings.parts.carrier.pin_diameter_mm**4 / 64.0
     bending = settings.materials.steel.youngs_modulus_mpa * second_moment_mm4
-    softness = 1e-3 * length_mm**3 / (divisor * bending)  # m/N
+    web = float(at.webs.stiffness_n_per_mm(length_mm, settings.materials.aluminium))
+    sway = 0.25 / (12.0 * bending / length_mm**3 + web)
+    softness = 1e-3 * (length_mm**3 / (720.0 * bending) + sway)  # m/N
     return float(softness / (float(gears.planets) * (1e-3 * float(gears.carrier_radius_mm)) ** 2))
 
 
@@ -110,7 +111,7 @@ def _carrier_compliance(actuator: Actuator, at: Layout, aluminium: ElasticMateri
     """Of the carrier from the clamped ends of the pins to the output face."""
     carriers = [part for part in actuator.parts if part.role is Role.CARRIER]
     front = max(carriers, key=lambda part: max(float(prism.z1_mm) for prism in part.prisms))
-    softness = sum(_tube_softness(prism) for prism in front.prisms)
+    softness = sum(_tube_softness(prism) for prism in front.prisms if prism.z0_mm >= at.z_shoulder - 1e-9)
     return 1e3 * softness / aluminium.shear_modulus_mpa
 
 

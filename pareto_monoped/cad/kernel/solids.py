@@ -21,7 +21,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
 from pareto_monoped.cad.kernel.cones import beveled
 from pareto_monoped.cad.shape.curves import Contour, Points, Spline, ends, on_arc
-from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.shape.outlines import regions
 from pareto_monoped.cad.shape.stacks import regrouped, stands_on, without_teeth
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
@@ -46,9 +46,11 @@ def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple
     # Before the fusion, pieces have few faces, which makes their cones cheap.
     layers = [layer for prism in regrouped(prisms) for layer in without_teeth(prism, bevels)]
     for prism in layers:
-        own = [bevel for bevel in left if stands_on(bevel, prism)]
+        bodies = list(_extruded(prism))
+        # The cones of a pattern over several bodies wait until these are one.
+        own = [bevel for bevel in left if stands_on(bevel, prism)] if len(bodies) == 1 else []
         left = [bevel for bevel in left if bevel not in own]
-        pieces += [beveled(piece, own) for piece in _extruded(prism)]
+        pieces += [beveled(body, own) for body in bodies]
     pieces += [_ball(ball) for ball in balls]
     return _only(beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left))
 
@@ -103,13 +105,10 @@ def _spline(piece: Spline, z_mm: float) -> Geom_BSplineCurve:
 
 def _extruded(prism: Prism) -> Iterator[TopoDS_Shape]:
     z0, z1 = float(prism.z0_mm), float(prism.z1_mm)
-    outlines = contours(prism.outline)
-    # Holes belong to the one region; a pattern of discs has none.
-    holes = [wire_of(contour, z0) for hole in prism.holes for contour in contours(hole)] if len(outlines) == 1 else []
-    for outline in outlines:
+    for outline, holes in regions(prism.outline, prism.holes):
         face = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, z0), _UP), wire_of(outline, z0), True)
         for hole in holes:
-            face.Add(TopoDS.Wire(hole.Reversed()))
+            face.Add(TopoDS.Wire(wire_of(hole, z0).Reversed()))
         yield BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, z1 - z0)).Shape()
 
 

@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
+import numpy as np
+
 from pareto_monoped.cad.shape.curves import Contour, Points, polygon
 from pareto_monoped.cad.shape.involute import Teeth, outline
 from pareto_monoped.geometry.gears import FILLET, ExternalGear, InternalGear
-from pareto_monoped.geometry.shapes import Circle, Path, Pattern, Shape
+from pareto_monoped.geometry.shapes import Circle, Path, Pattern, Shape, Spread
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
@@ -22,9 +24,35 @@ def contours(shape: Shape) -> tuple[Contour, ...]:
         return tuple(Contour(circle=Circle(radius_mm=radius, x_mm=x, y_mm=y)) for x, y in shape.centres_mm())
     if isinstance(shape, Path):
         return (Contour(pieces=shape.pieces),)
+    if isinstance(shape, Spread):
+        return tuple(Contour(pieces=path.pieces) for path in shape.paths())
     if isinstance(shape, ExternalGear | InternalGear):
         return (_gear(shape),)
     raise TypeError(f"no outline for a shape of kind {type(shape).__name__}")
+
+
+def regions(outline: Shape, holes: Sequence[Shape]) -> list[tuple[Contour, list[Contour]]]:
+    """The separate regions of an outline, each with the holes that lie in it."""
+    outer = contours(outline)
+    inner = [contour for hole in holes for contour in contours(hole)]
+    if len(outer) == 1:
+        return [(outer[0], inner)]
+    corners = [polygon(contour) for contour in outer]
+    middles = [polygon(contour).mean(axis=0) for contour in inner]
+    return [
+        (contour, [hole for hole, middle in zip(inner, middles, strict=True) if _contains(points, middle)])
+        for contour, points in zip(outer, corners, strict=True)
+    ]
+
+
+def _contains(points: Points, point: Points) -> bool:
+    """Whether a polygon contains a point: a ray along x from there leaves it an odd number of times."""
+    x, y = (points - point).T
+    x_next, y_next = np.roll(x, -1), np.roll(y, -1)
+    crosses = (y > 0.0) != (y_next > 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = x - y * (x_next - x) / (y_next - y)
+    return bool(np.sum(crosses & (at > 0.0)) % 2)
 
 
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:

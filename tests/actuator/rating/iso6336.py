@@ -226,10 +226,46 @@ def damage_cycles(passes, levels, treatment, kind, jumps, highest):
     return total * allowed(1.0)
 
 
-def pin_tilt(force, width, gap, diameter, stiffness):
+def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices=20000):
+    """Of one web in N/mm: a beam guided at both ends, its section cut into strips along the radius."""
+    data, carrier = settings.parts.webs, settings.parts.carrier
+    half = pi / planets
+    x_pin, y_pin = r_pin * cos(half), r_pin * sin(half)
+    keep = planet_tip + data.clearance_mm
+    outer = min(
+        ring_tip - data.clearance_mm,
+        r_pin + carrier.pin_diameter_mm / 2.0 + carrier.pin_wall_mm + data.overhang_mm,
+    )
+
+    def gap(x):
+        """Half the gap between the planets at a distance x from the axis."""
+        return y_pin - sqrt(max(keep**2 - (x - x_pin) ** 2, 0.0))
+
+    if planets < 3 or gap(outer) <= 0.0:
+        return 0.0
+    corner = outer
+    if gap(x_pin) < sqrt(outer**2 - x_pin**2):
+        corner = bisect(lambda x: gap(x) - sqrt(outer**2 - x**2), x_pin, outer)
+    inner = max(min(outer - data.depth_mm, corner - data.depth_mm / 2.0), x_pin)
+    if gap(inner) < data.neck_mm < gap(outer):
+        inner = bisect(lambda x: gap(x) - data.neck_mm, inner, outer)
+    hole = 1.25 + data.screw_wall_mm
+    middle = outer - hole
+    if min(hypot(middle - x_pin, y_pin) - keep, middle - inner) < hole:
+        return 0.0
+    edges = np.linspace(inner, outer, slices + 1)
+    wide = np.array([min(gap(x), sqrt(outer**2 - x**2)) for x in 0.5 * (edges[1:] + edges[:-1])])
+    strip = edges[1] - edges[0]
+    area, second = float(np.sum(2.0 * wide) * strip), float(np.sum((2.0 * wide) ** 3 / 12.0) * strip)
+    aluminium, shear = 70e3, 70e3 / 2.66
+    return 1.0 / (length**3 / (12.0 * aluminium * second) + 1.2 * length / (shear * area))
+
+
+def pin_tilt(force, width, gap, diameter, stiffness, web):
     """Slope of the planet on its pin: two beam elements, clamped at one end, guided without slope at the other.
 
-    ``stiffness`` is that of both meshes against tilting, in N mm per rad; twice ``force`` acts in the middle.
+    ``stiffness`` is that of both meshes against tilting, in N mm per rad; twice ``force`` acts in the middle, and the
+    guided end moves against a spring ``web``.
     """
     length = (width + 2.0 * gap) / 2.0
     bending = E_STEEL * pi * diameter**4 / 64.0
@@ -249,6 +285,7 @@ def pin_tilt(force, width, gap, diameter, stiffness):
     whole[:4, :4] += one
     whole[2:, 2:] += one
     whole[3, 3] += stiffness
+    whole[4, 4] += web
     free = [2, 3, 4]  # deflection and slope in the middle, deflection at the guided end
     loads = np.array([2.0 * force, 0.0, 0.0])
     return float(np.linalg.solve(whole[np.ix_(free, free)], loads)[1])
@@ -285,7 +322,7 @@ def mesh_loads(sets, data, width, meshes, over=False):
         )
     both = sum(0.85e3 * one["stiff"] * width**3 / 12.0 for one in found)
     force = 0.5 * (found[0]["mean"] + found[1]["mean"]) * width
-    tilt = pin_tilt(force, width, sets["gap"], sets["pin"], both) if data.second_carrier == "pins" else 0.0
+    tilt = pin_tilt(force, width, sets["gap"], sets["pin"], both, sets["web"])
     lag = sun_lag(found[0]["mean"], width, sets["module"] * meshes[0]["z1"], sets["planets"])
     for one, mesh, twist in zip(found, meshes, (lag, 0.0), strict=True):
         grade = sqrt(2.0) ** (data.accuracy_class - 5)
@@ -337,6 +374,14 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
         "pin": settings.parts.carrier.pin_diameter_mm,
     }
     sun, planet, ring, sets["distance"] = shifted(zs, zp, zr, float(gears.centre_shift), float(gears.sun_shift))
+    planet_bore = settings.parts.gears.planet_bore_mm
+    if data.planet_bearing == "needles":
+        sets["gap"] = settings.parts.needles.washer_mm + settings.parts.needles.washer_play_mm
+        planet_bore = sets["pin"] + 2.0 * settings.parts.needles.diameter_mm
+    sets["web"] = 0.0
+    if data.second_carrier == "webs":
+        radii = [module * value for value in (sets["distance"], planet.tip, ring.tip)]
+        sets["web"] = web_stiffness(planets, *radii, settings, width + 2.0 * sets["gap"])
     meshes = [
         {"pinion": sun, "wheel": planet, "steels": (steels.sun, steels.planet)},
         {"pinion": planet, "wheel": ring, "steels": (steels.planet, steels.ring)},
@@ -347,7 +392,7 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
     loads, overloads = (mesh_loads(sets, data, width, meshes, over) for over in (False, True))
     turns = (ratio - 1.0) / (2.0 * pi)
     passes = {"sun": planets * turns, "planet": turns * zs / zp, "ring": planets * turns * zs / zr}
-    bores = {"sun": sun_bore, "planet": settings.parts.gears.planet_bore_mm}
+    bores = {"sun": sun_bore, "planet": planet_bore}
     safety = {}
     for name, mesh, load, over in zip(("sun mesh", "ring mesh"), meshes, loads, overloads, strict=True):
         members = ("sun", "planet") if name == "sun mesh" else ("planet", "ring")

@@ -167,11 +167,16 @@ def test_twist_of_a_single_mesh_is_the_torsional_share_of_iso_6336_1():
 
 
 def test_a_planet_on_stiff_pins_does_not_tilt_and_on_soft_ones_the_meshes_hold_it():
-    tilt = [load.pin_tilt_um(400.0, 20.0, 1.5, pin, 10.0, MATERIALS.steel) for pin in (6.0, 60.0, 600.0)]
+    tilt = [load.pin_tilt_um(400.0, 20.0, 1.5, pin, 0.0, 10.0, MATERIALS.steel) for pin in (6.0, 60.0, 600.0)]
     assert tilt[0] > 100.0 * tilt[1] > 1e5 * tilt[2]
     # Without pins, both meshes carry the moment F L / 2 between them: c b^3 / 12 against it.
-    soft = load.pin_tilt_um(400.0, 20.0, 1.5, 1e-3, 10.0, MATERIALS.steel)
+    soft = load.pin_tilt_um(400.0, 20.0, 1.5, 1e-3, 0.0, 10.0, MATERIALS.steel)
     assert soft == pytest.approx(1e3 * 20.0 * 400.0 * 23.0 / 2 / (1e4 * 20.0**3 / 12), rel=1e-6)
+
+
+def test_webs_hold_the_second_carrier_and_so_the_planets():
+    tilt = [load.pin_tilt_um(400.0, 20.0, 1.1, 6.0, web, 10.0, MATERIALS.steel) for web in (0.0, 1e4, 1e5, 1e12)]
+    assert tilt[0] > 1.3 * tilt[1] > 3.0 * tilt[2] > 1e6 * tilt[3]
 
 
 def test_face_load_factor_is_continuous_where_contact_parts():

@@ -66,7 +66,8 @@ def settings_with(grades, k):
         sun, planet, ring = grades
         data = replace(data, sun_grade=sun, planet_grade=planet, ring_grade=ring)
     if k % 3 == 2:
-        data = replace(data, sun_support="floating", second_carrier="webs", accuracy_class=5 + k % 2)
+        data = replace(data, sun_support="floating", second_carrier="pins", accuracy_class=5 + k % 2)
+        data = replace(data, planet_bearing="bushes" if k % 2 else "needles")
         duty = replace(duty, jumps=3e3 * 10.0 ** (k % 6), torque_shares=(0.9, 0.6, 0.3), output_angles_rad=(0.3, 1, 4))
     if k % 5 == 4:
         duty = replace(duty, torque_shares=(1.0, 1.6), output_angles_rad=(1.0, 0.1))

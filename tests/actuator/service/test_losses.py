@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.gearset import GearSet, efficiency
 from pareto_monoped.actuator.service.data import default_service
-from pareto_monoped.actuator.service.losses import Losses, bush_load, bush_loss, churning_loss
+from pareto_monoped.actuator.service.losses import Losses, bush_load, churning_loss, planet_bearing_loss
 from pareto_monoped.actuator.service.sheet import service_sheet
 
 FOUR = GearSet(sun_teeth=30, planet_teeth=30, ring_teeth=90, module_mm=0.5, planets=5)
@@ -22,8 +22,8 @@ EIGHT = GearSet(sun_teeth=22, planet_teeth=65, ring_teeth=152, module_mm=0.5, pl
 )
 def test_bushes_take_what_was_found_by_hand(gears, low, high):
     """The three published sets on 6 mm pins with a friction of 0.05 and 0.1."""
-    assert bush_loss(gears, 6.0, 0.05) == pytest.approx(low, abs=5e-4)
-    assert bush_loss(gears, 6.0, 0.10) == pytest.approx(high, abs=5e-4)
+    assert planet_bearing_loss(gears, 6.0, 0.05) == pytest.approx(low, abs=5e-4)
+    assert planet_bearing_loss(gears, 6.0, 0.10) == pytest.approx(high, abs=5e-4)
 
 
 teeth = st.integers(18, 80)
@@ -40,7 +40,7 @@ def test_bush_loss_is_friction_power_over_output_power(sun, planet, module, plan
     spin_against_carrier = -speed * centre / r_planet - speed
     force = torque / (planets * centre)
     power = planets * friction * force * abs(spin_against_carrier) * 0.5e-3 * pin
-    assert bush_loss(gears, pin, friction) == pytest.approx(power / (torque * speed))
+    assert planet_bearing_loss(gears, pin, friction) == pytest.approx(power / (torque * speed))
     found = bush_load(gears, torque, speed, pin, 10.0)
     assert found.speed_m_per_s == pytest.approx(abs(spin_against_carrier) * 0.5e-3 * pin)
     assert found.pressure_mpa == pytest.approx(force / (pin * 10.0))
@@ -59,7 +59,7 @@ def test_sources_multiply_and_none_gains(vt_map):
     for ratio in (4.0, 6.0, 7.9):
         actuator = vt_map.lookup(ratio)
         losses = service_sheet(actuator, vt_map.settings).losses
-        parts = (losses.efficiency_mesh, losses.efficiency_bushes, losses.efficiency_bearings)
+        parts = (losses.efficiency_mesh, losses.efficiency_planets, losses.efficiency_bearings)
         assert losses.efficiency_churning == 1.0
         assert losses.efficiency_total == pytest.approx(math.prod(parts))
         assert all(0.9 < part < 1.0 for part in parts)
@@ -72,8 +72,13 @@ def test_bearing_loss_is_skf_s_simple_model(vt_map):
     sheet = service_sheet(actuator, vt_map.settings)
     by_place = {found.place: found for found in sheet.bearings}
     lost = 0.0
-    for place, bore_m, turns in (("main, knee", 0.040, 1.0), ("end", 0.006, 5.0), ("rear", 0.010, 6.0)):
-        lost += 0.0015 * by_place[place].equivalent_n * 0.5 * bore_m * turns
+    for place, friction, bore_m, turns in (
+        ("main, knee", 0.0015, 0.040, 1.0),
+        ("far, knee", 0.0020, 0.012, 1.0),
+        ("end", 0.0015, 0.006, 5.0),
+        ("rear", 0.0015, 0.010, 6.0),
+    ):
+        lost += friction * by_place[place].equivalent_n * 0.5 * bore_m * turns
     assert 1.0 - sheet.losses.efficiency_bearings == pytest.approx(lost / actuator.peak_torque_n_m)
 
 
@@ -81,8 +86,10 @@ def test_churning_is_an_option_and_follows_palmgren(vt_map):
     actuator = vt_map.lookup(6.0)
     thin = replace(default_service(), lubricant_viscosity_mm2_per_s=1.0)
     sheet = service_sheet(actuator, vt_map.settings, thin)
-    # Below nu n = 2000: M0 = 160e-7 f0 dm^3 N mm, whatever the speed; dm of 6808, 696 and 6800.
-    drag = sum(160e-7 * 2.0 * dm**3 * 1e-3 * turns for dm, turns in ((46.0, 1.0), (10.5, 5.0), (14.5, 6.0)))
+    # Below nu n = 2000: M0 = 160e-7 f0 dm^3 N mm, whatever the speed; dm of 6808, HK1210, 696, 6800.
+    drag = sum(
+        160e-7 * 2.0 * dm**3 * 1e-3 * turns for dm, turns in ((46.0, 1.0), (14.0, 1.0), (10.5, 5.0), (14.5, 6.0))
+    )
     assert 1.0 - sheet.losses.efficiency_churning == pytest.approx(drag / actuator.peak_torque_n_m)
     thick = replace(default_service(), lubricant_viscosity_mm2_per_s=100.0)
     found = churning_loss(sheet.bearings[:1], 1.0, thick)
@@ -95,7 +102,7 @@ def test_the_measured_printed_gearbox_asks_for_these_friction_coefficients():
     printed = GearSet(sun_teeth=25, planet_teeth=65, ring_teeth=155, module_mm=0.5, planets=3)
 
     def total(friction):
-        return efficiency(printed, friction) * (1.0 - bush_loss(printed, 6.0, friction))
+        return efficiency(printed, friction) * (1.0 - planet_bearing_loss(printed, 6.0, friction))
 
     def friction_for(value):
         low, high = 0.0, 2.0
@@ -111,5 +118,5 @@ def test_the_measured_printed_gearbox_asks_for_these_friction_coefficients():
 
 def test_losses_print_their_product():
     assert Losses(
-        efficiency_mesh=0.9, efficiency_bushes=0.8, efficiency_bearings=0.7, efficiency_churning=0.5
+        efficiency_mesh=0.9, efficiency_planets=0.8, efficiency_bearings=0.7, efficiency_churning=0.5
     ).efficiency_total == pytest.approx(0.252)

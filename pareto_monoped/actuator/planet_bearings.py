@@ -1,0 +1,124 @@
+"""What the planets turn on, as parts: a bush each, or rows of needle rollers between washers."""
+
+import numpy as np
+
+from pareto_monoped.actuator.features import note_with, tube
+from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.needles import NeedleRows, needle_rows
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Group, Role, Visibility
+from pareto_monoped.geometry.shapes import Numbers
+
+_BUSH_PLAY_MM = 0.2
+"""Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
+_SPACER_PLAY_MM = 0.2
+"""Radial play of a spacer ring on the pin and in the planet; our own choice."""
+_LEAST_SPACER_MM = 0.3
+"""Shorter spacers are left out: needles have so much room to either side; our own choice."""
+
+Place = tuple[Numbers, Numbers, Numbers]
+
+
+def planet_bearing_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """What is between planets and pins, for one gear set or for arrays of them."""
+    return _bushes(at, settings) if settings.planet_bearing == "bushes" else _needle_parts(at, settings)
+
+
+def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    stands_out = settings.planet_clearance_mm - _BUSH_PLAY_MM
+    pin = 0.5 * settings.parts.carrier.pin_diameter_mm
+    return (
+        Part(
+            name="planet_bush",
+            role=Role.BUSH,
+            visibility=Visibility.INSIDE,
+            material=settings.materials.bush_bronze,
+            prisms=tube(at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * settings.planet_bore_mm, pin),
+            process="bought",
+            group=Group.PLANET,
+            note=f"PTFE bronze bush, {stands_out:g} mm longer than the planet on either side",
+            count=at.gears.planets,
+            pitch_radius_mm=at.r_pins,
+        ),
+    )
+
+
+def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """Needle rollers, spacers that fill what they leave of the planet's bore, and washers at either end."""
+    data, pin, bore = settings.parts.needles, settings.parts.carrier.pin_diameter_mm, settings.planet_bore_mm
+    rows = needle_rows(at.face_width_mm, settings)
+    needles, spacers, spacer = _stacked(at, rows)
+    one_kg = settings.materials.bearing_steel.density_kg_per_m3 * 1e-9 * 0.25 * np.pi * data.diameter_mm**2
+    washer_places: tuple[Place, ...] = (
+        (0.0, 0.0, at.z_gear_front + data.washer_play_mm),
+        (0.0, 0.0, at.z_gear_back - data.washer_play_mm - data.washer_mm),
+    )
+    length = rows.total_mm / len(needles)
+    parts = [
+        Part(
+            name="planet_needles",
+            role=Role.BEARING,
+            visibility=Visibility.INSIDE,
+            material=settings.materials.bearing_steel,
+            prisms=tube(0.0, length, 0.5 * bore, 0.5 * pin),
+            process="bought",
+            group=Group.PLANET,
+            catalogue_mass_kg=rows.needles * one_kg * length,
+            note=note_with(
+                f"{rows.needles} loose needle rollers " + "{} x {} mm (ISO 3096), full complement, greased",
+                data.diameter_mm,
+                rows.length_mm,
+            ),
+            count=at.gears.planets,
+            pitch_radius_mm=at.r_pins,
+            places_mm=needles,
+        ),
+        Part(
+            name="planet_washer",
+            role=Role.SPACER,
+            visibility=Visibility.INSIDE,
+            material=settings.materials.steel,
+            prisms=tube(0.0, data.washer_mm, 0.5 * data.washer_diameter_mm, 0.5 * pin),
+            process="bought",
+            group=Group.PLANET,
+            note=note_with("DIN 988, {} x {} x {}", pin, data.washer_diameter_mm, data.washer_mm),
+            count=at.gears.planets,
+            pitch_radius_mm=at.r_pins,
+            places_mm=washer_places,
+        ),
+    ]
+    if np.ndim(spacer) or spacer:
+        parts.append(
+            Part(
+                name="needle_spacer",
+                role=Role.SPACER,
+                visibility=Visibility.INSIDE,
+                material=settings.materials.aluminium,
+                prisms=tube(0.0, spacer, 0.5 * bore - _SPACER_PLAY_MM, 0.5 * pin + _SPACER_PLAY_MM),
+                process="machined",
+                group=Group.PLANET,
+                note="fills the planet's bore beside its needles",
+                count=at.gears.planets,
+                pitch_radius_mm=at.r_pins,
+                places_mm=spacers,
+            )
+        )
+    return tuple(parts)
+
+
+def _stacked(at: Layout, rows: NeedleRows) -> tuple[tuple[Place, ...], tuple[Place, ...], Numbers]:
+    """Lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
+
+    One row stands in the middle, with a spacer at either end. Two rows stand at the ends, the spacers between them. In
+    arrays, one row is drawn as two halves that touch.
+    """
+    rest = at.face_width_mm - rows.total_mm
+    spacer = 0.5 * np.where(rest >= 2.0 * _LEAST_SPACER_MM, rest, 0.0)[()]
+    single, half = rows.rows == 1, 0.5 * rows.total_mm
+    low, high, middle = at.z_gear_back, at.z_gear_front, 0.5 * (at.z_gear_back + at.z_gear_front)
+    if np.ndim(single) == 0 and single:
+        return ((0.0, 0.0, middle - half),), ((0.0, 0.0, low), (0.0, 0.0, high - spacer)), spacer
+    needles = (np.where(single, middle - half, low)[()], np.where(single, middle, high - half)[()])
+    spacers = (np.where(single, low, middle - spacer)[()], np.where(single, high - spacer, middle)[()])
+    return tuple((0.0, 0.0, z) for z in needles), tuple((0.0, 0.0, z) for z in spacers), spacer
