@@ -21,6 +21,7 @@ from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
 from pareto_monoped.geometry.dowels import dowel_part
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import Screw, clearance, screw_for, screw_part
@@ -89,6 +90,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
+            fits=(Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),),
             note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),

@@ -102,6 +102,10 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
+            fits=(
+                Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),
+                Fit(diameter_mm=2.0 * shaft, zone="h6", seat=True),
+            ),
             note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
