@@ -87,7 +87,6 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.PLANET,
             grade=gear_grade(settings, settings.gear_steels.planet),
             accuracy_class=gear_accuracy(settings),
-            fits=(Fit(diameter_mm=data.gears.planet_bore_mm, zone="H7", seat=True),),
             features=(
                 bored(
                     Circle(radius_mm=0.5 * settings.planet_bore_mm),
