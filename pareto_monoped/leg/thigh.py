@@ -33,6 +33,8 @@ from pareto_monoped.materials import ALLOYS, MATERIALS
 _KNEE_END = 34.0  # from the knee axis to the core above it, clear of the sprocket's teeth
 _STANDOFF_RADIUS, _STANDOFF_PITCH_RADIUS = 3.5, 39.5  # around the hip: 1.8 mm or more outside the chain
 _STANDOFF_ANGLES = (np.pi / 6, np.pi / 2, 5 * np.pi / 6)  # on top of the hip, where no strand runs down to the knee
+# The same where the circle of the knee actuator's screws is as small: between these and the dowels in their gaps.
+_SMALL_STANDOFF_ANGLES, _STANDOFF_ROOM = (np.pi / 4, 5 * np.pi / 12, 3 * np.pi / 4), 5.7
 _STANDOFF_RIM = 5.5  # of the inner plate outside the standoffs' axes: 3.4 mm around their bolts
 _BOSS_PLAY = 0.05  # of the inner plate around the hip coupling's boss
 _INNER_RELIEF_RADIUS, _INNER_RELIEF_PITCH_RADIUS = 5.5, 25.5  # six holes between screws and standoffs
@@ -63,7 +65,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     bridges = bridges_of(length, d)
     standoffs = tuple(
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
-        for angle in _STANDOFF_ANGLES
+        for angle in _standoff_angles(d)
     )
     bolts = (*bolts_at(bridges), *standoffs, *thigh_stop_bolts(length, d))
     return (
@@ -76,6 +78,11 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         *knee_bearings(length, d),
         *thigh_stop_parts(length, d),
     )
+
+
+def _standoff_angles(d: LegDimensions) -> tuple[float, ...]:
+    small = d.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
+    return _SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES
 
 
 def _plates(
