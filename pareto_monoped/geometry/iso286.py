@@ -28,6 +28,9 @@ _HOLES_UM = {
 }
 """Fundamental deviations of holes of grade 7: the lower limit up to ``H``, the upper from ``J`` (ISO 286-1)."""
 
+_R6_UM = (-10, -12, -16, -20, -24, -29)
+"""Upper limits of holes R6 up to 50 mm (ISO 286-2), the seats of drawn cups."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
@@ -43,17 +46,18 @@ def limits(diameter_mm: float, zone: str) -> Limits:
     Raises:
         DesignError: the size or the class is not in the tables.
     """
-    known = [f"{letter}7" for letter in _HOLES_UM] + [f"{letter}6" for letter in _SHAFTS_UM]
+    known = [f"{letter}7" for letter in _HOLES_UM] + [f"{letter}6" for letter in _SHAFTS_UM] + ["R6"]
     if zone not in known:
         raise DesignError(f"tolerance class = {zone!r}: must be one of {', '.join(known)}; choose one of these")
-    if not 0.0 < diameter_mm <= _SIZES_MM[-1]:
+    largest = _SIZES_MM[len(_R6_UM) - 1] if zone == "R6" else _SIZES_MM[-1]
+    if not 0.0 < diameter_mm <= largest:
         raise DesignError(
-            f"diameter {diameter_mm:g} mm of {zone}: must be above 0 and at most {_SIZES_MM[-1]:g} mm; "
+            f"diameter {diameter_mm:g} mm of {zone}: must be above 0 and at most {largest:g} mm; "
             "extend the tables of ISO 286"
         )
     row = bisect_left(_SIZES_MM, diameter_mm)
     letter, wide = zone[0], _IT_UM[int(zone[1])][row]
-    deviation = (_HOLES_UM if letter.isupper() else _SHAFTS_UM)[letter][row]
+    deviation = _R6_UM[row] if zone == "R6" else (_HOLES_UM if letter.isupper() else _SHAFTS_UM)[letter][row]
     # The fundamental deviation is the limit nearer to the nominal size.
     from_below = letter in "FGHkmnp"
     lower, upper = (deviation, deviation + wide) if from_below else (deviation - wide, deviation)
