@@ -227,7 +227,7 @@ def damage_cycles(passes, levels, treatment, kind, jumps, highest):
 
 
 def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices=20000):
-    """Of one web in N/mm: a beam guided at both ends, its section cut into strips along the radius."""
+    """Of one web in N/mm: a beam guided at both ends, its section cut into rings around the carrier's axis."""
     data, carrier = settings.parts.webs, settings.parts.carrier
     half = pi / planets
     x_pin, y_pin = r_pin * cos(half), r_pin * sin(half)
@@ -237,16 +237,18 @@ def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices
         r_pin + carrier.pin_diameter_mm / 2.0 + carrier.pin_wall_mm + data.overhang_mm,
     )
 
+    def free(radius):
+        """Angle from the middle of the gap to where a circle around the axis enters the planet's clearance."""
+        cosine = (radius**2 + r_pin**2 - keep**2) / (2.0 * radius * r_pin)
+        return half - float(np.arccos(min(max(cosine, -1.0), 1.0)))
+
     def gap(x):
         """Half the gap between the planets at a distance x from the axis."""
         return y_pin - sqrt(max(keep**2 - (x - x_pin) ** 2, 0.0))
 
-    if planets < 3 or gap(outer) <= 0.0:
+    if planets < 3 or free(outer) <= 0.0:
         return 0.0
-    corner = outer
-    if gap(x_pin) < sqrt(outer**2 - x_pin**2):
-        corner = bisect(lambda x: gap(x) - sqrt(outer**2 - x**2), x_pin, outer)
-    inner = max(min(outer - data.depth_mm, corner - data.depth_mm / 2.0), x_pin)
+    inner = max(min(outer - data.depth_mm, outer * cos(free(outer)) - data.depth_mm / 2.0), x_pin)
     if gap(inner) < data.neck_mm < gap(outer):
         inner = bisect(lambda x: gap(x) - data.neck_mm, inner, outer)
     hole = 1.25 + data.screw_wall_mm
@@ -254,9 +256,11 @@ def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices
     if min(hypot(middle - x_pin, y_pin) - keep, middle - inner) < hole:
         return 0.0
     edges = np.linspace(inner, outer, slices + 1)
-    wide = np.array([min(gap(x), sqrt(outer**2 - x**2)) for x in 0.5 * (edges[1:] + edges[:-1])])
-    strip = edges[1] - edges[0]
-    area, second = float(np.sum(2.0 * wide) * strip), float(np.sum((2.0 * wide) ** 3 / 12.0) * strip)
+    rings = 0.5 * (edges[1:] + edges[:-1])
+    width = edges[1] - edges[0]
+    reach = np.array([min(free(radius), float(np.arccos(inner / radius))) for radius in rings])
+    area = float(np.sum(2.0 * rings * reach) * width)
+    second = float(np.sum(rings**3 * (reach - np.sin(reach) * np.cos(reach))) * width)
     aluminium, shear = 70e3, 70e3 / 2.66
     return 1.0 / (length**3 / (12.0 * aluminium * second) + 1.2 * length / (shear * area))
 
