@@ -17,6 +17,7 @@ from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.product import build_product, step_assembly
 from pareto_monoped.cad.write import files
+from pareto_monoped.cad.write.assembly_pack import assembly_pack
 from pareto_monoped.cad.write.checks_record import checks_record
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, require_free, write
@@ -117,6 +118,7 @@ def export_design(
             formats=wanted,
             strength=strength,
         )
+        pack = threads.submit(assembly_pack, product) if "assembly" in wanted else None
         sheets = files.part_sheets(product, record, threads) if "pdf" in wanted else None
         progress("simulating")
         designs = {"searched": design, "as_built": built}
@@ -148,6 +150,8 @@ def export_design(
             write(folder, "monoped_equations.txt", equations(dimensions))
             write(folder, "checks.json", checks_record(checks))
             write(folder, "README.md", readme(record, product, checks, wanted, factors))
+            for name, content in (pack.result() if pack is not None else {}).items():
+                write(folder, name, content)
             for name, picture in pictures.items():
                 write(folder, name, picture.result())
             if solids is not None:

@@ -37,8 +37,11 @@ if TYPE_CHECKING:
 @click.option(
     "--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [default: all cores]"
 )
-@click.option("--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,png.  [default: all]")
+@click.option(
+    "--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,\nassembly,png.  [default: all]"
+)
 @click.option("--no-drawings", is_flag=True, help="Leave out pdf, the workshop drawings.")
+@click.option("--no-assembly", is_flag=True, help="Leave out assembly, the instructions with their pictures.")
 @click.option("--hip-deg", type=float, metavar="DEG", help="Hip angle of the assembly.  [default: start pose]")
 @click.option("--knee-deg", type=float, metavar="DEG", help="Knee angle of the assembly.  [default: start pose]")
 @click.option("--force", is_flag=True, help="Replace an earlier export in DIR.")
@@ -56,6 +59,7 @@ def export(
     workers: int | None,
     formats: str | None,
     no_drawings: bool,
+    no_assembly: bool,
     hip_deg: float | None,
     knee_deg: float | None,
     force: bool,
@@ -80,28 +84,29 @@ def export(
         from pareto_monoped.study.reader import read_study
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
-        kept = _without_drawings if no_drawings else lambda job: job
+        dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
         angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
         strength = False if no_strength else None
         if record is not None:
-            _one(kept(record_job(record, folder=output, formats=names, force=force, note=_note)))
+            _one(_without(dropped, record_job(record, folder=output, formats=names, force=force, note=_note)))
         elif case is not None:
             kit, chosen = motor or PAPER_MOTOR, rules or DEFAULT_RULES
             job = case_job(
                 case, motor=kit, rules=chosen, folder=output, formats=names, force=force, strength=strength, **angles
             )
-            _one(kept(job))
+            _one(_without(dropped, job))
         elif whole_front:
             data = read_study(_given(db))
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
-            _many([kept(job) for job in jobs], workers or os.cpu_count() or 1)
+            _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1)
         else:
             study, wanted = _given(db), required(selector)
             data = read_study(study)
             picked = pick(data.front(), wanted, data.study.objectives)
             _note(picked.why)
             trial = picked.trial
-            _one(kept(trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)))
+            job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)
+            _one(_without(dropped, job))
 
 
 def _refuse_mixed_sources(
@@ -128,9 +133,9 @@ def _refuse_mixed_sources(
         raise click.UsageError(f"--case {case} takes no DB and no selector; drop one of them")
 
 
-def _without_drawings(job: "Job") -> "Job":
-    """The same job without drawings, whatever formats it names."""
-    return replace(job, formats=tuple(name for name in job.formats if name != "pdf"))
+def _without(dropped: set[str], job: "Job") -> "Job":
+    """The same job without some formats, whatever formats it names."""
+    return replace(job, formats=tuple(name for name in job.formats if name not in dropped))
 
 
 def _given(db: Path | None) -> Path:

@@ -5,9 +5,10 @@ from typing import Literal
 import numpy as np
 
 from pareto_monoped.geometry.features import Hole
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import M3, M25, clearance
+from pareto_monoped.geometry.screws import M3, M25, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
 from pareto_monoped.leg.bearing import LIP
 from pareto_monoped.leg.chain import chain_parts
@@ -35,6 +36,8 @@ _STANDOFF_RADIUS, _STANDOFF_PITCH_RADIUS = 3.5, 39.5  # around the hip: 1.8 mm o
 _STANDOFF_ANGLES = (np.pi / 6, np.pi / 2, 5 * np.pi / 6)  # on top of the hip, where no strand runs down to the knee
 # The same where the circle of the knee actuator's screws is as small: between these and the dowels in their gaps.
 _SMALL_STANDOFF_ANGLES, _STANDOFF_ROOM = (np.pi / 4, 5 * np.pi / 12, 3 * np.pi / 4), 5.7
+_SPIGOT_RADIUS = 2.0  # of a standoff, in the inner plate
+_STANDOFF_THREAD, _TAP_RUNOUT = 8.0, 1.0  # depth of its tapped hole, and what the tap leaves below the screw
 _STANDOFF_RIM = 5.5  # of the inner plate outside the standoffs' axes: 3.4 mm around their bolts
 _BOSS_PLAY = 0.05  # of the inner plate around the hip coupling's boss
 _INNER_RELIEF_RADIUS, _INNER_RELIEF_PITCH_RADIUS = 5.5, 25.5  # six holes between screws and standoffs
@@ -67,11 +70,11 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
         for angle in _standoff_angles(d)
     )
-    bolts = (*bolts_at(bridges), *standoffs, *thigh_stop_bolts(length, d))
+    bolts = (*bolts_at(bridges), *thigh_stop_bolts(length, d))
     return (
-        *_plates(length, bridges, bolts, d),
+        *_plates(length, bridges, bolts, standoffs, d),
         _core(length, bridges, d),
-        _standoff(standoffs, d),
+        *_standoffs(standoffs, d),
         sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts),
         *hip_joints(d),
         *chain_parts(length, d),
@@ -86,11 +89,16 @@ def _standoff_angles(d: LegDimensions) -> tuple[float, ...]:
 
 
 def _plates(
-    length: Numbers, bridges: tuple[Numbers, ...], bolts: tuple[Place, ...], d: LegDimensions
+    length: Numbers,
+    bridges: tuple[Numbers, ...],
+    bolts: tuple[Place, ...],
+    standoffs: tuple[Place, ...],
+    d: LegDimensions,
 ) -> tuple[Part, ...]:
     """The inner plate, which the hip's output turns, and the outer one, which carries the knee actuator."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bolted, cups = holes_at(bolts, sleeve_hole(M3)), cup_holes(-length, M25.hole, d)
+    spigots, screwed = holes_at(standoffs, _SPIGOT_RADIUS), holes_at(standoffs, M3.hole)
     common = (
         *windows_between(with_rungs(bridges), d.thigh_window_half_width_mm),
         *bolted,
@@ -117,7 +125,7 @@ def _plates(
                     outline=thigh_outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM, length, d),
                     z0_mm=-face,
                     z1_mm=-half_gap,
-                    holes=(*common, *_inner_hip_holes(d)),
+                    holes=(*common, *spigots, *_inner_hip_holes(d)),
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
@@ -134,11 +142,11 @@ def _plates(
                     outline=thigh_outline(d.rim_radius_mm, length, d),
                     z0_mm=half_gap,
                     z1_mm=face,
-                    holes=(*common, *_outer_hip_holes(d)),
+                    holes=(*common, *screwed, *_outer_hip_holes(d)),
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
-            features=flush(half_gap, "high"),
+            features=(*flush(half_gap, "high"), clearance(M3, screwed, half_gap, face, countersunk="high")),
             note=note + "; carries the knee actuator",
         ),
     )
@@ -192,23 +200,45 @@ def _core(length: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Pa
     )
 
 
-def _standoff(places: tuple[Place, ...], d: LegDimensions) -> Part:
-    """Tubes that keep the plates apart around the hip."""
-    hole = sleeve_hole(M3)
-    return Part(
+def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
+    """Pillars that keep the plates apart around the hip, with their screws.
+
+    Once the leg's halves carry their actuators no key reaches the plates here. The pillars are therefore screwed to the
+    outer plate before it takes the knee actuator, and the inner plate only slides onto their spigots.
+    """
+    half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
+    thread = (Circle(radius_mm=M3.core),)
+    pillar = Part(
         name="thigh_standoff",
         role=Role.SPACER,
         material=MATERIALS.aluminium,
         process="machined",
         prisms=(
+            Prism(outline=Circle(radius_mm=_SPIGOT_RADIUS), z0_mm=-face, z1_mm=-half_gap),
+            Prism(outline=Circle(radius_mm=_STANDOFF_RADIUS), z0_mm=-half_gap, z1_mm=half_gap - _STANDOFF_THREAD),
             Prism(
                 outline=Circle(radius_mm=_STANDOFF_RADIUS),
-                z0_mm=-0.5 * d.gap_mm,
-                z1_mm=0.5 * d.gap_mm,
-                holes=(Circle(radius_mm=hole),),
+                z0_mm=half_gap - _STANDOFF_THREAD,
+                z1_mm=half_gap,
+                holes=thread,
             ),
         ),
         places_mm=places,
         grade=ALLOYS["aw_6082_t6"],
-        note=f"tube, {2.0 * _STANDOFF_RADIUS:g} mm outside, bored {2.0 * hole:g} mm",
+        fits=(Fit(diameter_mm=2.0 * _SPIGOT_RADIUS, zone="h8"),),
+        features=(tapped(M3, thread, half_gap - _STANDOFF_THREAD, half_gap, enters="high"),),
+        note="spigot into the inner plate, screwed to the outer one",
     )
+    screw = screw_part(
+        "thigh_standoff_screw",
+        M3,
+        head="countersunk",
+        seat_mm=face,
+        grip_mm=d.plate_mm,
+        room_mm=_STANDOFF_THREAD - _TAP_RUNOUT,
+        direction=-1.0,
+        material=MATERIALS.steel,
+        places_mm=places,
+        note="flush, under the knee actuator",
+    )
+    return pillar, screw

@@ -34,8 +34,8 @@ PLAY_MM = 0.8
 THREAD_SHARE = 0.6
 """Least depth of thread over the screw's diameter."""
 _GROUND = Role.ROD  # the test stand's carriage clamps to the rods
-# Within the knee's range, where no end stop is met, and with the shank's own axes along those of the assembly.
-_POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
+POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
+"""Within the knee's range, where no end stop is met, and with the shank's own axes along those of the assembly."""
 _AXES = ("x", "y", "z")  # of the assembly in this pose; y is the joints' axis
 _CONTACT_MM2 = 0.25  # a square of 0.5 mm: less is no stop but the facets of a round fit
 _TOLERANCE_MM = 0.02
@@ -59,7 +59,7 @@ class Loose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Slab:
+class Slab:
     """A prism of an instance in the assembly: its cross-section seen along y, from one height to another."""
 
     owner: int
@@ -76,10 +76,10 @@ def check(robot: Robot) -> Check:
 
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     """Every instance that can move, and how many were looked at."""
-    placed = instances(robot, _POSE)
-    slabs = _slabs(placed)
-    runs_into = _contacts(placed, slabs)
-    tied = _threads(placed, slabs) | _joints(placed, runs_into)
+    placed = instances(robot, POSE)
+    pieces = slabs(placed)
+    runs_into = _contacts(placed, pieces)
+    tied = threads(placed, pieces) | _joints(placed, runs_into)
     ground = np.array([instance.part.role is _GROUND for instance in placed])
     free: list[list[str]] = [[] for _ in placed]
     # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
@@ -112,11 +112,11 @@ def _reaches(edges: Bools, ground: Bools) -> Bools:
         held = more
 
 
-def _contacts(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> dict[tuple[str, str], Bools]:
+def _contacts(placed: Sequence[Instance], pieces: Sequence[Slab]) -> dict[tuple[str, str], Bools]:
     """For each direction a matrix, true at (i, j) where instance i, moved that way, runs into instance j."""
-    owner = np.array([slab.owner for slab in slabs])
-    low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
-    bounds = np.array([slab.section.bounds() for slab in slabs])
+    owner = np.array([slab.owner for slab in pieces])
+    low, high = np.array([slab.low for slab in pieces]), np.array([slab.high for slab in pieces])
+    bounds = np.array([slab.section.bounds() for slab in pieces])
     others = owner[:, None] != owner[None]
     found = {(axis, sign): np.zeros((len(placed), len(placed)), dtype=bool) for axis in _AXES for sign in "+-"}
 
@@ -129,7 +129,7 @@ def _contacts(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> dict[tuple[
     def common_mm2(a: int, b: int) -> float:
         pair = (min(a, b), max(a, b))
         if pair not in shared:
-            shared[pair] = (slabs[a].section ^ slabs[b].section).area()
+            shared[pair] = (pieces[a].section ^ pieces[b].section).area()
         return shared[pair]
 
     def meeting(shift: NDArray[np.float64]) -> Bools:
@@ -149,18 +149,18 @@ def _contacts(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> dict[tuple[
             i, j = int(owner[a]), int(owner[b])
             if found[axis, "+"][i, j]:
                 continue
-            cut = (slabs[a].section.translate((float(shift[0]), float(shift[1]))) ^ slabs[b].section).area()
+            cut = (pieces[a].section.translate((float(shift[0]), float(shift[1]))) ^ pieces[b].section).area()
             if cut > _CONTACT_MM2 and cut - common_mm2(a, b) > _CONTACT_MM2:
                 add(axis, i, j)
     return found
 
 
-def _threads(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> Bools:
+def threads(placed: Sequence[Instance], pieces: Sequence[Slab]) -> Bools:
     """True at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
-    low, high = np.array([slab.low for slab in slabs]), np.array([slab.high for slab in slabs])
-    bounds = np.array([slab.section.bounds() for slab in slabs])
-    for a, screw in enumerate(slabs):
+    low, high = np.array([slab.low for slab in pieces]), np.array([slab.high for slab in pieces])
+    bounds = np.array([slab.section.bounds() for slab in pieces])
+    for a, screw in enumerate(pieces):
         part = placed[screw.owner].part
         if part.role not in FASTENERS:
             continue
@@ -170,8 +170,8 @@ def _threads(placed: Sequence[Instance], slabs: Sequence[_Slab]) -> Bools:
         around = np.all((bounds[:, :2] < bounds[a, :2]) & (bounds[:, 2:] > bounds[a, 2:]), axis=1)
         depth: dict[int, float] = {}
         for b in np.flatnonzero(around & (common > _TOUCH_MM)).tolist():
-            if (skin ^ slabs[b].section).area() > 0.9 * skin.area():
-                depth[slabs[b].owner] = depth.get(slabs[b].owner, 0.0) + float(common[b])
+            if (skin ^ pieces[b].section).area() > 0.9 * skin.area():
+                depth[pieces[b].owner] = depth.get(pieces[b].owner, 0.0) + float(common[b])
         for j, deep in depth.items():
             if deep >= THREAD_SHARE * _diameter_mm(part) - _TOUCH_MM:
                 tied[screw.owner, j] = tied[j, screw.owner] = True
@@ -199,27 +199,28 @@ def _diameter_mm(part: Part) -> float:
     return 2.0 * radii[min(1, len(radii) - 1)]
 
 
-def _slabs(placed: Iterable[Instance]) -> list[_Slab]:
+def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
+    """The pieces of all instances in the assembly, in their order; gears by their root circles if ``blunt``."""
     local: dict[int, list[tuple[m3.CrossSection, float, float]]] = {}
     found = []
     for k, instance in enumerate(placed):
         key = id(instance.part)
         if key not in local:
-            local[key] = list(_sections(instance.part))
+            local[key] = list(_sections(instance.part, blunt=blunt))
         world = instance.world
         flat = np.hstack([world[[0, 2]][:, :2], world[[0, 2]][:, 3:]])
         for section, z0, z1 in local[key]:
             low, high = sorted(float(world[1, 2] * z + world[1, 3]) for z in (z0, z1))
-            found.append(_Slab(owner=k, section=section.transform(flat), low=low, high=high))
+            found.append(Slab(owner=k, section=section.transform(flat), low=low, high=high))
     return found
 
 
-def _sections(part: Part) -> Iterator[tuple[m3.CrossSection, float, float]]:
+def _sections(part: Part, *, blunt: bool) -> Iterator[tuple[m3.CrossSection, float, float]]:
     """The prisms of a part, a slice of its balls, and discs for its countersunk heads."""
     for prism in part.prisms:
-        section = _section([_blunt(prism.outline)])
+        section = _section([_blunt(prism.outline) if blunt else prism.outline])
         if prism.holes:
-            section -= _section([_blunt(hole) for hole in prism.holes])
+            section -= _section([_blunt(hole) if blunt else hole for hole in prism.holes])
         yield section, float(prism.z0_mm), float(prism.z1_mm)
     for ball in part.balls:
         if ball.pocket is not None:

@@ -26,6 +26,14 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("drawings/assembly.pdf", "the robot with sections, balloons and the list of items, A1"),
         ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
     ),
+    "assembly": (
+        (
+            "assembly/index.html",
+            "how the robot is put together: steps, torques, chain, printing, casting",
+        ),
+        ("assembly/hardware.csv", "what is bought: designations, standards, counts"),
+        ("assembly/", "the pictures of the steps, and the mould for the foot"),
+    ),
     "png": (
         ("assembly.png", "the robot in its start pose"),
         ("exploded.png", "the robot pulled apart along the joints' axis"),

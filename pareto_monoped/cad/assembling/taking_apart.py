@@ -1,0 +1,222 @@
+"""Take an assembly apart, two halves at a time: the reverse is the order in which it goes together.
+
+Wilson and Latombe (Geometric reasoning about mechanical assembly, 1994): among bodies with fixed ways out, let i point
+to j where i, moved along a direction, runs into j. A set that contains all that its members point to can leave in this
+direction as a whole. Fasteners whose keys have room are undone first; all others tie the bodies that they thread into.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.assembling.bodies import DIRECTIONS, Blocking, Bools
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
+
+Members = frozenset[int]
+
+_PIECE = 3
+"""Cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice."""
+_CUT_ACTUATOR = 10
+"""Cost of a cut through an actuator, over that through a link: more than there are links."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Whole:
+    """Bodies that do not come apart: one, or several that last together.
+
+    Attributes:
+        members: indices of bodies.
+        stuck: whether they should come apart, but no straight way leads out.
+    """
+
+    members: Members
+    stuck: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joined:
+    """Two assemblies that are put together, and the fasteners that are then driven.
+
+    Attributes:
+        kept: stays where it is.
+        added: comes to it.
+        out: the direction in which ``added`` leaves; it comes the other way.
+        fasteners: driven once both are together.
+    """
+
+    kept: "Assembly"
+    added: "Assembly"
+    out: str
+    fasteners: tuple[int, ...]
+
+    @property
+    def members(self) -> Members:
+        """Indices of all bodies."""
+        return self.kept.members | self.added.members | frozenset(self.fasteners)
+
+
+Assembly = Whole | Joined
+
+
+def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
+    """Take an assembly apart as far as straight ways out and room for keys allow."""
+    everything = frozenset(range(len(blocking.bodies))) if members is None else members
+    if len(everything) == 1:
+        return Whole(members=everything)
+    undone = _undone(blocking, everything)
+    rest = everything - undone
+    if not rest:
+        # Fasteners only: any one of them can be put aside.
+        first = min(everything)
+        return Joined(
+            kept=take_apart(blocking, everything - {first}),
+            added=Whole(members=frozenset({first})),
+            out=DIRECTIONS[0],
+            fasteners=(),
+        )
+    if len(rest) == 1:
+        return Joined(
+            kept=Whole(members=rest),
+            added=Whole(members=frozenset()),
+            out=DIRECTIONS[0],
+            fasteners=tuple(sorted(undone)),
+        )
+    split = _best_split(blocking, rest, undone)
+    if split is None:
+        lasting = blocking.lasting[np.ix_(sorted(everything), sorted(everything))]
+        return Whole(members=everything, stuck=bool(_pieces(lasting).any()))
+    out, leaving = split
+    leaving, staying, crossing = _shared(blocking, out, leaving, rest - leaving, undone)
+    if len(leaving) > len(staying):
+        leaving, staying, out = staying, leaving, _opposite(out)
+    return Joined(
+        kept=take_apart(blocking, staying),
+        added=take_apart(blocking, leaving),
+        out=out,
+        fasteners=tuple(sorted(crossing)),
+    )
+
+
+def stuck(assembly: Assembly) -> Iterator[Members]:
+    """The wholes of an assembly that should come apart and do not."""
+    if isinstance(assembly, Whole):
+        if assembly.stuck:
+            yield assembly.members
+        return
+    yield from stuck(assembly.kept)
+    yield from stuck(assembly.added)
+
+
+def _undone(blocking: Blocking, members: Members) -> Members:
+    """The fasteners that can be undone, one after the other."""
+    undone: set[int] = set()
+    waiting = {k for k in members if blocking.bodies[k].is_fastener}
+    while True:
+        left = members - undone
+        free = {k for k in waiting if not all(way & left for way in blocking.key[k])}
+        if not free:
+            return frozenset(undone)
+        undone |= free
+        waiting -= free
+
+
+def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str, Members] | None:
+    """A direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced halves."""
+    order = sorted(rest)
+    touching = blocking.touching[np.ix_(order, order)]
+    best: tuple[tuple[int, int, int], str, Members] | None = None
+    for direction in DIRECTIONS:
+        if best is not None and direction not in blocking.along:
+            break  # across the axis only what does not leave along it
+        reach = _closure(_edges(blocking, direction, order))
+        seen: set[Members] = set()
+        for k, row in enumerate(_candidates(blocking, order, reach, touching)):
+            leaving = frozenset(order[m] for m in np.flatnonzero(row).tolist())
+            if not 0 < len(leaving) < len(rest) or leaving in seen:
+                continue
+            seen.add(leaving)
+            # What falls to pieces once the set has gone has to be held in its place meanwhile.
+            pieces = int(_pieces(touching[np.ix_(~row, ~row)]).max())
+            cost = _cuts(blocking, leaving, rest - leaving) + _PIECE * pieces
+            score = (cost, -min(len(leaving), len(rest) - len(leaving)), k)
+            if best is None or score < best[0]:
+                best = (score, direction, leaving)
+    return None if best is None else best[1:]
+
+
+def _edges(blocking: Blocking, direction: str, order: list[int]) -> Bools:
+    """True at (i, j) where i takes j with it: it runs into j, or is tied to it."""
+    rows = np.stack([blocking.blocked(direction, k) for k in order])[:, order]
+    chosen = np.ix_(order, order)
+    return np.asarray(rows | blocking.tied[chosen] | blocking.lasting[chosen])
+
+
+def _closure(edges: Bools) -> Bools:
+    """What each node reaches, itself included."""
+    reach = edges | np.eye(len(edges), dtype=bool)
+    # Warshall 1962: ways over the first k nodes.
+    for k in range(len(reach)):
+        reach[reach[:, k]] |= reach[k]
+    return np.asarray(reach)
+
+
+def _candidates(blocking: Blocking, order: list[int], reach: Bools, touching: Bools) -> Iterator[Bools]:
+    """Sets that can leave and hold together: what units, and then single bodies, take with them.
+
+    Of a set in several pieces each piece that runs into no other can leave by itself.
+    """
+    units = [blocking.bodies[k].unit for k in order]
+    seeds = [np.array([name == unit for name in units]) for unit in dict.fromkeys(units)]
+    rows = np.stack([*(reach[members].any(axis=0) for members in seeds), *reach])
+    _, first = np.unique(rows, axis=0, return_index=True)
+    for row in rows[np.sort(first)]:
+        inside = np.flatnonzero(row)
+        labels = _pieces(touching[np.ix_(inside, inside)])
+        for label in range(int(labels.max()) + 1):
+            piece = np.zeros(len(order), dtype=bool)
+            piece[inside[labels == label]] = True
+            # A piece may run into another that it does not touch.
+            if np.array_equal(reach[piece].any(axis=0), piece):
+                yield piece
+        if labels.any():
+            yield row
+
+
+def _pieces(touching: Bools) -> NDArray[np.intp]:
+    """To which piece each body belongs, of bodies that touch each other or do not, shape (n,)."""
+    from scipy.sparse.csgraph import connected_components
+
+    return np.asarray(connected_components(touching, directed=False)[1], dtype=np.intp)
+
+
+def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
+    """What it costs that units have bodies on both sides; an actuator is tested on the bench and stays whole."""
+    names = [{blocking.bodies[k].unit for k in side} for side in (one, other)]
+    return sum(_CUT_ACTUATOR if name in ACTUATOR_UNITS else 1 for name in names[0] & names[1])
+
+
+def _shared(
+    blocking: Blocking, out: str, leaving: Members, staying: Members, undone: Members
+) -> tuple[Members, Members, Members]:
+    """Both sides with the undone fasteners that belong to one of them alone, and those that join or part both.
+
+    A retaining ring parts what it holds from what is then in its way.
+    """
+    sides, crossing = (set(leaving), set(staying)), set()
+    for k in sorted(undone):
+        joins = blocking.goes_through[k] - undone
+        touched = [bool(joins & side) for side in (leaving, staying)]
+        goes_along = touched[0]
+        hit = np.flatnonzero(blocking.blocked(out, k)).tolist() if goes_along else []
+        parts = bool(staying & set(hit)) or (not goes_along and any(blocking.blocked(out, m)[k] for m in leaving))
+        if all(touched) or parts:
+            crossing.add(k)
+        else:
+            sides[0 if touched[0] else 1].add(k)
+    return frozenset(sides[0]), frozenset(sides[1]), frozenset(crossing)
+
+
+def _opposite(direction: str) -> str:
+    return ("-" if direction[0] == "+" else "+") + direction[1]

@@ -1,0 +1,192 @@
+"""The folder ``assembly/`` of an export: steps with pictures, torques, chain, purchasing list, printing, foot mould."""
+
+from collections.abc import Iterator, Sequence
+from html import escape
+
+from pareto_monoped.cad.assembling.bodies import Blocking, blocking_of
+from pareto_monoped.cad.assembling.steps import Addition, Step, steps_of, titled
+from pareto_monoped.cad.assembling.taking_apart import stuck, take_apart
+from pareto_monoped.cad.assembly import Instance, instances
+from pareto_monoped.cad.check.retention import POSE
+from pareto_monoped.cad.picture.drawing import png
+from pareto_monoped.cad.picture.step_scenes import step_scene
+from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.write import triangles
+from pareto_monoped.cad.write.foot_mould import foot_mould, rubber_ml
+from pareto_monoped.cad.write.hardware import hardware, items, tightening
+from pareto_monoped.errors import CheckError
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
+
+FOLDER = "assembly"
+_FROM = {
+    "+y": "from the left",
+    "-y": "from the right",
+    "+x": "from the front",
+    "-x": "from the back",
+    "+z": "from above",
+    "-z": "from below",
+}
+_VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
+_SLACK = 0.01
+"""Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
+since the torque of a jump changes its sign. Our own choice."""
+_STYLE = """body{font:16px/1.45 sans-serif;margin:2em auto;max-width:1120px;padding:0 1em;color:#111}
+img{max-width:100%;border:1px solid #ddd}table{border-collapse:collapse;margin:1em 0}
+td,th{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}
+section{break-inside:avoid;margin:1.5em 0}h2{margin-top:2em}"""
+
+
+def assembly_pack(product: Product) -> dict[str, bytes]:
+    """Content by path in the export's folder.
+
+    Raises:
+        CheckError: parts have no straight way into their place, or no key reaches a screw.
+    """
+    placed = instances(product.robot, POSE)
+    blocking = blocking_of(placed)
+    assembly = take_apart(blocking)
+    for members in stuck(assembly):
+        names = ", ".join(_name(blocking, k) for k in sorted(members))
+        raise CheckError(f"assembly: {names} cannot be put together along straight lines with room for keys")
+    steps = steps_of(assembly)
+    made = {f"{FOLDER}/step_{step.number:02d}.png": png(step_scene(step, blocking, placed).picture()) for step in steps}
+    foot, block = (_one(product, role) for role in (Role.FOOT, None))
+    halves = foot_mould(foot, block)
+    for name, half in zip(("front", "back"), halves, strict=True):
+        made[f"{FOLDER}/foot_mould_{name}.3mf"] = triangles.threemf(half, f"foot_mould_{name}")
+    made[f"{FOLDER}/hardware.csv"] = hardware(product).encode()
+    made[f"{FOLDER}/index.html"] = "\n".join(_page(product, steps, blocking, placed, foot)).encode()
+    return made
+
+
+def _one(product: Product, role: Role | None) -> Part:
+    """The part with a role; without one, what the foot is moulded onto."""
+    foot = next(unique.part for unique in product.unique if unique.part.role is Role.FOOT)
+    if role is not None:
+        return foot
+    assert foot.joint is not None
+    return next(unique.part for unique in product.unique if foot.joint.partner == unique.part.name)
+
+
+def _name(blocking: Blocking, body: int) -> str:
+    return blocking.bodies[body].instance.part.name.replace("_", " ")
+
+
+def _page(
+    product: Product, steps: Sequence[Step], blocking: Blocking, placed: Sequence[Instance], foot: Part
+) -> Iterator[str]:
+    yield f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Assembly</title><style>{_STYLE}</style>'
+    yield "<h1>Assembly</h1>"
+    yield (
+        "<p>Left, right, front and above are those of the robot: it looks forward, y is to the left. In the pictures "
+        "the thigh hangs down and the shank points back. Grey is what is together already. Every way is straight, and "
+        "a key of full length reaches every screw in its step: both were checked with the parts' shapes. "
+        "The thigh is a clamshell: each actuator is screwed to its plate before the plates are joined.</p>"
+    )
+    yield "<h2>Steps</h2>"
+    for step in steps:
+        yield from _step(step, blocking)
+    yield "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise.</p>"
+    yield from _table(("screw", "count", "where", "torque", "lock"), _screws(product))
+    yield from _chain(product)
+    yield "<h2>To buy</h2><p>The same as a table for a spreadsheet: <a href='hardware.csv'>hardware.csv</a>.</p>"
+    yield from _table(
+        ("kind", "designation", "standard", "count"),
+        ((item.kind, item.designation, item.standard or "-", str(item.count)) for item in items(product)),
+    )
+    yield from _printing(product, foot)
+    yield "</html>"
+
+
+def _step(step: Step, blocking: Blocking) -> Iterator[str]:
+    yield f"<section><h3>{step.number}. {escape(titled(step, blocking))}</h3><ol>"
+    if step.base_number is None:
+        yield f"<li>Take {_listed(sorted(step.base), blocking)}.</li>"
+    elif step.base_number != step.number - 1:
+        yield f"<li>Take what step {step.base_number} has made.</li>"
+    yield from (f"<li>{_addition(addition, blocking)}</li>" for addition in step.additions)
+    for k in step.fasteners:
+        yield f"<li>{_fastener(k, blocking)}</li>"
+    yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
+
+
+def _addition(addition: Addition, blocking: Blocking) -> str:
+    way = _FROM[addition.out]
+    if addition.number is not None:
+        return f"Bring what step {addition.number} has made {way}."
+    members = sorted(addition.members)
+    if len(members) > 1:
+        return f"Put together {_listed(members, blocking)}, and bring them {way}."
+    joint = blocking.bodies[members[0]].instance.part.joint
+    how = f" It is {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
+    verb = "Put" if joint is None else _VERB.get(joint.kind, "Put")
+    return f"{verb} {_listed(members, blocking)} in place {way}.{how}"
+
+
+def _fastener(body: int, blocking: Blocking) -> str:
+    part, count = blocking.bodies[body].instance.part, len(blocking.bodies[body].instances)
+    name = f"{count} x {_name(blocking, body)}" if count > 1 else _name(blocking, body)
+    if part.role not in FASTENERS:
+        return f"Snap {escape(name)} into its groove: {escape(part.note)}."
+    torque, lock = tightening(part)
+    return f"Drive {escape(name)}, {escape(part.note)}: {escape(torque)}, {escape(lock)}."
+
+
+def _listed(members: Sequence[int], blocking: Blocking) -> str:
+    words = []
+    for k in members:
+        count = len(blocking.bodies[k].instances)
+        words.append(escape(f"{count} x {_name(blocking, k)}" if count > 1 else _name(blocking, k)))
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _screws(product: Product) -> Iterator[tuple[str, ...]]:
+    for unique in product.unique:
+        if unique.part.role in FASTENERS:
+            torque, lock = tightening(unique.part)
+            where = ", ".join(unit.replace("_", " ") for unit in unique.units)
+            text = f"{unique.name.replace('_', ' ')}: {unique.part.note}"
+            yield text, str(unique.count), where, torque, lock
+
+
+def _chain(product: Product) -> Iterator[str]:
+    """How the chain is tensioned."""
+    notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
+    span_mm = 1000.0 * product.robot.design.thigh_length_m
+    yield "<h2>Chain</h2><ol>"
+    yield from (f"<li>Turnbuckles: {escape(note)}.</li>" for note in notes)
+    yield "<li>Turn the knee to a right angle and hold the shank. Turn both turnbuckles by equal angles.</li>"
+    yield (
+        f"<li>The chain is right when the slack strand gives {_SLACK * span_mm:.1f} mm to either side in its middle: "
+        f"{100.0 * _SLACK:g} percent of its {span_mm:.0f} mm. It must not be taut in any pose of the knee.</li>"
+    )
+    yield "<li>Lock the nuts. Look again after the first 20 jumps, when the chain has bedded in.</li></ol>"
+
+
+def _printing(product: Product, foot: Part) -> Iterator[str]:
+    """Settings of all printed parts, the mould among them, and how the foot is cast."""
+    yield "<h2>Printing</h2>"
+    rows = [
+        (u.name.replace("_", " "), str(u.count), u.part.material.name, u.part.note or "flat side down", "100 %")
+        for u in product.unique
+        if u.part.process == "3D printed"
+    ]
+    rows.append(("foot mould, front and back", "2", "PLA or PETG", "parting plane upwards, no supports", "25 %"))
+    yield from _table(("part", "count", "material", "orientation", "infill"), rows)
+    yield "<p>Nozzle 0.4 mm, layers 0.2 mm, 4 walls, no supports. Ream holes for bolts to size.</p>"
+    yield "<h2>Casting the foot</h2><ol>"
+    yield (
+        "<li>Sand and wax both halves of the mould, put 4 dowel pins 4 x 16 (ISO 2338) between them, set the foot "
+        "block into the collar with its tongue downwards, and clamp the halves.</li>"
+    )
+    mixed_ml = 1.1 * rubber_ml(foot)
+    yield f"<li>Degrease and prime the tongue. Mix {mixed_ml:.0f} ml of polyurethane, {escape(foot.note)}.</li>"
+    yield "<li>Pour through one hole until it stands in the other. Let it cure as its maker says.</li></ol>"
+
+
+def _table(head: Sequence[str], rows: Iterator[tuple[str, ...]] | Sequence[tuple[str, ...]]) -> Iterator[str]:
+    yield "<table><tr>" + "".join(f"<th>{escape(cell)}</th>" for cell in head) + "</tr>"
+    for row in rows:
+        yield "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+    yield "</table>"

@@ -1,0 +1,99 @@
+"""``hardware.csv``: what is bought, one row per designation with its standard and total count; and screws' torques."""
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+
+from pareto_monoped.cad.product import Product
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import FASTENERS, Role
+from pareto_monoped.geometry.tightening import LOCKER
+
+_STANDARD = re.compile(r"(?:ISO|DIN)(?:/[A-Z]+)? \d+(?:-\d+)?")
+_COLUMNS = ("kind", "designation", "standard", "count", "used_for", "remark")
+_BOUGHT_ROUGH = frozenset({Role.SPROCKET})
+"""Parts that are bought and then worked on, if their designation is that of a standard."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Item:
+    """What is bought under one designation.
+
+    Attributes:
+        kind: role of the parts.
+        designation: what to order.
+        standard: that it follows; '' without one.
+        count: how many.
+        parts: the parts that it becomes.
+        remarks: what else the parts list says about them.
+    """
+
+    kind: str
+    designation: str
+    standard: str
+    count: int
+    parts: list[str]
+    remarks: list[str]
+
+
+def items(product: Product) -> list[Item]:
+    """Everything that is bought, equal designations together, by kind and in the order of the assembly."""
+    found: dict[tuple[str, str], Item] = {}
+    for unique in product.unique:
+        part = unique.part
+        if part.process != "bought" and part.role not in _BOUGHT_ROUGH:
+            continue
+        designation, remark = _split(part)
+        if part.process != "bought" and not _STANDARD.search(designation):
+            continue  # cut from solid
+        key = (part.role.value, designation)
+        item = found.setdefault(
+            key,
+            Item(
+                kind=part.role.value,
+                designation=designation,
+                standard=", ".join(_STANDARD.findall(designation)),
+                count=0,
+                parts=[],
+                remarks=[],
+            ),
+        )
+        item.count += unique.count
+        item.parts.append(unique.name)
+        if remark and remark not in item.remarks:
+            item.remarks.append(remark)
+    return sorted(found.values(), key=lambda item: item.kind)
+
+
+def hardware(product: Product) -> str:
+    """The purchasing list as CSV."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(_COLUMNS)
+    for item in items(product):
+        parts, remarks = " ".join(item.parts), "; ".join(item.remarks)
+        writer.writerow((item.kind, item.designation, item.standard, item.count, parts, remarks))
+    locked = sum(unique.count for unique in product.unique if unique.part.role in FASTENERS)
+    writer.writerow(("consumable", LOCKER, "", 1, f"{locked} screws and bolts", "10 ml"))
+    return stream.getvalue()
+
+
+def tightening(part: Part) -> tuple[str, str]:
+    """Torque in N m and lock of a fastener, as written in tables."""
+    if part.fastening is None:
+        # A sleeve nut or a nut turns with its screw: tightened by the feel of a short key, and locked all the same.
+        return "hand-tight with the short arm of the key", LOCKER
+    return f"{part.fastening.torque_n_m:.1f} N m", part.fastening.lock
+
+
+def _split(part: Part) -> tuple[str, str]:
+    """What to order, and what else the note of a part says: its first clause, with the sizes that belong to it."""
+    head, _, rest = part.note.partition("; ")
+    # A size such as "6804, 20 x 32 x 7 mm (ISO 15)" belongs to the designation.
+    clauses = head.split(", ")
+    take = 1
+    while take < len(clauses) and (clauses[take][:1].isdigit() or clauses[take].startswith("round bar")):
+        take += 1
+    designation = ", ".join(clauses[:take]) or part.material.name
+    return designation, "; ".join(filter(None, (", ".join(clauses[take:]), rest)))

@@ -1,0 +1,80 @@
+"""The assembly pack: its page, its lists, and the mould, read back."""
+
+import csv
+import io
+import re
+
+import numpy as np
+import pytest
+import trimesh
+
+from pareto_monoped.cad.write import triangles
+from pareto_monoped.cad.write.assembly_pack import assembly_pack
+from pareto_monoped.cad.write.foot_mould import COLLAR_MM, foot_mould
+from pareto_monoped.geometry.roles import FASTENERS, Role
+
+
+@pytest.fixture(scope="module")
+def pack(product):
+    return assembly_pack(product)
+
+
+def rows_of(pack):
+    return list(csv.DictReader(io.StringIO(pack["assembly/hardware.csv"].decode())))
+
+
+def test_the_page_shows_every_picture_and_names_every_part(pack, product):
+    page = pack["assembly/index.html"].decode()
+    shown = re.findall(r"src='(step_\d+\.png)'", page)
+    assert sorted(f"assembly/{name}" for name in shown) == sorted(name for name in pack if name.endswith(".png"))
+    assert len(shown) > 20
+    steps = page[: page.index("<h2>Screws</h2>")]
+    assert [u.part.name for u in product.unique if u.part.name.replace("_", " ") not in steps] == []
+
+
+def test_every_screw_has_a_torque_and_a_lock(pack, product):
+    page = pack["assembly/index.html"].decode()
+    table = page[page.index("<h2>Screws</h2>") : page.index("<h2>Chain</h2>")]
+    rows = [re.findall(r"<td>(.*?)</td>", row) for row in table.split("<tr>")[2:]]
+    assert len(rows) == sum(unique.part.role in FASTENERS for unique in product.unique)
+    assert all(cell for row in rows for cell in row)
+    assert sum(int(row[1]) for row in rows) == sum(u.count for u in product.unique if u.part.role in FASTENERS)
+
+
+def test_the_purchasing_list_has_everything_that_is_bought_once(pack, product):
+    rows = rows_of(pack)
+    chain = product.robot.leg.chain.name
+    rough = [u.part.name for u in product.unique if u.part.role is Role.SPROCKET and u.part.note.startswith(chain)]
+    assert rough
+    bought = [u for u in product.unique if u.part.process == "bought" or u.part.name in rough]
+    listed = [row for row in rows if row["kind"] != "consumable"]
+    assert sum(int(row["count"]) for row in listed) == sum(unique.count for unique in bought)
+    assert sorted(name for row in listed for name in row["used_for"].split()) == sorted(u.name for u in bought)
+    assert len({(row["kind"], row["designation"]) for row in rows}) == len(rows)
+    kinds = {row["kind"] for row in rows}
+    assert {"bearing", "chain", "sprocket", "screw", "motor rotor", "motor stator", "electronics"} <= kinds
+    for row in listed:
+        if row["kind"] in ("screw", "bearing", "chain", "sprocket"):
+            assert row["standard"], row
+
+
+def test_the_mould_is_watertight_and_its_cavity_is_the_foot_without_its_pocket(product):
+    parts = {unique.part.name: unique.part for unique in product.unique}
+    foot = next(part for part in parts.values() if part.role is Role.FOOT)
+    block = parts[foot.joint.partner]
+    halves = foot_mould(foot, block)
+    for half in halves:
+        assert half.is_closed
+        assert trimesh.load(io.BytesIO(triangles.stl(half)), file_type="stl").is_watertight
+    (ball,) = foot.balls
+    radius, top = float(ball.radius_mm), float(ball.top_mm)
+    # A slice well below pins and collar: a square with half a disc cut out.
+    for half in halves:
+        body = half.body
+        low, high = np.array(body.bounding_box()[:3]), np.array(body.bounding_box()[3:])
+        assert high[1] == pytest.approx(top + COLLAR_MM)
+        level = -0.3 * radius
+        across = body.rotate((90.0, 0.0, 0.0)).slice(level)
+        box = (high[0] - low[0]) * (high[2] - low[2])
+        disc = 0.5 * np.pi * (radius**2 - level**2)
+        assert across.area() == pytest.approx(box - disc, rel=2e-3)
