@@ -32,7 +32,7 @@ def seconds(action: Callable[[], object]) -> float:
 
 def main() -> None:
     best_in = import_module("tests.actuator.loop").best_in
-    settings = ActuatorSettings()
+    settings = ActuatorSettings(rules="paper")
     chosen = {rules: ActuatorSettings(rules=rules) for rules in RULE_SETS}
     print(f"{'':12} {'gearboxes':^17} {'median s':^17} {'worst s':^17} {'ratio':>7}")
     print(f"{'motor':12}" + 3 * "".join(f" {rules:>8}" for rules in RULE_SETS) + f" {'median':>7}")

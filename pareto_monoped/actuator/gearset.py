@@ -1,13 +1,26 @@
 """Planetary gear sets: teeth, module, planets, and what follows from them alone."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear, involute
 from pareto_monoped.geometry.shapes import Numbers
+
+
+class _Shifts(NamedTuple):
+    """What follows from shifts: working pressure angles of both meshes, shifts of planets and ring."""
+
+    working_angle_rad: Numbers
+    ring_working_angle_rad: Numbers
+    planet: Numbers
+    ring: Numbers
+
+
+_UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +47,7 @@ class GearSet:
     planets: Numbers
     centre_shift: Numbers = 0.0
     sun_shift: Numbers = 0.0
+    _shifts: _Shifts = field(init=False, repr=False, compare=False)
 
     @property
     def ratio(self) -> Numbers:
@@ -50,43 +64,34 @@ class GearSet:
         """Whether any of the sets has a profile shift."""
         return bool(np.any(self.centre_shift) or np.any(self.sun_shift))
 
+    def __post_init__(self) -> None:
+        """Work out once what follows from the shifts; arrays ask for it many times."""
+        object.__setattr__(self, "_shifts", _shifts(self) if self.is_shifted else _UNSHIFTED)
+
     @property
     def working_angle_rad(self) -> Numbers:
         """Pressure angle at which sun and planet mesh."""
-        return self._working_angle(self.sun_teeth + self.planet_teeth)
+        return self._shifts.working_angle_rad
 
     @property
     def ring_working_angle_rad(self) -> Numbers:
         """Pressure angle at which planet and ring mesh."""
-        return self._working_angle(self.ring_teeth - self.planet_teeth)
-
-    def _working_angle(self, teeth: Numbers) -> Numbers:
-        """Working pressure angle of a mesh whose reference centre distance is half of ``teeth`` modules."""
-        if not self.is_shifted:
-            return PRESSURE_ANGLE_RAD
-        share = 0.5 * teeth / (0.5 * (self.sun_teeth + self.planet_teeth) + self.centre_shift)
-        return np.where(share == 1.0, PRESSURE_ANGLE_RAD, np.arccos(np.cos(PRESSURE_ANGLE_RAD) * share))[()]
-
-    @property
-    def shift_sum(self) -> Numbers:
-        """Sum of the shifts of sun and planet."""
-        return (self.sun_teeth + self.planet_teeth) * _shift_per_tooth(self.working_angle_rad)
+        return self._shifts.ring_working_angle_rad
 
     @property
     def planet_shift(self) -> Numbers:
         """Profile shift of the planets."""
-        return self.shift_sum - self.sun_shift
+        return self._shifts.planet
 
     @property
     def ring_shift(self) -> Numbers:
         """Profile shift of the ring."""
-        difference = self.ring_teeth - self.planet_teeth
-        return self.planet_shift + difference * _shift_per_tooth(self.ring_working_angle_rad)
+        return self._shifts.ring
 
     @property
     def tip_shortening(self) -> Numbers:
         """By how much the tips of sun and planets are cut short, to keep the clearance of the basic rack."""
-        return self.shift_sum - self.centre_shift
+        return self.sun_shift + self.planet_shift - self.centre_shift
 
     @property
     def ring_root_radius_mm(self) -> Numbers:
@@ -173,12 +178,27 @@ class GearSet:
 def joined(sets: Sequence[GearSet]) -> GearSet:
     """Several arrays of gear sets as one."""
     columns = {
-        field.name: np.concatenate(
-            [np.atleast_1d(np.broadcast_to(getattr(one, field.name), np.shape(one.sun_teeth))) for one in sets]
+        each.name: np.concatenate(
+            [np.atleast_1d(np.broadcast_to(getattr(one, each.name), np.shape(one.sun_teeth))) for one in sets]
         ).astype(np.float64)
-        for field in fields(GearSet)
+        for each in fields(GearSet)
+        if each.init
     }
     return GearSet(**columns)
+
+
+def _shifts(gears: GearSet) -> _Shifts:
+    both, difference = gears.sun_teeth + gears.planet_teeth, gears.ring_teeth - gears.planet_teeth
+    centre = 0.5 * both + gears.centre_shift
+
+    def working(teeth: Numbers) -> Numbers:
+        share = 0.5 * teeth / centre
+        return np.where(share == 1.0, PRESSURE_ANGLE_RAD, np.arccos(np.cos(PRESSURE_ANGLE_RAD) * share))[()]
+
+    angle = working(both)
+    ring_angle = angle if np.array_equal(both, difference) else working(difference)
+    planet = both * _shift_per_tooth(angle) - gears.sun_shift
+    return _Shifts(angle, ring_angle, planet, planet + difference * _shift_per_tooth(ring_angle))
 
 
 def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:

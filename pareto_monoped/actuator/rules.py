@@ -79,15 +79,35 @@ def _teeth_min(sets: CandidateSets) -> Numbers:
 
 
 def _tip_thickness(sets: CandidateSets) -> Numbers:
-    backlash, gears = sets.settings.parts.gears.backlash_mm, sets.gears
-    thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
-    return thinnest - sets.settings.parts.rating.tip_thickness_modules * gears.module_mm
+    backlash, least = sets.settings.parts.gears.backlash_mm, sets.settings.parts.rating.tip_thickness_modules
+
+    def margin(gears: GearSet) -> Numbers:
+        thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
+        return thinnest - least * gears.module_mm
+
+    return _of_shifted(sets.gears, margin)
 
 
 def _root_fillet(sets: CandidateSets) -> Numbers:
-    backlash, gears = sets.settings.parts.gears.backlash_mm, sets.gears
-    shapes = (gears.sun(backlash), gears.planet(backlash), gears.ring(backlash))
-    return reduce(np.minimum, (shape.root_radius_mm * fillet_room_rad(shape) for shape in shapes))
+    backlash = sets.settings.parts.gears.backlash_mm
+
+    def margin(gears: GearSet) -> Numbers:
+        shapes = (gears.sun(backlash), gears.planet(backlash), gears.ring(backlash))
+        return reduce(np.minimum, (shape.root_radius_mm * fillet_room_rad(shape) for shape in shapes))
+
+    return _of_shifted(sets.gears, margin)
+
+
+def _of_shifted(gears: GearSet, margin: Callable[[GearSet], Numbers]) -> Numbers:
+    """A margin of shifted sets; without a shift, all teeth keep the rule, which saves the search much of its time."""
+    if not gears.is_shifted:
+        return np.zeros(np.shape(gears.sun_teeth))
+    if not np.ndim(gears.sun_teeth):
+        return margin(gears)
+    shifted = np.flatnonzero((gears.centre_shift != 0.0) | (gears.sun_shift != 0.0))
+    found = np.zeros(np.shape(gears.sun_teeth))
+    found[shifted] = margin(gears.where(shifted))
+    return found
 
 
 def _sun_rim(sets: CandidateSets) -> Numbers:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator, actuator_mass_kg, build_actuator
 from pareto_monoped.actuator.candidates import candidates, interval_tenths
-from pareto_monoped.actuator.face import face_width_mm
+from pareto_monoped.actuator.face import face_width_mm, rated_width_mm
 from pareto_monoped.actuator.gearset import GearSet, joined
 from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
@@ -140,13 +140,15 @@ class _Judge:
         alone = ~np.isin(tenths, tenths[fitting])
         for wanted in (fitting[_rank(tenths[fitting], least[fitting]) < _FIRST], fitting, kept_out):
             # No set is lighter with a wider face.
-            bound = _second_lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf))[tenths[wanted]]
+            # What a rule keeps out matters only if it is lighter than the lightest.
+            place = 0 if wanted is kept_out else 1
+            bound = _lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf), place)[tenths[wanted]]
             heavy = least[wanted] > bound
             useless = (count[wanted] == 1) & ~alone[wanted] & np.isinf(bound)
             todo = wanted[~rated[wanted] & ~heavy & ~useless]
             chosen = gears.where(todo)
-            width[todo] = face_width_mm(chosen, self.motor, self.family, self.settings)
-            broken[:, todo] = self._rules_broken(chosen, width[todo])[1]
+            width[todo], strength = rated_width_mm(chosen, self.motor, self.family, self.settings)
+            broken[:, todo] = self._rules_broken(chosen, width[todo], strength)[1]
             mass[todo] = self._mass_kg(chosen, width[todo])
             rated[todo] = True
         return _Judged(
@@ -195,11 +197,12 @@ def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.
     return rank
 
 
-def _second_lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64]) -> NDArray[np.float64]:
-    """For each interval, by its tenths, the second lightest mass; infinite where there are fewer than two."""
+def _lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64], place: int) -> NDArray[np.float64]:
+    """For each interval, by its tenths, the lightest mass, or the next by ``place``; infinite where there is none."""
     found = np.full(10 * RATIO_HIGH, np.inf)
-    second = np.isfinite(mass_kg) & (_rank(tenths, mass_kg) == 1)
-    found[tenths[second]] = mass_kg[second]
+    known = np.flatnonzero(np.isfinite(mass_kg))
+    chosen = known[_rank(tenths[known], mass_kg[known]) == place]
+    found[tenths[chosen]] = mass_kg[chosen]
     return found
 
 

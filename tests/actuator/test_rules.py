@@ -9,6 +9,7 @@ from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.settings import CONSTRAINT_NAMES, ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear, fillet_room_rad
 
 MOTOR = load_motor("VT8020")
 
@@ -98,3 +99,15 @@ def test_arrays_and_single_sets_agree():
 
 def test_every_constraint_has_its_rule_and_no_rule_is_without_a_name():
     assert tuple(CONSTRAINTS) == CONSTRAINT_NAMES
+
+
+def test_without_a_shift_all_teeth_are_thick_at_their_tips_and_leave_room_for_fillets():
+    """The rules ``tip_thickness`` and ``root_fillet`` look at shifted sets only."""
+    data = ActuatorSettings().parts
+    for module in ActuatorSettings().modules_mm:
+        teeth = np.arange(12, 400)
+        outer = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=data.gears.backlash_mm)
+        inner = InternalGear(teeth=teeth[24:], module_mm=module, backlash_mm=data.gears.backlash_mm)
+        assert (outer.tip_thickness_mm >= data.rating.tip_thickness_modules * module).all()
+        assert (fillet_room_rad(outer) > 0.0).all()
+        assert (fillet_room_rad(inner) > 0.0).all()
