@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from pareto_monoped.actuator.actuator import Actuator
+    from pareto_monoped.actuator.gearset import GearSet
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
     from pareto_monoped.actuator.service.sheet import ServiceSheet
 
@@ -190,6 +192,21 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
             console.print(f"  Would help: {either(gap.cures)}.")
 
 
+def _shift_lines(gears: "GearSet") -> list[tuple[str, str]]:
+    """Profile shifts in modules, positive outwards, with what they do to the mesh; none where there are none."""
+    if not gears.is_shifted:
+        return []
+    angle = math.degrees(float(gears.working_angle_rad))
+    return [
+        (
+            "profile shifts",
+            f"{float(gears.sun_shift):+.4f} sun, {float(gears.planet_shift):+.4f} planet, "
+            f"{float(gears.ring_shift):+.4f} ring",
+        ),
+        ("centre distance", f"{float(gears.carrier_radius_mm):.4f} mm, working pressure angle {angle:.3f} degrees"),
+    ]
+
+
 _UNRATED: tuple[tuple[str, Literal["left", "right"]], ...] = (("peak\nN m", "right"), ("eff.\n%", "right"))
 """The map's last columns where gears are not rated. Safety factors take the place of the torque, ratio times motor."""
 
@@ -224,6 +241,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
         ("mesh efficiency", f"{100.0 * actuator.efficiency:.1f} %"),
         ("reflected inertia", f"{actuator.reflected_inertia_kg_m2:.5f} kg m2"),
         ("contact ratios", f"{actuator.contact_ratio_sun:.2f} sun, {actuator.contact_ratio_ring:.2f} ring"),
+        *_shift_lines(actuator.gears),
         ("face width, length", f"{actuator.face_width_mm:.2f} mm, {actuator.length_mm:.1f} mm"),
         *service_lines(sheet, actuator_map.settings),
     ):

@@ -63,3 +63,14 @@ def test_a_row_of_the_map_tells_what_the_service_sheet_says(actuator_map):
     bush = known["bush"]
     assert bush["pv_mpa_m_per_s"] == pytest.approx(bush["pressure_mpa"] * bush["speed_m_per_s"])
     assert known["bearings"][0]["size_mm"] == [40.0, 52.0, 7.0]
+
+
+def test_a_shifted_set_is_told_with_its_shifts_and_its_centre_distance():
+    found = map_for("VT8020")
+    entry = next(e for e in found.entries if e.actuator is not None and e.actuator.gears.is_shifted)
+    gears = entry.actuator.gears
+    row = summary(entry, service_sheet(entry.actuator, found.settings))
+    told = [row[f"{gear}_shift"] for gear in ("sun", "planet", "ring")]
+    assert told == [gears.sun_shift, gears.planet_shift, gears.ring_shift]
+    both = 0.5 * (gears.sun_teeth + gears.planet_teeth) + gears.centre_shift
+    assert row["centre_distance_mm"] == pytest.approx(gears.module_mm * both)
