@@ -181,7 +181,7 @@ def _output_bearing(sets: CandidateSets) -> Numbers:
 
 
 def _planet_bearing(sets: CandidateSets) -> Numbers:
-    if sets.strength is not None:
+    if sets.strength is not None and "planet_bearing" in sets.strength:
         return sets.strength["planet_bearing"]
     return planet_margin(sets.gears, sets.face_width_mm, sets.motor, sets.settings)
 

@@ -139,8 +139,7 @@ class _Judge:
         fitting, kept_out = near[count[near] == 0], near[count[near] == 1]
         alone = ~np.isin(tenths, tenths[fitting])
         for wanted in (fitting[_rank(tenths[fitting], least[fitting]) < _FIRST], fitting, kept_out):
-            # No set is lighter with a wider face.
-            # What a rule keeps out matters only if it is lighter than the lightest.
+            # No set is lighter with a wider face, and what a rule keeps out matters only where it is the lightest.
             place = 0 if wanted is kept_out else 1
             bound = _lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf), place)[tenths[wanted]]
             heavy = least[wanted] > bound

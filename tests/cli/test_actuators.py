@@ -40,9 +40,9 @@ KEYS = [
 
 
 def run(capsys, *arguments):
+    # The figures below are those of the rules of the paper, unless a test names others.
+    rules = () if "--rules" in arguments or "--help" in arguments else ("--rules", "paper")
     with pytest.raises(SystemExit) as caught:
-        # The figures below are those of the rules of the paper, unless a test names others.
-        rules = () if "--rules" in arguments or "--help" in arguments else ("--rules", "paper")
         cli.main(["actuators", *rules, *arguments])
     return caught.value.code or 0, capsys.readouterr()
 
