@@ -22,9 +22,8 @@ _STANDOFF = 8.0  # length, as sold; above the 4 mm high heads of the rods' screw
 _STANDOFF_RADIUS = 2.75  # a disc within its hexagon of 5.5 mm across flats
 _THREAD = 4.0  # of either screw in a standoff
 _BOARD = 1.6  # thickness of a circuit board
-_ABOVE_ROD = 8.0  # from the upper rods to the board's lower holes: 1.5 mm between a head and a standoff
+_ABOVE_ROD = 6.0  # from the lower rods to the board's lower holes: the board then stays out of the foot's reach
 _RIM = 5.0  # of the plate around holes
-_BELOW_ROD = 7.0  # the same below the upper rods
 _FRAME = 5.5  # half the width of the plate's sides, around the window in it
 _CORNER = 4.0  # radius of plate and window
 _TIE_HOLE = 1.75  # radius: for ties of 2.5 mm
@@ -109,7 +108,7 @@ def _between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) 
 
 def _lower_row_mm(d: LegDimensions) -> float:
     """Height y of the board's lower holes."""
-    return d.upper_rod_mm[1] + _ABOVE_ROD
+    return d.lower_rod_mm[1] + _ABOVE_ROD
 
 
 def _hole_places(d: LegDimensions) -> tuple[Place, ...]:
@@ -119,12 +118,11 @@ def _hole_places(d: LegDimensions) -> tuple[Place, ...]:
 
 
 def _plate_outline(d: LegDimensions) -> Shape:
-    """A rectangle around the board's holes and the upper rods."""
-    rod_x, rod_y = d.upper_rod_mm
+    """A rectangle around the board's holes; the upper rods lie within."""
     return rounded(
-        half_width_mm=max(0.5 * d.driver.hole_width_mm, rod_x) + _RIM,
+        half_width_mm=max(0.5 * d.driver.hole_width_mm, d.upper_rod_mm[0]) + _RIM,
         high_mm=_lower_row_mm(d) + d.driver.hole_length_mm + _RIM,
-        low_mm=rod_y - _BELOW_ROD,
+        low_mm=_lower_row_mm(d) - _RIM,
         corner_mm=_CORNER,
     )
 
@@ -135,7 +133,7 @@ def _plate_holes(d: LegDimensions) -> tuple[Shape, ...]:
     low, high = _lower_row_mm(d), _lower_row_mm(d) + d.driver.hole_length_mm
     ties = tuple((side * x, high, 0.0) for x in _TIES_X for side in (-1.0, 1.0))
     window = rounded(
-        half_width_mm=0.5 * d.driver.hole_width_mm - _FRAME,
+        half_width_mm=min(0.5 * d.driver.hole_width_mm, rod_x) - _FRAME,
         high_mm=high - _FRAME,
         low_mm=low + _FRAME,
         corner_mm=_CORNER,
