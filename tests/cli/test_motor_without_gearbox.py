@@ -19,10 +19,15 @@ rated_voltage_v = 24.0
 winding_resistance_ohm = 0.2
 framed = { mass_kg = 0.05, outer_diameter_mm = 35.0, length_mm = 20.0 }
 """
-WORDS = (
-    "no gearbox fits at any ratio from 4 to 15, in the way is framed.outer_diameter_mm = 35 (bearing_room, "
-    "gearbox_diameter, ring_root, sun_rim, teeth_min); choose a larger motor or correct the file\n"
+SAYS = (
+    "no gearbox fits at any ratio from 4 to 15, in the way is framed.outer_diameter_mm = 35 ({}); "
+    "choose a larger motor or correct the file\n"
 )
+WORDS = SAYS.format(
+    "gearbox_diameter, meshing, no_interference, planet_rim, ring_root, root_fillet, sun_rim, teeth_min"
+)
+STORED_WORDS = SAYS.format("bearing_room, gearbox_diameter, ring_root, sun_rim, teeth_min")
+"""The stored study's rules are those of the paper."""
 STORED = Path(__file__).parent.parent / "study" / "data" / "plain.db"
 
 
@@ -78,7 +83,7 @@ def test_commands_that_are_given_the_file(capsys, folder, words):
 )
 def test_commands_that_are_given_a_stored_study(capsys, folder, words):
     _, line = refused(capsys, *words)
-    assert line == f"error: motor tiny: {WORDS}"
+    assert line == f"error: motor tiny: {STORED_WORDS}"
     assert sorted(path.name for path in folder.iterdir() if not path.name.startswith("stored.db")) == [
         "study.toml",
         "tiny.toml",
