@@ -9,6 +9,7 @@ from pareto_monoped.actuator.actuator import reflected_inertia_kg_m2
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.geometry.iso286 import limits
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS, Group, JointKind, Role, Visibility
 from pareto_monoped.robot.build import build_robot
 
@@ -63,6 +64,14 @@ def test_fasteners_are_bought_and_only_screws_have_names_of_screws():
         assert (part.role is Role.BOLT) == part.name.endswith("_bolt"), part.name
         if part.role in FASTENERS:
             assert part.process == "bought"
+
+
+def test_every_fit_of_a_part_is_in_the_tables_of_limits():
+    """A drawing states the limits, so that an export would fail on a class that the tables lack."""
+    for _, part in all_parts():
+        for fit in part.fits:
+            found = limits(float(fit.diameter_mm), fit.zone)
+            assert found.lower_mm < found.upper_mm, part.name
 
 
 @pytest.mark.parametrize("motor", motor_names())

@@ -225,7 +225,7 @@ def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
         ),
         places_mm=places,
         grade=ALLOYS["aw_6082_t6"],
-        fits=(Fit(diameter_mm=2.0 * _SPIGOT_RADIUS, zone="h8"),),
+        fits=(Fit(diameter_mm=2.0 * _SPIGOT_RADIUS, zone="h6"),),
         features=(tapped(M3, thread, half_gap - _STANDOFF_THREAD, half_gap, enters="high"),),
         note="spigot into the inner plate, screwed to the outer one",
     )
