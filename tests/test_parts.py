@@ -8,7 +8,7 @@ import pytest
 from pareto_monoped.actuator.actuator import reflected_inertia_kg_m2
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
 from pareto_monoped.geometry.iso286 import limits
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS, Group, JointKind, Role, Visibility
 from pareto_monoped.robot.build import build_robot
@@ -23,8 +23,8 @@ def ratios_of_families(found):
     return list(ratios.values())
 
 
-def robots(motor):
-    found = map_for(motor)
+def robots(motor, rules=DEFAULT_RULES):
+    found = map_for(motor, rules)
     for knee, hip in product(ratios_of_families(found), repeat=2):
         yield build_robot(PAPER_CASES["A"].design.replace({"knee_ratio": knee, "hip_ratio": hip}), found)
 
@@ -38,7 +38,9 @@ def all_parts():
 
 
 def test_every_part_has_a_role_and_every_member_is_used():
+    """Bushes are in the gearboxes of the paper's rules alone."""
     parts = [part for _, part in all_parts()]
+    parts += [part for robot in robots("VT8020", "paper") for unit in robot.units for part in unit.parts]
     assert {part.role for part in parts} == set(Role)
     assert {part.group for part in parts} == set(Group)
     assert {part.visibility for part in parts} == set(Visibility)

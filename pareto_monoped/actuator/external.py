@@ -41,6 +41,8 @@ _ROTOR_TAPPED_MM = -0.5
 """Tapping hole less thread diameter in the motor's turning face (ISO 2306: 2.5 mm for M3)."""
 _RIM_LESS_MM = 1.5
 """By how much the rim around the coupling's screws may be narrower than ``coupling.rim_mm``, which is for the heads."""
+_HEAD_RIM_MM = 0.1
+"""Least metal outside the heads, whose cones are drawn sharp: real heads leave 0.3 mm more for M3, 0.5 mm for M4."""
 _WEB_MM, _HALF_WEB_MM = 2.0, 1.0
 """Least metal between the coupling's lightening holes and its screws, and half of it between two such holes."""
 _LEAST_WINDOW_MM = 2.0
@@ -70,7 +72,10 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     data, materials = settings.parts, settings.materials
     output = _output(motor)
     through = _rotor_holes(output, _ROTOR_HOLE_MM)
-    r_coupling = 0.5 * (output.pitch_circle_mm + output.diameter_mm) + data.coupling.rim_mm - _RIM_LESS_MM
+    r_coupling = 0.5 * output.pitch_circle_mm + max(
+        0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM,
+        _output_screw(output).countersunk + _HEAD_RIM_MM,
+    )
     spline = data.spline.external
     teeth = at.gears.sun(data.gears.backlash_mm)
     return (

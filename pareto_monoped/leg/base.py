@@ -25,7 +25,8 @@ ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
 _TOP_RADIUS, _TOP_RISE = 40.0, 6.0  # round upper end, its centre above the lower rods: 5 mm outside the upper ones
 _FAR_WALL = 10.0  # of the far cheek around its bearing
 _BORE_PLAY = 1.0  # of the near cheek around the hip's output flange
-_RELIEF_RADIUS, _RELIEF_PITCH_RADIUS = 9.0, 31.0  # lighten the near cheek: 4.5 mm of metal to its bore
+# Of the holes that lighten the near cheek: their largest radius, and metal to its bore and to the mount's dowels.
+_RELIEF_MOST, _RELIEF_TO_BORE, _RELIEF_TO_DOWELS = 9.0, 4.5, 3.0
 # A slot between the rods that lightens both cheeks, 10 mm or more from the rods' holes.
 _SLOT_RADIUS, _SLOT_LENGTH = 10.0, 14.0
 _SLOT_RISE = 16.0  # of the centre of its upper end above the lower rods
@@ -73,6 +74,14 @@ def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
     return (slot, *holes_at(_rod_places(d), M4.hole))
 
 
+def _reliefs(d: LegDimensions) -> Pattern:
+    """The holes that lighten the near cheek: one below each gap between the screws, where its dowels are."""
+    low = d.coupler_radius_mm + _BORE_PLAY + _RELIEF_TO_BORE
+    high = d.mount_pitch_radius_mm - 0.5 * d.mount_dowel_mm - _RELIEF_TO_DOWELS
+    radius = min(_RELIEF_MOST, 0.5 * (high - low))
+    return Pattern(radius_mm=radius, pitch_radius_mm=low + radius, count=6, phase_rad=np.pi / 6)
+
+
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
     """The plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
@@ -107,13 +116,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                         Circle(radius_mm=d.coupler_radius_mm + _BORE_PLAY),
                         mount,
                         mount_dowels,
-                        # One below each gap between the screws.
-                        Pattern(
-                            radius_mm=_RELIEF_RADIUS,
-                            pitch_radius_mm=_RELIEF_PITCH_RADIUS,
-                            count=6,
-                            phase_rad=np.pi / 6,
-                        ),
+                        _reliefs(d),
                         *_common_holes(d),
                         *seats,
                     ),

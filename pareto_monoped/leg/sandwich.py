@@ -22,6 +22,7 @@ _OVERLAP = (6.0, 8.0)  # least and greatest length of thread
 BRIDGE = 5.5  # half height of a bridge: 3.4 mm of metal around a sleeve for M3
 BRIDGE_BOLT_X = 12.0  # of a bridge's two bolts: 2.9 mm of core outside their sleeves in the shank, the narrower link
 WINDOW_CORNER = 6.0  # radius of a window's corners, against peaks of stress
+_WINDOW_END = 0.5  # least straight half of a window's ends: without it, the corners of a narrow window cross
 
 
 def sleeve_hole(screw: Screw) -> float:
@@ -72,8 +73,9 @@ def holes_at(places: tuple[Place, ...], radius_mm: float) -> tuple[Circle, ...]:
 
 def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple[Shape, ...]:
     """A window between every two neighbouring bridges."""
+    corner_mm = min(WINDOW_CORNER, half_width_mm - _WINDOW_END)
     return tuple(
-        rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=WINDOW_CORNER)
+        rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=corner_mm)
         for high, low in pairwise(heights)
     )
 

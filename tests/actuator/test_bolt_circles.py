@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from pareto_monoped.actuator.motors import FramedMotor, HolePattern, load_motor, motor_names
@@ -33,6 +34,17 @@ def test_the_coupling_s_screws_hold_in_the_motor_s_face(name):
     motor = load_motor(name)
     depth, face = thread_mm(esspg(map_for(name)))
     assert 0.6 * motor.output_holes.diameter_mm <= depth <= face
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_the_heads_of_the_coupling_s_screws_do_not_break_out_of_its_rim(name):
+    coupling = next(part for part in esspg(map_for(name)).parts if part.role is Role.COUPLING)
+    (prism,) = coupling.prisms
+    heads = [bevel for bevel in coupling.bevels if bevel.hole]
+    assert heads
+    for head in heads:
+        reach = max(float(np.hypot(x, y)) for x, y in head.centres_mm()) + float(head.edge_mm)
+        assert reach < float(prism.outline.radius_mm)
 
 
 @pytest.mark.parametrize("hole_mm", [2.5, 3.0, 4.0, 5.0, 6.0, 8.0])

@@ -10,6 +10,7 @@ from pareto_monoped.leg.belt import Pulley, belt, mirrored
 from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.outlines import rounded
+from pareto_monoped.leg.sandwich import windows_between
 from pareto_monoped.leg.sprocket import sprocket_outline
 from pareto_monoped.leg.thigh_outline import thigh_outline
 from tests.leg.polygons import polygon
@@ -85,3 +86,12 @@ def test_a_pulley_that_lies_in_line_adds_no_turn(rounding):
     ]
     arcs = [piece for piece in belt(pulleys).pieces if isinstance(piece, Arc)]
     assert sum(abs(arc.end_rad - arc.start_rad) for arc in arcs) == pytest.approx(2.0 * np.pi)
+
+
+@pytest.mark.parametrize("half_width_mm", [15.0, 6.5, 5.56, 3.0])
+def test_the_corners_of_narrow_windows_do_not_cross(half_width_mm):
+    for window in windows_between((-60.0, -110.0, -150.0), half_width_mm):
+        drawn = polygon(window)
+        assert drawn.is_valid, shapely.is_valid_reason(drawn)
+        assert drawn.bounds[2] == pytest.approx(half_width_mm)
+        assert window.moments().area == pytest.approx(drawn.area, rel=1e-4)
