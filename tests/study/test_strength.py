@@ -87,7 +87,8 @@ def test_a_front_under_strength_holds(tmp_path, monkeypatch, algorithm):
     assert len(front)
     assert (front[list(SAFETIES)] >= 1.0).all(axis=None)
     weak = data.trials[(data.trials[list(SAFETIES)] < 1.0).any(axis=1)]
-    assert len(weak)
+    # The weighted search starts among designs that hold and stays there.
+    assert len(weak) or algorithm == "weighted_cmaes"
     assert (weak["state"] == "infeasible").all()
     assert weak["reason"].str.contains("_safety = ").all()
     # What is stored follows from the stored loads.
