@@ -14,7 +14,7 @@ _BUSH_PLAY_MM = 0.2
 """Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
 _SPACER_PLAY_MM = 0.2
 """Radial play of a spacer ring on the pin and in the planet; our own choice."""
-_LEAST_SPACER_MM = 0.3
+_LEAST_SPACER_MM = 0.32
 """Shorter spacers are left out: needles have so much room to either side; our own choice."""
 
 Place = tuple[Numbers, Numbers, Numbers]

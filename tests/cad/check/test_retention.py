@@ -40,6 +40,15 @@ def test_every_part_is_held_on_either_family_of_any_motor(motor):
     assert loose_parts(build_robot(design, found)) == ([], pytest.approx(300, abs=25))
 
 
+@pytest.mark.parametrize("motor", motor_names())
+def test_spacers_beside_needles_are_long_enough_to_be_held(motor):
+    """One of 0.3 mm counted as loose, so that exports with it were refused."""
+    actuators = [entry.actuator for entry in map_for(motor).entries if entry.actuator is not None]
+    spacers = [part for actuator in actuators for part in actuator.parts if part.name == "needle_spacer"]
+    assert spacers
+    assert all(float(prism.z1_mm - prism.z0_mm) > 0.31 for part in spacers for prism in part.prisms)
+
+
 @pytest.mark.parametrize(
     ("removed", "freed"),
     [
