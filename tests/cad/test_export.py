@@ -116,7 +116,7 @@ def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
         require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
     with pytest.raises(DesignError, match=r"^back's bolt circle of the hip actuator = 51\.0 mm: must be 50\.0 mm"):
         require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
-    with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 12\.8 N m.*05B-1.*lower knee_ratio"):
+    with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 5\.7 N m.*084.*lower knee_ratio"):
         require_fit(robot, dataclasses.replace(leg, chain=weak))
 
 
