@@ -213,7 +213,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 ),
                 *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
                 *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
-                *tube(at.z_gear_front, z_lip, at.r_stator_in, at.r_ring - 0.5 * casing.ring_lip_mm),
+                *tube(at.z_gear_front, z_lip, at.r_stator_in, shell.r_ring_lip),
                 *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
                 *tube(
                     np.minimum(shell.z_stator_back, at.z_gear_back),

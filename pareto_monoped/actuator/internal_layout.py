@@ -24,8 +24,8 @@ class InternalLayout:
         z_coupling: front of the coupling, at the bell's back.
         z_seat, z_plate, z_end: front of the rear bearing, front and back of the backplate.
         neck: front end of the sun's shaft.
-        r_seat_out, r_flange, r_flange_bolts, r_lip: of the ring housing: outside of its seat, its flange, the flange's
-            bolt circle, the lip's opening.
+        r_seat_out, r_flange, r_flange_bolts, r_lip, r_ring_lip: of the ring housing: outside of its seat, its flange,
+            the flange's bolt circle, the openings of the lips behind the main bearing and in front of the ring.
         r_rear_seat: of the rear bearing's seat.
     """
 
@@ -42,6 +42,7 @@ class InternalLayout:
     r_flange: Numbers
     r_flange_bolts: Numbers
     r_lip: Numbers
+    r_ring_lip: Numbers
     r_rear_seat: Numbers
 
 
@@ -64,6 +65,7 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
     z_coupling = z_bell - kit.bell_thickness_mm
     z_seat = z_coupling - data.coupling.thickness_mm - casing.bearing_play_mm
     z_plate = z_seat - at.rear_bearing.width_mm
+    r_shoulder = at.r_bore + data.carrier.shoulder_height_mm
     r_flange = r_seat_out + casing.flange_width_mm - _FLANGE_LESS_MM
     return InternalLayout(
         z_flange=z_flange,
@@ -81,8 +83,10 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
         # It holds the bearing's outer ring and the ring gear, and clears the carrier's shoulder.
         r_lip=np.maximum(
             np.minimum(at.r_seat - casing.lip_mm, at.r_ring - 0.5 * casing.ring_lip_mm),
-            at.r_bore + data.carrier.shoulder_height_mm + casing.rotor_clearance_mm,
+            r_shoulder + casing.rotor_clearance_mm,
         ),
+        # Its corner clears the shoulder's corner, which turns in the same plane.
+        r_ring_lip=np.maximum(at.r_ring - 0.5 * casing.ring_lip_mm, r_shoulder + casing.shoulder_clearance_mm),
         r_rear_seat=0.5 * at.rear_bearing.outer_diameter_mm,
     )
 

@@ -107,6 +107,7 @@ class CasingData:
     lip_mm: Positive
     seat_wall_mm: Positive
     ring_wall_mm: Positive
+    shoulder_clearance_mm: Positive
     ring_lip_mm: Positive
     rotor_clearance_mm: Positive
     motor_carrier_clearance_mm: Positive

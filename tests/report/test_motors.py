@@ -72,7 +72,7 @@ def test_leg_is_weighed_and_drawn_with_the_dimensions_of_the_studys_own_motor(so
 def test_the_drawing_has_the_parts_dimensions(vt8020):
     leg = leg_table(leg_dimensions(vt8020))
     assert (leg.base_top_m, leg.base_top_radius_m) == pytest.approx((0.06821, 0.040), abs=1e-5)
-    assert (leg.thigh_hip_radius_m, leg.thigh_knee_radius_m) == pytest.approx((0.055, 0.031))
+    assert (leg.thigh_hip_radius_m, leg.thigh_knee_radius_m) == pytest.approx((0.055, 0.0355))
     assert leg.thigh_half_width_m == pytest.approx(0.024)
     assert (leg.shank_knee_radius_m, leg.shank_foot_radius_m) == pytest.approx((0.024, 0.018))
     assert (leg.housing_radius_m, leg.output_radius_m) == pytest.approx((0.0515, 0.0165))

@@ -117,8 +117,8 @@ def test_units_of_another_motor_are_what_they_were(design):
         {
             "base_frame": 0.738483,
             "hip_actuator": 1.215838,
-            "thigh": 1.084884,
-            "knee_actuator": 1.773110,
+            "thigh": 1.084400,
+            "knee_actuator": 1.773578,
             "journal": 0.042084,
             "shank": 0.557991,
             "foot": 0.152349,

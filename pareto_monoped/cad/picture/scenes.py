@@ -115,8 +115,8 @@ def _pulled_apart(product: Product) -> list[float]:
     middle = float(np.median(0.5 * (low + high)))
     right = [k for k in order.tolist() if 0.5 * (low[k] + high[k]) >= middle]
     left = [k for k in reversed(order.tolist()) if 0.5 * (low[k] + high[k]) < middle]
+    done: list[int] = []  # of both sides: a screw may lie on the other side of the middle than what it is in
     for side, sign in ((right, 1.0), (left, -1.0)):
-        done: list[int] = []
         for k in side:
             front = float(low[k] if sign > 0.0 else high[k])
             for other in done:

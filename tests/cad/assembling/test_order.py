@@ -225,10 +225,13 @@ def test_hip_and_knee_are_screwed_to_their_plates_before_the_plates_are_joined(p
 
 
 def test_ways_and_keys_are_free_when_tried_with_meshes(planned):
-    """Independent of the flat shapes: meshes moved in small steps, and a key as a cylinder, cut with what is there."""
+    """Independent of the flat shapes: meshes moved in small steps, and a key as a cylinder, cut with what is there.
+
+    A chain and its turnbuckles give way: to a sprocket that comes after them, too.
+    """
     found, blocking, assembly = planned
     meshes = [placed(mesh_of(instance.part, 0.05).body, instance.world) for instance in found]
-    limp = (Role.CHAIN, Role.TURNBUCKLE)
+    limp = {k for k, body in enumerate(blocking.bodies) if body.instance.part.role in (Role.CHAIN, Role.TURNBUCKLE)}
 
     def solids(members):
         return [meshes[k] for m in sorted(members) for k in blocking.bodies[m].instances]
@@ -237,14 +240,14 @@ def test_ways_and_keys_are_free_when_tried_with_meshes(planned):
     for step in steps_of(assembly):
         there = set(step.base)
         for addition in step.additions:
-            if not any(blocking.bodies[k].instance.part.role in limp for k in addition.members):
+            if not addition.members & limp:
                 sign, axis = (1.0 if addition.out[0] == "+" else -1.0), "xyz".index(addition.out[1])
                 for distance in (1.0, 4.0, 11.0, 27.0):
                     way = np.zeros(3)
                     way[axis] = sign * distance
                     for moving in solids(addition.members):
                         moved = moving.translate(way)
-                        for other in solids(there):
+                        for other in solids(there - limp):
                             common = moved ^ other
                             assert common.volume() <= 0.02 * max(common.surface_area(), 1.0) + 0.5, step.number
                 tried += 1

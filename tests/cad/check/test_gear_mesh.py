@@ -23,7 +23,7 @@ def test_a_sun_that_turns_too_fast_or_too_slowly_is_found(product, examine, fail
 @pytest.mark.parametrize("joint", ["hip", "knee"])
 def test_planets_that_do_not_roll_on_their_ring_are_found(product, joint):
     actuator = getattr(product.robot, joint)
-    gears = dataclasses.replace(actuator.gears, ring_teeth=actuator.gears.ring_teeth + 12)
+    gears = dataclasses.replace(actuator.gears, ring_teeth=actuator.gears.ring_teeth - 12)
     robot = dataclasses.replace(product.robot, **{joint: dataclasses.replace(actuator, gears=gears)})
     texts = gear_mesh.check(dataclasses.replace(product, robot=robot)).failures
     assert any(f"{joint}_actuator/ring" in text and f"{joint}_actuator/planet" in text for text in texts)

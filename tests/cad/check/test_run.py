@@ -38,7 +38,8 @@ def test_a_sound_robot_passes_every_check(examine):
 
 
 def test_every_limit_of_the_table_is_used(examine):
-    table = [entry for entry in vars(limits).values() if isinstance(entry, Limit)]
+    """Strength has one of its own module, which reads the jump and not the parts."""
+    table = [entry for entry in vars(limits).values() if isinstance(entry, Limit) and entry is not limits.STRENGTH]
     checks = examine()
     for limit in table:
         for body in ("base", "thigh", "shank"):

@@ -22,13 +22,9 @@ def test_the_knee_section_shows_both_links_and_what_is_between_them(product):
     scene = scenes.knee_scene(product)
     seen = set(np.unique(draw(scene.bodies, scene.view, width=1000, height=820).numbers).tolist())
     shown = {row.text.split(" (")[0].replace(" ", "_") for row in scene.legend if row.number in seen}
-    joint = {
-        part.role: part.name
-        for unit in product.robot.units
-        for part in unit.parts
-        if part.role in (Role.BEARING, Role.SPROCKET, Role.SHAFT) and unit.name in ("thigh", "shank")
-    }
-    assert set(joint.values()) <= shown
+    joint = {"knee_bearing", "knee_bearing_cup", "knee_axle", "thigh_plate_inner", "shank_plate_near"}
+    assert joint <= {unique.name for unique in product.unique}
+    assert joint <= shown
     low, high = (np.array([f(b.points_mm, axis=0) for b in scene.bodies]) for f in (np.min, np.max))
     half = scenes._KNEE_AROUND_MM + 1e-6
     assert np.all(low > -half)
