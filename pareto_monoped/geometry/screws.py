@@ -9,7 +9,7 @@ from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.features import COARSE_PITCHES_MM, Cone, CountersunkHead, Hole, Mouth, Thread
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role, Visibility
-from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
+from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, polygon
 from pareto_monoped.geometry.tightening import Fastening, thread_size
 from pareto_monoped.materials import Material
 
@@ -20,7 +20,7 @@ LENGTHS_MM = np.array([3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55
 HEXAGON_HEIGHT_MM = {3.0: 2.0, 4.0: 2.8, 5.0: 3.5}
 """Of the head (ISO 4017), by thread."""
 HEXAGON_FLATS_MM = {3.0: 5.5, 4.0: 7.0, 5.0: 8.0}
-"""Width across flats (ISO 4017), by thread."""
+"""Width across flats of screws (ISO 4017) and nuts (ISO 4032), by thread."""
 _STANDARDS = {"cap": "cap screw (ISO 4762)", "hexagon": "hexagon screw (ISO 4017)"}
 _COMMON = "countersunk (ISO 10642)"
 _SMALL = "countersunk (ISO 14581)"  # ISO 10642 begins at M3 and 8 mm
@@ -61,7 +61,7 @@ class Screw:
             thread=thread_size(2.0 * self.shank),
             property_class=property_class,
             head=head,
-            head_mm=2.0 * self.head,
+            head_mm=HEXAGON_FLATS_MM[2.0 * self.shank] if head == "hexagon" else 2.0 * self.head,
             hole_mm=2.0 * self.hole,
         )
 
@@ -140,8 +140,23 @@ def tapped(
 
 def cylinder(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
     """A cylinder on the z axis between two heights in either order."""
+    return between(Circle(radius_mm=radius_mm), one_mm, other_mm)
+
+
+def between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -> Prism:
+    """A prism between two heights in either order."""
     low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
-    return Prism(outline=Circle(radius_mm=radius_mm), z0_mm=low, z1_mm=high)
+    return Prism(outline=outline, z0_mm=low, z1_mm=high, holes=holes)
+
+
+def hexagon(flats_mm: float) -> Path:
+    """A hexagon around the origin, drawn sharp, with two of its flats across the x axis.
+
+    Of a circle of screws, flats therefore face the circle's axis.
+    """
+    corner = flats_mm / np.sqrt(3.0)
+    angles = np.pi / 6.0 + np.pi / 3.0 * np.arange(6)
+    return polygon([(float(corner * np.cos(angle)), float(corner * np.sin(angle))) for angle in angles])
 
 
 # Countersunk: ISO 7721 for M2.5, ISO 10642 from M3 up. ISO 14581 heads of short M3 lie 0.2 mm below the face.
@@ -235,9 +250,8 @@ def screw_part(
     if head == "cap":
         drawn = (cylinder(screw.head, seat_mm - direction * screw.head_height, seat_mm), *drawn)
     elif head == "hexagon":
-        # A disc of the hexagon's area.
-        radius = HEXAGON_FLATS_MM[size] * np.sqrt(np.sqrt(3.0) / 2.0 / np.pi)
-        drawn = (cylinder(float(radius), seat_mm - direction * HEXAGON_HEIGHT_MM[size], seat_mm), *drawn)
+        flats, height = hexagon(HEXAGON_FLATS_MM[size]), HEXAGON_HEIGHT_MM[size]
+        drawn = (between(flats, seat_mm - direction * height, seat_mm), *drawn)
     features: tuple[CountersunkHead, ...] = ()
     if head == "countersunk":
         if np.any(grip_mm < screw.countersunk - screw.shank):

@@ -18,8 +18,9 @@ FRICTION = 0.12
 _UTILISATION = {"cap": 0.9, "hexagon": 0.9, "countersunk": 0.75}
 """Share of the proof stress used (VDI 2230-1: 0.9). Countersunk heads carry 80 percent of a screw (ISO 10642) and their
 key is smaller."""
-_BEARING_SHARE = 0.94
-"""Outer diameter of a head's bearing face over that of the head: M3 5.07 of 5.5 mm, M8 12.33 of 13 (ISO 4762)."""
+_BEARING_SHARE = {"cap": 0.94, "countersunk": 0.94, "hexagon": 0.83}
+"""Outer diameter of a head's bearing face over that of the head: M3 5.07 of 5.5 mm, M8 12.33 of 13 (ISO 4762). Over the
+width across flats of a hexagon: M3 4.57 of 5.5 mm, M4 5.88 of 7 (ISO 4017)."""
 _COUNTERSINK_RAD = 0.25 * np.pi
 """Half the angle of a countersunk head."""
 LOCKER = "medium-strength thread locker"
@@ -83,9 +84,10 @@ class Fastening:
         thread: its size.
         property_class: after ISO 898-1.
         head: shape of the head.
-        head_mm: outer diameter of the head.
+        head_mm: outer diameter of the head, or width across flats of a hexagon.
         hole_mm: diameter of the clearance hole.
         lock: what keeps it from turning loose.
+        most_preload_n: what the nut or the clamped parts allow, where that is less than the screw can give.
     """
 
     thread: ThreadSize
@@ -94,20 +96,24 @@ class Fastening:
     head_mm: float
     hole_mm: float
     lock: str = LOCKER
+    most_preload_n: float = np.inf
 
     @property
     def preload_n(self) -> float:
-        """Assembly preload F_M: torsion and tension together reach the share of the proof stress used (eq. R8/1)."""
+        """Assembly preload F_M: torsion and tension together reach the share of the proof stress used (eq. R8/1).
+
+        It is less where the nut or the clamped parts allow no more.
+        """
         thread = self.thread
         slope = thread.pitch_mm / (np.pi * thread.flank_diameter_mm) + 1.155 * FRICTION
         torsion = 1.5 * thread.flank_diameter_mm / thread.stress_diameter_mm * slope
         stress = _UTILISATION[self.head] * YIELD_MPA[self.property_class] / np.sqrt(1.0 + 3.0 * torsion**2)
-        return float(stress * thread.stress_area_mm2)
+        return min(float(stress * thread.stress_area_mm2), self.most_preload_n)
 
     @property
     def bearing_mm(self) -> float:
         """Outer diameter of the head's bearing face."""
-        return _BEARING_SHARE * self.head_mm
+        return _BEARING_SHARE[self.head] * self.head_mm
 
     @property
     def torque_n_m(self) -> float:

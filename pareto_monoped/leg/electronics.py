@@ -6,9 +6,9 @@ the thigh's swing only twists them. Cable ties hold them to the driver's plate a
 
 import numpy as np
 
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import M4, clearance, screw_part
+from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.outlines import rounded
@@ -19,7 +19,7 @@ DRIVER_PLATE_MM = 2.0
 """Thickness of a driver's plate, the least for a flush countersunk M3; our own choice."""
 # Our own layout, mm.
 _STANDOFF = 8.0  # length, as sold; above the 4 mm high heads of the rods' screws
-_STANDOFF_RADIUS = 2.75  # a disc within its hexagon of 5.5 mm across flats
+_STANDOFF_FLATS = HEXAGON_FLATS_MM[3.0]  # as sold for M2.5 and M3
 _THREAD = 4.0  # of either screw in a standoff
 _BOARD = 1.6  # thickness of a circuit board
 _ABOVE_ROD = 6.0  # from the lower rods to the board's lower holes: the board then stays out of the foot's reach
@@ -49,7 +49,7 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             role=Role.BRACKET,
             material=MATERIALS.aluminium,
             process="laser cut",
-            prisms=(_between(_plate_outline(d), face_mm, back, *_plate_holes(d)),),
+            prisms=(between(_plate_outline(d), face_mm, back, *_plate_holes(d)),),
             grade=ALLOYS["aw_6082_t6"],
             features=(
                 clearance(
@@ -80,7 +80,7 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             visibility=Visibility.DETAIL,
             material=MATERIALS.aluminium,
             process="bought",
-            prisms=(_between(Circle(radius_mm=_STANDOFF_RADIUS), back, under, Circle(radius_mm=driver.screw.core)),),
+            prisms=(between(hexagon(_STANDOFF_FLATS), back, under, Circle(radius_mm=driver.screw.core)),),
             places_mm=holes,
             note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
         ),
@@ -98,12 +98,6 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             note="through the board into the standoff",
         ),
     )
-
-
-def _between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -> Prism:
-    """A prism between two heights in either order."""
-    low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
-    return Prism(outline=outline, z0_mm=low, z1_mm=high, holes=holes)
 
 
 def _lower_row_mm(d: LegDimensions) -> float:
@@ -157,13 +151,13 @@ def _board(motor: str, under_mm: Numbers, over_mm: Numbers, direction: float, d:
         material=MATERIALS.electronics,
         process="bought",
         prisms=(
-            _between(
+            between(
                 rectangle(width_mm=driver.width_mm, height_mm=driver.length_mm, y_mm=middle),
                 under_mm,
                 over_mm,
                 *holes_at(_hole_places(d), driver.screw.hole),
             ),
-            _between(
+            between(
                 rectangle(width_mm=driver.width_mm, height_mm=block, y_mm=middle),
                 over_mm,
                 over_mm + direction * (driver.height_mm - _BOARD),

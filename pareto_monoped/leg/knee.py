@@ -7,7 +7,17 @@ from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import LENGTHS_MM, M4, M25, cylinder, screw_part, tapped
+from pareto_monoped.geometry.screws import (
+    HEXAGON_FLATS_MM,
+    LENGTHS_MM,
+    M4,
+    M25,
+    between,
+    cylinder,
+    hexagon,
+    screw_part,
+    tapped,
+)
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -23,9 +33,9 @@ _BOLTS, _BOLT_PITCH_RADIUS = 4, 5.5  # M4: 2.35 mm of metal between their holes 
 AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between them: 0.8 mm of metal between the holes
 _DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
 DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
-# The nut of an axle bolt, M4 (ISO 4032), mm.
+# The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
+# Heads and nuts press the plates less than ``strength.bolted`` allows.
 _NUT_HEIGHT = 3.2
-_NUT_RADIUS = 3.68  # of a disc with the nut's area, 7 mm across flats
 _NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread
 
 
@@ -203,7 +213,10 @@ def _shoulder_z_mm(d: LegDimensions) -> float:
 
 
 def _axle_bolt(d: LegDimensions) -> Part:
-    """The bolts through shank plates, spacers and axle."""
+    """The bolts through shank plates, spacers and axle.
+
+    They clamp what the dowels carry. The property class is therefore the lowest one, that of the nut.
+    """
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
     length = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
     return Part(
@@ -214,11 +227,12 @@ def _axle_bolt(d: LegDimensions) -> Part:
         prisms=(
             cylinder(M4.head, -face - M4.head_height, -face),
             cylinder(M4.shank, -face, face),
-            cylinder(_NUT_RADIUS, face, face + _NUT_HEIGHT),
+            between(hexagon(HEXAGON_FLATS_MM[2.0 * M4.shank]), face, face + _NUT_HEIGHT),
             cylinder(M4.core, face + _NUT_HEIGHT, length - face),
         ),
         count=_BOLTS,
         pitch_radius_mm=_BOLT_PITCH_RADIUS,
         phase_rad=np.pi / 4,
-        note=f"M4 x {length:g} cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
+        fastening=M4.fastening("cap", "8.8"),
+        note=f"M4 x {length:g} cap screw (ISO 4762) 8.8 with nut (ISO 4032) 8, clamps the whole knee",
     )

@@ -24,8 +24,8 @@ from pareto_monoped.leg.stop_parts import shank_stop_bolts, shank_stop_parts
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the fork, mm below the knee axis.
-_FORK_WINDOW_TOP = 28.0  # below the round end of the plates
-_FORK_WINDOW_END = 4.0  # from the window to the core: metal above the first bridge
+FORK_WINDOW_TOP = 28.0  # below the round end of the plates
+FORK_WINDOW_END = 4.0  # from the window to the core: metal above the first bridge
 # Our own layout of the ear for the striker, mm.
 _EAR_RADIUS = 6.5  # 3.9 mm of metal around its bolt
 _EAR_FILLET, _EAR_FOOT = 12.0, -72.0  # radius of the fillet below it, and height of its middle
@@ -43,6 +43,15 @@ def bridges_of(length_mm: Numbers, d: LegDimensions) -> tuple[Numbers, Numbers]:
     return -d.fork_mm - BRIDGE, core_end + BRIDGE
 
 
+def bottom_axis_mm(length_mm: Numbers, d: LegDimensions) -> Numbers:
+    """Height of the axis of the plates' lower round end, mm from the knee axis."""
+    return _bottom_mm(d.foot_flat_mm - length_mm, d)
+
+
+def _bottom_mm(flat_mm: Numbers, d: LegDimensions) -> Numbers:
+    return flat_mm + _FOOT_GAP + d.shank_bottom_radius_mm
+
+
 def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """The shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block, fasteners.
 
@@ -57,7 +66,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     return (
         *_plates(flat, bridges, foot_bolts, d),
         _core(bridges[1] - BRIDGE, bridges, d),
-        sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges)),
+        sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges), plate_on_core_mm=d.shank_plate_mm),
         *axle_parts(d),
         _foot_block(flat, foot_bolts, d),
         sleeve_bolt("foot_bolt", M4, face, foot_bolts),
@@ -72,8 +81,8 @@ def _plates(
     half_gap = 0.5 * d.shank_gap_mm
     fork_window = rounded(
         half_width_mm=d.shank_window_half_width_mm,
-        high_mm=-_FORK_WINDOW_TOP,
-        low_mm=-d.fork_mm + _FORK_WINDOW_END,
+        high_mm=-FORK_WINDOW_TOP,
+        low_mm=-d.fork_mm + FORK_WINDOW_END,
         corner_mm=WINDOW_CORNER,
     )
     bolted = holes_at(bolts_at(bridges), sleeve_hole(M3))
@@ -113,7 +122,7 @@ def _plates(
 def _outline(flat_mm: Numbers, d: LegDimensions) -> Path:
     """Two round ends joined by straight edges, with an ear in front for the striker's upper bolt."""
     (x, y, _), _ = shank_stop_bolts(d)
-    bottom = Pulley(x_mm=0.0, y_mm=flat_mm + _FOOT_GAP + d.shank_bottom_radius_mm, radius_mm=d.shank_bottom_radius_mm)
+    bottom = Pulley(x_mm=0.0, y_mm=_bottom_mm(flat_mm, d), radius_mm=d.shank_bottom_radius_mm)
     return belt(
         (
             Pulley(x_mm=0.0, y_mm=0.0, radius_mm=d.shank_top_radius_mm),

@@ -75,7 +75,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         *_plates(length, bridges, bolts, standoffs, d),
         _core(length, bridges, d),
         *_standoffs(standoffs, d),
-        sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts),
+        sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts, plate_on_core_mm=d.plate_mm),
         *hip_joints(d),
         *chain_parts(length, d),
         *knee_bearings(length, d),
@@ -125,7 +125,7 @@ def _plates(
                     outline=thigh_outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM, length, d),
                     z0_mm=-face,
                     z1_mm=-half_gap,
-                    holes=(*common, *spigots, *_inner_hip_holes(d)),
+                    holes=(*common, *spigots, *inner_hip_holes(d)),
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
@@ -142,7 +142,7 @@ def _plates(
                     outline=thigh_outline(d.rim_radius_mm, length, d),
                     z0_mm=half_gap,
                     z1_mm=face,
-                    holes=(*common, *screwed, *_outer_hip_holes(d)),
+                    holes=(*common, *screwed, *outer_hip_holes(d)),
                 ),
             ),
             grade=ALLOYS["aw_6082_t6"],
@@ -152,7 +152,7 @@ def _plates(
     )
 
 
-def _inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
+def inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """The inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
     return (
         Circle(radius_mm=BOSS_RADIUS + _BOSS_PLAY),
@@ -162,7 +162,7 @@ def _inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     )
 
 
-def _outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
+def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """The outer plate's holes around the hip axis: bore, screws into the knee actuator's case, lightening."""
     outside_mm = d.mount_pitch_radius_mm - _OUTER_RELIEF_TO_SCREWS
     inside_mm = d.coupler_radius_mm + _OUTER_RELIEF_TO_FLANGE

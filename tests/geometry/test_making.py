@@ -8,7 +8,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.roles import FASTENERS, SCREWS
+from pareto_monoped.geometry.roles import FASTENERS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 from pareto_monoped.robot.build import build_robot
@@ -42,7 +42,7 @@ def test_every_made_metal_part_names_its_alloy(parts):
 
 
 def test_every_screw_says_how_tight_and_what_locks_it(parts):
-    screws = [part for part in parts if part.role in SCREWS]
+    screws = [part for part in parts if part.role in FASTENERS]
     assert len(screws) > 20
     for part in screws:
         fastening = part.fastening

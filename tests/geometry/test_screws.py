@@ -7,6 +7,7 @@ from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, M4, M5, M25, screw_for, screw_length_mm, screw_part
 from pareto_monoped.materials import Material
+from tests.leg.polygons import polygon
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 
@@ -84,11 +85,23 @@ def test_notes_name_size_standard_and_grade():
     assert made(head="hexagon").note == "M3 x 6 hexagon screw (ISO 4017) 8.8"
 
 
-def test_a_hexagon_weighs_like_its_disc():
-    disc = made(head="hexagon").prisms[0]
-    flats = 5.5
-    assert np.pi * disc.outline.radius_mm**2 == pytest.approx(np.sqrt(3.0) / 2.0 * flats**2)
-    assert disc.z1_mm - disc.z0_mm == 2.0
+def test_a_hexagon_head_is_one_over_flats_and_corners():
+    """ISO 4017, M3: 5.5 mm across flats, two of which lie across the x axis, along which circles of screws stand."""
+    head = made(head="hexagon").prisms[0]
+    corners = polygon(head.outline)
+    x_low, y_low, x_high, y_high = corners.bounds
+    assert x_high - x_low == pytest.approx(5.5)
+    assert y_high - y_low == pytest.approx(5.5 * 2.0 / np.sqrt(3.0))
+    assert len(corners.exterior.coords) == 7
+    assert corners.area == pytest.approx(head.outline.moments().area)
+    assert head.z1_mm - head.z0_mm == 2.0
+
+
+@pytest.mark.parametrize(("screw", "bearing"), [(M3, 4.57), (M4, 5.88), (M5, 6.88)])
+def test_a_hexagon_bears_on_the_ring_of_its_standard(screw, bearing):
+    """Least diameter dw of the bearing face (ISO 4017, product grade A); drawn within 5 percent."""
+    assert screw.fastening("hexagon", "8.8").bearing_mm == pytest.approx(bearing, rel=0.05)
+    assert screw.fastening("hexagon", "8.8").bearing_mm < screw.fastening("cap", "8.8").bearing_mm
 
 
 def test_an_odd_size_is_no_smaller_than_the_standard_s_proportions():

@@ -81,9 +81,7 @@ def hardware(product: Product) -> str:
 
 def tightening(part: Part) -> tuple[str, str]:
     """Torque in N m and lock of a fastener, as written in tables."""
-    if part.fastening is None:
-        # A sleeve nut or a nut turns with its screw: tightened by the feel of a short key, and locked all the same.
-        return "hand-tight with the short arm of the key", LOCKER
+    assert part.fastening is not None
     return f"{part.fastening.torque_n_m:.1f} N m", part.fastening.lock
 
 

@@ -163,10 +163,11 @@ def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
         for part in unit.parts:
             if part.role not in SCREWS:
                 continue
-            radii = sorted({float(p.outline.radius_mm) for p in part.prisms})
-            heads = [] if part.features else [p for p in part.prisms if p.outline.radius_mm == radii[-1]]
+            areas = sorted({float(p.outline.moments().area) for p in part.prisms})
+            heads = [] if part.features else [p for p in part.prisms if p.outline.moments().area == areas[-1]]
+            shank_mm = 2.0 * np.sqrt(areas[1] / np.pi)
             length = sum(float(p.z1_mm - p.z0_mm) for p in part.prisms if p not in heads)
             assert length == pytest.approx(LENGTHS_MM[abs(LENGTHS_MM - length).argmin()]), part.name
-            assert part.note.startswith(f"M{2.0 * radii[1]:g} x {length:g} "), part.note
+            assert part.note.startswith(f"M{shank_mm:g} x {length:g} "), part.note
             seen += 1
     assert seen >= 17
