@@ -1,5 +1,7 @@
 """From a searched design to what can be built: whole lengths, real ratios, one leg for both actuators, a pose."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pareto_monoped.actuator.search import ActuatorMap
@@ -8,15 +10,54 @@ from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot.build import Robot
-from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.leg.chain_drives import SAFETY
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.robot.build import Robot, build_robot
+from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 LENGTH_STEP_M = 1e-4
 """Link lengths are made to 0.1 mm."""
 _SAME_CIRCLE_MM = 0.05  # pitch circles closer than this take each other's screws
 _REST = Pose(hip_rad=-0.8, knee_rad=1.6)
 """Shown when the robot cannot stand in its start pose."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Built:
+    """A design as it is exported.
+
+    Attributes:
+        design: with lengths of whole 0.1 mm and real ratios.
+        robot: its parts.
+        arrays: the robot as it is simulated.
+        pose: of the assembly.
+    """
+
+    design: Design
+    robot: Robot
+    arrays: RobotArrays
+    pose: Pose
+
+
+def built_of(
+    design: Design,
+    actuator_map: ActuatorMap,
+    calibration: Calibration,
+    *,
+    hip_rad: float | None = None,
+    knee_rad: float | None = None,
+) -> Built:
+    """Build a design in the pose in which its jump starts, or at the given angles.
+
+    Raises:
+        DesignError: the robot cannot be built, or its actuators do not fit one leg.
+    """
+    design = as_built(design, actuator_map)
+    robot = build_robot(design, actuator_map)
+    require_fit(robot, leg_dimensions(actuator_map))
+    arrays = robot_arrays(design.as_array(), actuator_map, calibration.mass)
+    pose = assembly_pose(arrays, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
+    return Built(design=design, robot=robot, arrays=arrays, pose=pose)
 
 
 def as_built(design: Design, actuator_map: ActuatorMap) -> Design:
@@ -58,8 +99,8 @@ def require_fit(robot: Robot, leg: LegDimensions) -> None:
     torque, allowed = robot.knee.peak_torque_n_m, leg.chain.torque_limit_n_m
     if torque > allowed:
         raise DesignError(
-            f"peak torque of the knee actuator = {torque:.1f} N m: must be at most {allowed:.1f} N m, half of what "
-            f"breaks the thigh's chain ({leg.chain.name}); choose a lower knee_ratio"
+            f"peak torque of the knee actuator = {torque:.1f} N m: must be at most {allowed:.1f} N m, a share of "
+            f"1/{SAFETY:g} of what breaks the thigh's chain ({leg.chain.name}); choose a lower knee_ratio"
         )
 
 

@@ -98,12 +98,6 @@ def body_frames(robot: Robot, pose: Pose) -> dict[str, Matrix]:
     return {"base": base, "thigh": thigh, "shank": shank}
 
 
-def foot_centre_mm(robot: Robot, pose: Pose) -> Matrix:
-    """Centre of the foot in the assembly's frame, shape (3,)."""
-    foot = np.array([0.0, 0.0, -1000.0 * robot.design.shank_length_m, 1.0])
-    return (body_frames(robot, pose)["shank"] @ foot)[:3]
-
-
 def unit_frame(unit: Unit) -> Matrix:
     """From a unit's frame to its body's frame."""
     frame = np.eye(4)

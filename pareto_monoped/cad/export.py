@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.actuator.search import ActuatorMap
-from pareto_monoped.cad.as_built import as_built, assembly_pose, require_fit
+from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.run import run_checks
+from pareto_monoped.cad.elsewhere import order
 from pareto_monoped.cad.kernel import client as kernel
-from pareto_monoped.cad.product import build_product, step_assembly
+from pareto_monoped.cad.product import Product, build_product
 from pareto_monoped.cad.write import files
-from pareto_monoped.cad.write.assembly_pack import assembly_pack
 from pareto_monoped.cad.write.checks_record import checks_record
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, require_free, write
@@ -31,8 +30,7 @@ from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.robot.build import build_robot
+from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
 from pareto_monoped.strength.single import JointFactor, joint_factors
@@ -95,67 +93,45 @@ def export_design(
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
-    with _helpers() as threads:
-        built = as_built(design, actuator_map)
-        robot = build_robot(built, actuator_map)
-        require_fit(robot, leg_dimensions(actuator_map))
-        simulated = robot_arrays(built.as_array(), actuator_map, calibration.mass)
-        pose = assembly_pose(simulated, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
+    with _second_process():
+        built = built_of(design, actuator_map, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
         progress("building")
-        product = build_product(robot, pose)
-        # The kernel builds and writes solids in its process, threads draw, and the rest is done here.
-        solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in wanted else None
-        pictures = files.pictures(product, threads) if "png" in wanted else {}
+        product = build_product(built.robot, built.pose)
         record = design_record(
             searched=design,
             built=built,
-            robot=robot,
             actuator_map=actuator_map,
-            pose=pose,
             jumps={},
             calibration=calibration,
             source=source,
             formats=wanted,
             strength=strength,
         )
-        pack = threads.submit(assembly_pack, product) if "assembly" in wanted else None
-        sheets = files.part_sheets(product, record, threads) if "pdf" in wanted else None
+        ordered = order(product, record, wanted)
         progress("simulating")
-        designs = {"searched": design, "as_built": built}
+        designs = {"searched": design, "as_built": built.design}
         results = _evaluated(designs, actuator_map, calibration)
-        factors = _factors(built, results, list(designs).index("as_built"), actuator_map)
+        factors = _factors(built.design, results, list(designs).index("as_built"), actuator_map)
+        record["jumps"] = _jumps(designs, results)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
         part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
         checks = run_checks(
             product,
-            robot_arrays(built.as_array(), actuator_map),
+            robot_arrays(built.design.as_array(), actuator_map),
             part_files=part_files,
             other_files=other_files,
             factors=factors if strength else None,
         )
         _require_passed(checks, out_dir)
-        record["jumps"] = _jumps(designs, results)
         progress("writing")
         with beside(out_dir) as folder:
             files.write_meshes(folder, part_files, other_files, wanted)
             files.write_drawings(folder, product, wanted)
-            if sheets is not None:
-                files.write_sheets(folder, product, record, sheets.result())
-            files.write_models(folder, product, shown, simulated, built, calibration, wanted)
-            write(folder, "bom.csv", parts_list(product, factors))
-            write(folder, "strength.csv", strength_table(factors))
-            dimensions = parameters(product, leg_dimensions(actuator_map))
-            write(folder, "parameters.csv", parameters_csv(dimensions))
-            write(folder, "monoped_equations.txt", equations(dimensions))
-            write(folder, "checks.json", checks_record(checks))
-            write(folder, "README.md", readme(record, product, checks, wanted, factors))
-            for name, content in (pack.result() if pack is not None else {}).items():
-                write(folder, name, content)
-            for name, picture in pictures.items():
-                write(folder, name, picture.result())
-            if solids is not None:
-                files.write_solids(folder, *solids.result())
+            files.write_assembly_sheet(folder, product, record, wanted)
+            files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
+            _write_tables(folder, product, record, checks, factors, leg_dimensions(actuator_map))
+            ordered.write(folder)
             record["files"] = [*files_in(folder), RECORD]
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")
             move_in(folder, out_dir)
@@ -163,17 +139,32 @@ def export_design(
 
 
 @contextmanager
-def _helpers() -> Iterator[ThreadPoolExecutor]:
-    """The kernel's process, and a thread that draws; after an exception nobody waits for either."""
+def _second_process() -> Iterator[None]:
+    """Start the kernel's process; after an exception nobody waits for it."""
     kernel.start()
-    threads = ThreadPoolExecutor(max_workers=1, thread_name_prefix="draw")
     try:
-        yield threads
+        yield
     except BaseException:
-        threads.shutdown(wait=False, cancel_futures=True)
         kernel.give_up()
         raise
-    threads.shutdown()
+
+
+def _write_tables(
+    folder: Path,
+    product: Product,
+    record: Mapping[str, Any],
+    checks: Sequence[Check],
+    factors: Sequence[JointFactor],
+    leg: LegDimensions,
+) -> None:
+    """Write what every export has in words and numbers."""
+    dimensions = parameters(product, leg)
+    write(folder, "bom.csv", parts_list(product, factors))
+    write(folder, "strength.csv", strength_table(factors))
+    write(folder, "parameters.csv", parameters_csv(dimensions))
+    write(folder, "monoped_equations.txt", equations(dimensions))
+    write(folder, "checks.json", checks_record(checks))
+    write(folder, "README.md", readme(record, product, checks, record["formats"], factors))
 
 
 def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
@@ -195,13 +186,8 @@ def _evaluated(designs: Mapping[str, Design], actuator_map: ActuatorMap, calibra
     return Evaluator(actuator_map, calibration)(np.stack([design.as_array() for design in designs.values()]))
 
 
-def design_factors(design: Design, actuator_map: ActuatorMap, calibration: Calibration) -> tuple[JointFactor, ...]:
-    """The safety factors of a design's joints under the loads of its jump; none if it does not jump."""
-    return _factors(design, _evaluated({"": design}, actuator_map, calibration), 0, actuator_map)
-
-
 def _factors(design: Design, results: Evaluations, row: int, actuator_map: ActuatorMap) -> tuple[JointFactor, ...]:
-    """The same from a row of the results of its jump."""
+    """The safety factors of a design's joints, from a row of the results of its jump; none if it does not jump."""
     columns = {name: getattr(results, name)[row : row + 1] for name in LOAD_NAMES if name not in LENGTHS}
     lengths = {name: np.array([getattr(design, name)]) for name in LENGTHS}
     return joint_factors(design, actuator_map, loads_of(columns | lengths))

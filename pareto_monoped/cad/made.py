@@ -5,16 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.cad.as_built import as_built, assembly_pose, require_fit
+from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.compare import difference
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD
 from pareto_monoped.cad.write.formats import FILES
 from pareto_monoped.errors import DesignError
-from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.robot.build import build_robot
-from pareto_monoped.robot.population import robot_arrays
 
 _ALWAYS = (
     "README.md",
@@ -74,16 +71,11 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
 def expected_record(job: Job) -> dict[str, Any]:
     """The record that this version would write, without what is not compared."""
     actuator_map = map_of(job.motor, job.rules)
-    built = as_built(job.design, actuator_map)
-    robot = build_robot(built, actuator_map)
-    require_fit(robot, leg_dimensions(actuator_map))
-    simulated = robot_arrays(built.as_array(), actuator_map, job.calibration.mass)
+    built = built_of(job.design, actuator_map, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
     record = design_record(
         searched=job.design,
         built=built,
-        robot=robot,
         actuator_map=actuator_map,
-        pose=assembly_pose(simulated, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad),
         jumps={},
         calibration=job.calibration,
         source=job.source,

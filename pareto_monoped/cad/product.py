@@ -4,34 +4,50 @@ from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
 
-import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS, Instance, Pose, instances
 from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly, StepPlacement, solid_facts
-from pareto_monoped.cad.shape.meshes import Mesh, mesh_of, placed
+from pareto_monoped.cad.shape.meshes import Mesh, mesh_of
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.robot.build import Robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class UniquePart:
+class ListedPart:
     """A part that is made once and used ``count`` times in the robot.
 
     Attributes:
         name: unique in the product and safe as a file name.
         part: the record.
-        mesh: triangles in the part's own frame, millimetres.
         count: how often the robot has it.
         units: the units that have it.
     """
 
     name: str
     part: Part
-    mesh: Mesh
     count: int
     units: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UniquePart(ListedPart):
+    """The same with its triangles.
+
+    Attributes:
+        mesh: in the part's own frame, millimetres.
+    """
+
+    mesh: Mesh
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listed:
+    """A robot and its unique parts without triangles: what another process can be given."""
+
+    robot: Robot
+    unique: tuple[ListedPart, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,9 +74,11 @@ class Product:
         for instance, index in zip(self.instances, self.kinds, strict=True):
             yield instance, self.unique[index]
 
-    def world_bodies(self) -> list[m3.Manifold]:
-        """The mesh of every instance in the assembly's frame."""
-        return [placed(unique.mesh.body, instance.world) for instance, unique in self.placed()]
+    @property
+    def listed(self) -> Listed:
+        """The same without triangles."""
+        unique = [ListedPart(name=u.name, part=u.part, count=u.count, units=u.units) for u in self.unique]
+        return Listed(robot=self.robot, unique=tuple(unique))
 
 
 def build_product(robot: Robot, pose: Pose) -> Product:

@@ -46,11 +46,6 @@ class Thread:
     left_hand: bool = False
 
     @property
-    def drill_mm(self) -> float:
-        """Diameter of the tapping drill (ISO 2306: nominal diameter less pitch)."""
-        return self.diameter_mm - self.pitch_mm
-
-    @property
     def text(self) -> str:
         """As on drawings, such as ``M3x0.5 - 6H`` (ISO 965-1)."""
         return f"M{self.diameter_mm:g}x{self.pitch_mm:g}{' LH' if self.left_hand else ''} - {self.tolerance}"

@@ -8,7 +8,6 @@ import numpy as np
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.features import COARSE_PITCHES_MM
 
-PropertyClass = Literal["8.8", "10.9", "12.9"]
 YIELD_MPA: dict[str, float] = {"8.8": 640.0, "10.9": 940.0, "12.9": 1100.0}
 """0.2 % proof stress by property class (ISO 898-1, up to M16)."""
 TENSILE_MPA: dict[str, float] = {"8.8": 800.0, "10.9": 1040.0, "12.9": 1220.0}

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.assembly import Pose, body_frames, foot_centre_mm, instances, turn_y
+from pareto_monoped.cad.assembly import Pose, body_frames, instances, turn_y
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
 
@@ -17,7 +17,9 @@ def test_the_foot_is_where_mujoco_has_it(product, actuator_map, calibration, hip
     data.qpos[-2:] = hip_rad, knee_rad
     mujoco.mj_kinematics(model, data)
     expected = 1e3 * (data.site("foot").xpos - data.body("base").xpos)
-    assert foot_centre_mm(product.robot, Pose(hip_rad=hip_rad, knee_rad=knee_rad)) == pytest.approx(expected, abs=1e-9)
+    shank = body_frames(product.robot, Pose(hip_rad=hip_rad, knee_rad=knee_rad))["shank"]
+    foot = shank @ np.array([0.0, 0.0, -1e3 * product.robot.design.shank_length_m, 1.0])
+    assert foot[:3] == pytest.approx(expected, abs=1e-9)
 
 
 def test_frames_are_rotations_and_the_knee_hangs_on_the_thigh(product):

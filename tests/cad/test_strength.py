@@ -11,7 +11,7 @@ import pytest
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.check import strength
 from pareto_monoped.cad.check.limits import STRENGTH
-from pareto_monoped.cad.export import design_factors, export_design
+from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job, case_job, trial_job
 from pareto_monoped.cad.made import is_made
 from pareto_monoped.cad.records import record_job
@@ -22,7 +22,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.strength.factors import strength_factors
 from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
-from pareto_monoped.strength.single import JointFactor
+from pareto_monoped.strength.single import JointFactor, joint_factors
 from pareto_monoped.strength.table import TABLE
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.reader import read_study
@@ -140,6 +140,14 @@ def test_the_check_compares_every_factor_with_the_one_required():
             f"{joint.name}: safety factor = {0.97 * joint.required:.3g}: must be at least {joint.required:g}; "
             f"{joint.cure}"
         )
+
+
+def design_factors(design, actuator_map, calibration):
+    """The factors of one design under the loads of its own jump."""
+    results = Evaluator(actuator_map, calibration)(design.as_array()[None])
+    columns = {name: getattr(results, name) for name in LOAD_NAMES if not hasattr(design, name)}
+    lengths = {name: np.array([getattr(design, name)]) for name in LOAD_NAMES if hasattr(design, name)}
+    return joint_factors(design, actuator_map, loads_of(columns | lengths))
 
 
 def test_a_design_that_does_not_jump_has_no_factors(actuator_map, calibration):

@@ -97,7 +97,7 @@ def test_a_tapped_hole_has_its_thread_and_leads_at_the_ends_where_screws_enter()
     holes = (Circle(radius_mm=M4.core, x_mm=5.0), Circle(radius_mm=M4.core, x_mm=-5.0))
     hole = tapped(M4, holes, 1.0, 4.0, enters="both")
     assert hole.thread.text == "M4x0.7 - 6H"
-    assert hole.thread.drill_mm == pytest.approx(2.0 * M4.core)
+    assert hole.thread.diameter_mm - hole.thread.pitch_mm == pytest.approx(2.0 * M4.core)  # ISO 2306: the drill
     assert [(c.face_mm, round(float(c.end_mm), 9), c.edge_mm) for c in hole.bevels] == [
         (1.0, 1.35, 2.0),
         (4.0, 3.65, 2.0),

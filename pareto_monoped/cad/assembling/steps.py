@@ -1,6 +1,5 @@
 """The steps of putting an assembly together: what comes to what, from where, and which screws are then driven."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from pareto_monoped.cad.assembling.bodies import Blocking
@@ -99,13 +98,3 @@ def titled(step: Step, blocking: Blocking) -> str:
     words = [name.replace("_", " ") for name in order]
     text = words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
     return text[0].upper() + text[1:]
-
-
-def single_bodies(step: Step) -> Iterator[int]:
-    """The bodies of a step that were no part of an earlier one."""
-    if step.base_number is None:
-        yield from sorted(step.base)
-    for addition in step.additions:
-        if addition.number is None:
-            yield from sorted(addition.members)
-    yield from step.fasteners

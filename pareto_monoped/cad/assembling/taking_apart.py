@@ -5,11 +5,10 @@ to j where i, moved along a direction, runs into j. A set that contains all that
 direction as a whole. Fasteners whose keys have room are undone first; all others tie the bodies that they thread into.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembling.bodies import DIRECTIONS, Blocking, Bools
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS
@@ -85,8 +84,8 @@ def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
         )
     split = _best_split(blocking, rest, undone)
     if split is None:
-        lasting = blocking.lasting[np.ix_(sorted(everything), sorted(everything))]
-        return Whole(members=everything, stuck=bool(_pieces(lasting).any()))
+        lasting = _masks(blocking.lasting[np.ix_(sorted(everything), sorted(everything))])
+        return Whole(members=everything, stuck=len(list(_pieces(lasting, (1 << len(lasting)) - 1))) > 1)
     out, leaving = split
     leaving, staying, crossing = _shared(blocking, out, leaving, rest - leaving, undone)
     if len(leaving) > len(staying):
@@ -125,20 +124,21 @@ def _undone(blocking: Blocking, members: Members) -> Members:
 def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str, Members] | None:
     """A direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced halves."""
     order = sorted(rest)
-    touching = blocking.touching[np.ix_(order, order)]
+    everything = (1 << len(order)) - 1
+    touching = _masks(blocking.touching[np.ix_(order, order)])
     best: tuple[tuple[int, int, int], str, Members] | None = None
     for direction in DIRECTIONS:
         if best is not None and direction not in blocking.along:
             break  # across the axis only what does not leave along it
-        reach = _closure(_edges(blocking, direction, order))
-        seen: set[Members] = set()
-        for k, row in enumerate(_candidates(blocking, order, reach, touching)):
-            leaving = frozenset(order[m] for m in np.flatnonzero(row).tolist())
-            if not 0 < len(leaving) < len(rest) or leaving in seen:
+        reach = _masks(_closure(_edges(blocking, direction, order)))
+        seen: set[int] = set()
+        for k, mask in enumerate(_candidates(blocking, order, reach, touching)):
+            if mask in (0, everything) or mask in seen:
                 continue
-            seen.add(leaving)
+            seen.add(mask)
+            leaving = frozenset(order[m] for m in _bits(mask))
             # What falls to pieces once the set has gone has to be held in its place meanwhile.
-            pieces = int(_pieces(touching[np.ix_(~row, ~row)]).max())
+            pieces = sum(1 for _ in _pieces(touching, everything & ~mask)) - 1
             cost = _cuts(blocking, leaving, rest - leaving) + _PIECE * pieces
             score = (cost, -min(len(leaving), len(rest) - len(leaving)), k)
             if best is None or score < best[0]:
@@ -162,33 +162,62 @@ def _closure(edges: Bools) -> Bools:
     return np.asarray(reach)
 
 
-def _candidates(blocking: Blocking, order: list[int], reach: Bools, touching: Bools) -> Iterator[Bools]:
+def _candidates(
+    blocking: Blocking, order: Sequence[int], reach: Sequence[int], touching: Sequence[int]
+) -> Iterator[int]:
     """Sets that can leave and hold together: what units, and then single bodies, take with them.
 
     Of a set in several pieces each piece that runs into no other can leave by itself.
+
+    Args:
+        blocking: the bodies.
+        order: which of them are looked at.
+        reach: per body a mask of what it takes with it.
+        touching: per body a mask of what it touches.
+
+    Yields:
+        masks of sets.
     """
     units = [blocking.bodies[k].unit for k in order]
-    seeds = [np.array([name == unit for name in units]) for unit in dict.fromkeys(units)]
-    rows = np.stack([*(reach[members].any(axis=0) for members in seeds), *reach])
-    _, first = np.unique(rows, axis=0, return_index=True)
-    for row in rows[np.sort(first)]:
-        inside = np.flatnonzero(row)
-        labels = _pieces(touching[np.ix_(inside, inside)])
-        for label in range(int(labels.max()) + 1):
-            piece = np.zeros(len(order), dtype=bool)
-            piece[inside[labels == label]] = True
-            # A piece may run into another that it does not touch.
-            if np.array_equal(reach[piece].any(axis=0), piece):
-                yield piece
-        if labels.any():
-            yield row
+    seeds = [_united(reach, (k for k, name in enumerate(units) if name == unit)) for unit in dict.fromkeys(units)]
+    for mask in dict.fromkeys([*seeds, *reach]):
+        pieces = list(_pieces(touching, mask))
+        # A piece may run into another that it does not touch.
+        yield from (piece for piece in pieces if _united(reach, _bits(piece)) == piece)
+        if len(pieces) > 1:
+            yield mask
 
 
-def _pieces(touching: Bools) -> NDArray[np.intp]:
-    """To which piece each body belongs, of bodies that touch each other or do not, shape (n,)."""
-    from scipy.sparse.csgraph import connected_components
+def _masks(rows: Bools) -> list[int]:
+    """Each row as an integer whose bit m is the row's element m."""
+    return [int.from_bytes(row.tobytes(), "little") for row in np.packbits(rows, axis=1, bitorder="little")]
 
-    return np.asarray(connected_components(touching, directed=False)[1], dtype=np.intp)
+
+def _bits(mask: int) -> Iterator[int]:
+    """Numbers of the bits that are set, from the lowest."""
+    while mask:
+        low = mask & -mask
+        yield low.bit_length() - 1
+        mask ^= low
+
+
+def _united(masks: Sequence[int], members: Iterable[int]) -> int:
+    """All that some of the masks hold."""
+    found = 0
+    for k in members:
+        found |= masks[k]
+    return found
+
+
+def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
+    """The pieces into which a set of bodies falls, as masks, from that of the lowest body."""
+    while mask:
+        piece = fresh = mask & -mask
+        while fresh:
+            fresh = _united(touching, _bits(fresh)) & mask & ~piece
+            piece |= fresh
+        yield piece
+        mask &= ~piece
 
 
 def _cuts(blocking: Blocking, one: Members, other: Members) -> int:

@@ -109,11 +109,6 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
         paper.circle(*point(origin, level), _ORIGIN_MM)
 
 
-def ladder_depth(marks: Sequence[Mark]) -> float:
-    """How far a ladder reaches beyond its level."""
-    return _JOG_MM + _TAIL_MM + 0.8 + max((width_mm(mark.text, LETTER_MM) for mark in marks), default=0.0)
-
-
 def fits_between(text: str, span: float) -> bool:
     """Whether a text fits over a dimension line of this length."""
     return span >= width_mm(text, LETTER_MM) + 2.0

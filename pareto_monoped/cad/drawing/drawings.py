@@ -10,12 +10,10 @@ from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.pdf import pdf
 from pareto_monoped.cad.drawing.sheet import Title, titled
-from pareto_monoped.cad.product import Product, UniquePart
+from pareto_monoped.cad.product import ListedPart, Product
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 
-ASSEMBLY = "assembly"
-"""Name of the assembly's drawing; no part has it."""
 _TOLERANCES: Mapping[str, tuple[str, str]] = {
     "machined": ("ISO 2768-mK", "3.2"),
     "laser cut": ("ISO 2768-mK", "12.5"),
@@ -52,13 +50,13 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
     )
 
 
-def part_drawings(parts: Sequence[UniquePart], origin: Origin) -> dict[str, bytes]:
+def part_drawings(parts: Sequence[ListedPart], origin: Origin) -> dict[str, bytes]:
     """The drawing of every part that is not bought, by the part's name."""
     made = [unique for unique in parts if unique.part.process != "bought"]
     return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, 1)}
 
 
-def part_drawing(unique: UniquePart, origin: Origin, number: int) -> bytes:
+def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
     """The drawing of one part.
 
     Args:

@@ -3,6 +3,8 @@
 The kernel holds Python's lock while it works, so that a thread would gain nothing; in its own process it builds, checks
 and writes solids while this one simulates, makes meshes and draws. The process is started once and serves every later
 export. It ends with this one, or by ``give_up``: it keeps nothing, so that it is killed and nobody waits for it.
+
+An export so has two processes. Once the solids are made the second one also draws, see ``do``.
 """
 
 import atexit
@@ -10,14 +12,14 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from queue import SimpleQueue
 from threading import Thread
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,9 @@ from numpy.typing import NDArray
 from pareto_monoped.geometry.parts import Part
 
 Floats = NDArray[np.float64]
+Answer = TypeVar("Answer")
+Question = str | Callable[..., Any]
+"""What is asked: the name of an answer that needs the CAD kernel, or a function of any module."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,12 +96,22 @@ def kill() -> None:
 
 def solid_facts(parts: Sequence[Part]) -> "Future[list[SolidFacts]]":
     """Facts of the solids of some parts, in their order."""
-    return _process().ask("solid_facts", list(parts))
+    return _process().ask("solid_facts", (list(parts),))
 
 
 def step_files(assembly: StepAssembly) -> "Future[tuple[bytes, dict[str, bytes]]]":
     """The STEP file of the assembly, and those of its unique parts by name."""
-    return _process().ask("step_files", assembly)
+    return _process().ask("step_files", (assembly,))
+
+
+def do(function: Callable[..., Answer], *arguments: Any) -> "Future[Answer]":
+    """Call a function in the kernel's process, once it has answered all earlier questions.
+
+    Args:
+        function: of a module, as it is sent by its name.
+        arguments: all that it needs; they are copied.
+    """
+    return _process().ask(function, arguments)
 
 
 class _Process:
@@ -113,35 +128,35 @@ class _Process:
             env=environment,
             process_group=0,
         )
-        self.questions: SimpleQueue[tuple[Future[Any], str, Any] | None] = SimpleQueue()
+        self.questions: SimpleQueue[tuple[Future[Any], Question, tuple[Any, ...]] | None] = SimpleQueue()
         self.last: Future[Any] | None = None
         # A daemon: the end of this process does not wait for an answer.
         self.line = Thread(target=self._serve, name="cad-kernel", daemon=True)
         self.line.start()
         atexit.register(self.close)
 
-    def ask(self, question: str, argument: Any) -> "Future[Any]":
+    def ask(self, question: Question, arguments: tuple[Any, ...]) -> "Future[Any]":
         future: Future[Any] = Future()
         self.last = future
-        self.questions.put((future, question, argument))
+        self.questions.put((future, question, arguments))
         return future
 
     def _serve(self) -> None:
         """Ask one question after the other until None comes."""
         while (asked := self.questions.get()) is not None:
-            future, question, argument = asked
+            future, question, arguments = asked
             try:
-                answer = self._talk(question, argument)
+                answer = self._talk(question, arguments)
             except Exception as problem:
                 future.set_exception(problem)
             else:
                 future.set_result(answer)
 
-    def _talk(self, question: str, argument: Any) -> Any:
+    def _talk(self, question: Question, arguments: tuple[Any, ...]) -> Any:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         try:
-            pickle.dump((question, argument), self.process.stdin)
+            pickle.dump((question, arguments), self.process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
             self.process.stdin.flush()
             answer = pickle.load(self.process.stdout)  # noqa: S301 - from our own process
         except (OSError, EOFError, pickle.UnpicklingError) as problem:

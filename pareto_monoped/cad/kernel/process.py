@@ -59,11 +59,11 @@ def serve(questions: BinaryIO, answers: BinaryIO) -> None:
     """Answer questions until their stream ends; an exception is sent back as the answer."""
     while True:
         try:
-            question, argument = pickle.load(questions)  # noqa: S301 - from the process that started this one
+            question, arguments = pickle.load(questions)  # noqa: S301 - from the process that started this one
         except EOFError:
             return
         try:
-            answer = _ANSWERS[question](argument)
+            answer = (_ANSWERS[question] if isinstance(question, str) else question)(*arguments)
         except Exception as problem:
             answer = problem
         pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)

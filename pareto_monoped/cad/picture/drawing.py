@@ -39,6 +39,38 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Faces:
+    """What a viewer sees of a body, in the axes of the view: right, up and towards the viewer.
+
+    Attributes:
+        box_mm: low and high corner of the body, shape (2, 3).
+        corners_mm: of the triangles that look at the viewer, shape (n, 3, 3).
+        light: how bright each of them is, shape (n,).
+    """
+
+    box_mm: Floats
+    corners_mm: Floats
+    light: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shown:
+    """Faces in a picture.
+
+    Attributes:
+        faces: of a body.
+        colour: of the body.
+        number: of the row in the legend that names it; 0 for none.
+        move_mm: in the axes of the view, shape (3,).
+    """
+
+    faces: Faces
+    colour: Colour
+    number: int
+    move_mm: Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Drawn:
     """A picture, and what is where in it.
 
@@ -46,21 +78,11 @@ class Drawn:
         image: shape (height, width, 3).
         numbers: number of the body that is seen at each pixel, 0 for none, shape (height, width).
         px_per_mm: scale in the plane of the picture.
-        axes: rows right, up and towards the viewer, shape (3, 3).
-        middle_mm: point along right and up that is in the middle of the picture, shape (2,).
     """
 
     image: NDArray[np.uint8]
     numbers: NDArray[np.int64]
     px_per_mm: float
-    axes: Floats
-    middle_mm: Floats
-
-    def pixel(self, point_mm: Floats) -> tuple[float, float]:
-        """Where a point of the scene is in the picture: right and down from its upper left corner."""
-        height, width, _ = self.image.shape
-        right, up = self.axes[:2] @ point_mm - self.middle_mm
-        return 0.5 * width + right * self.px_per_mm, 0.5 * height - up * self.px_per_mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,46 +101,62 @@ class View:
         return np.stack([right, np.cross(back, right), back])
 
 
-def draw(bodies: Sequence[Body], view: View, *, width: int, height: int, margin: float = 0.04) -> Drawn:
+def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> Faces:
+    """What a viewer sees of a body.
+
+    Args:
+        points_mm: corners, shape (n, 3).
+        triangles: indices of corners, shape (m, 3).
+        axes: of the view, see ``View.axes``.
+    """
+    points = points_mm @ axes.T
+    corners = points[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    facing = normal[:, 2] > 1e-9 * np.maximum(length, 1e-12)
+    return Faces(
+        box_mm=np.stack([points.min(axis=0), points.max(axis=0)]),
+        corners_mm=corners[facing],
+        light=_lit(normal[facing] / length[facing, None]),
+    )
+
+
+def draw(bodies: Sequence[Body], view: View, *, width: int, height: int) -> Drawn:
     """A picture of all bodies, scaled to fill it."""
+    axes, still = view.axes(), np.zeros(3)
+    shown = [
+        Shown(
+            faces=faces_of(body.points_mm, body.triangles, axes), colour=body.colour, number=body.number, move_mm=still
+        )
+        for body in bodies
+    ]
+    return draw_faces(shown, width=width, height=height)
+
+
+def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float = 0.04) -> Drawn:
+    """A picture of faces that one viewer sees, scaled to fill it."""
     from pareto_monoped.cad.picture import raster
 
-    axes = view.axes()
     # Two by two pixels are drawn per pixel of the picture, which smooths edges.
     w, h = 2 * width, 2 * height
-    points = [body.points_mm @ axes.T for body in bodies]
-    low = np.min([p[:, :2].min(axis=0) for p in points], axis=0)
-    high = np.max([p[:, :2].max(axis=0) for p in points], axis=0)
-    scale = min(w / (high[0] - low[0]), h / (high[1] - low[1])) * (1.0 - 2.0 * margin)
-    middle = 0.5 * (low + high)
-    corners, shade, owner = [], [], []
-    for index, (body, p) in enumerate(zip(bodies, points, strict=True)):
-        triangle = p[body.triangles]
-        normal = np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0])
-        length = np.linalg.norm(normal, axis=1)
-        facing = normal[:, 2] > 1e-9 * np.maximum(length, 1e-12)
-        triangle, normal = triangle[facing], normal[facing] / length[facing, None]
-        corners.append(triangle)
-        shade.append(_lit(normal)[:, None] * np.asarray(body.colour))
-        owner.append(np.full(len(triangle), index))
-    triangles = np.concatenate(corners)
-    pixels = np.empty_like(triangles)
-    pixels[..., 0] = 0.5 * w + (triangles[..., 0] - middle[0]) * scale
-    pixels[..., 1] = 0.5 * h - (triangles[..., 1] - middle[1]) * scale
-    pixels[..., 2] = triangles[..., 2]
-    count = len(triangles)
+    boxes = np.array([one.faces.box_mm + one.move_mm for one in shown])
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    scale = float(np.min(np.array([w, h]) / (high - low)[:2])) * (1.0 - 2.0 * margin)
+    # From the view's millimetres to pixels to the right, pixels down and millimetres towards the viewer.
+    stretch = np.array([scale, -scale, 1.0])
+    start = np.array([0.5 * w, 0.5 * h, 0.0]) - 0.5 * (low + high) * stretch * (1.0, 1.0, 0.0)
+    pixels = np.concatenate([one.faces.corners_mm * stretch + (one.move_mm * stretch + start) for one in shown])
+    count = len(pixels)
     winner, depth = np.full((h, w), count, dtype=np.int32), np.full((h, w), -np.inf)
     raster.nearest(pixels, winner, depth)
-    owners = np.concatenate([*owner, [-1]]).astype(np.int32)
-    colours = np.concatenate([*shade, _PAPER[None]])
+    owners = np.repeat(np.arange(len(shown) + 1, dtype=np.int32), [*(len(one.faces.light) for one in shown), 1])
+    colours = np.concatenate([*(one.faces.light[:, None] * np.asarray(one.colour) for one in shown), _PAPER[None]])
     image = raster.composed(winner, depth, owners, colours, _LINE, _LINE_DEPTH_MM + 6.0 / scale)
-    number = np.array([*(body.number for body in bodies), 0])
+    number = np.array([*(one.number for one in shown), 0])
     return Drawn(
-        image=np.asarray(np.clip(image * 255.0 + 0.5, 0, 255), dtype=np.uint8),
+        image=np.clip(image * 255.0 + 0.5, 0, 255).astype(np.uint8),
         numbers=number[owners[winner[::2, ::2]]],
         px_per_mm=0.5 * scale,
-        axes=axes,
-        middle_mm=middle,
     )
 
 

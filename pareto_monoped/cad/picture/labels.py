@@ -72,12 +72,17 @@ def labelled(drawn: Drawn, legend: Sequence[Row], *, legend_width: int = 330) ->
 
 def _seen(numbers: NDArray[np.int64], legend: Sequence[Row]) -> tuple[NDArray[np.int64], list[Row]]:
     """Pixels and rows with the bodies that can be seen numbered from 1."""
-    seen = set(np.unique(numbers).tolist())
+    seen = set(_present(numbers))
     rows = [row for row in legend if row.number in seen]
     new = np.zeros(1 + max(row.number for row in legend), dtype=np.int64)
     for k, row in enumerate(rows, 1):
         new[row.number] = k
     return new[numbers], [replace(row, number=k) for k, row in enumerate(rows, 1)]
+
+
+def _present(numbers: NDArray[np.int64]) -> list[int]:
+    """The different numbers of a picture, all of which are small, in rising order."""
+    return np.flatnonzero(np.bincount(numbers.ravel())).tolist()
 
 
 def bar_mm(px_per_mm: float, width_px: int) -> float:
@@ -94,7 +99,7 @@ def balloons(numbers: NDArray[np.int64]) -> list[Balloon]:
         numbers: of the body at each pixel, 0 for none, shape (height, width).
     """
     height, width = numbers.shape
-    inside = [(number, *_innermost(numbers == number)) for number in np.unique(numbers[numbers > 0]).tolist()]
+    inside = [(number, *_innermost(numbers == number)) for number in _present(numbers) if number]
     by_height = sorted(inside, key=lambda found: found[2])
     half = (len(by_height) + 1) // 2
     rows = ((by_height[:half], 0.5 * STRIP_PX), (by_height[half:], height + 1.5 * STRIP_PX))

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.shape.beveled import beveled, has_cone
-from pareto_monoped.cad.shape.closed import edge_numbers, flaws, place_numbers
+from pareto_monoped.cad.shape.closed import edge_numbers, place_numbers
 from pareto_monoped.cad.shape.outlines import all_polygons
-from pareto_monoped.cad.shape.stacks import regrouped
+from pareto_monoped.cad.shape.stacks import is_on, regrouped
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
@@ -42,11 +42,6 @@ class Mesh:
     points_mm: NDArray[np.float64]
     triangles: NDArray[np.int64]
     body: m3.Manifold
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether every edge borders two triangles, which run along it in opposite directions, in its file too."""
-        return not flaws(self.points_mm[self.triangles])
 
     @property
     def volume_mm3(self) -> float:
@@ -77,6 +72,30 @@ def _united(prisms: Sequence[Prism], balls: Sequence[Ball], bevels: Sequence[Bev
     if any(has_cone(bevel) for bevel in bevels):
         mesh = _mesh_of(*beveled(mesh.points_mm, mesh.triangles, bevels))
     return _welded(mesh)
+
+
+def shell_of(part: Part, tolerance_mm: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangles that show a part: its prisms and balls one by one, with the cones on them, in its own frame.
+
+    The pieces are not united, which would take four fifths of the time: inside the part there are faces that nobody
+    sees. A cone on an edge that only the united part has is left out.
+
+    Returns:
+        points in millimetres, shape (n, 3), and indices of points, shape (m, 3).
+    """
+    left = [bevel for bevel in part.bevels if has_cone(bevel)]
+    points, triangles, count = [], [], 0
+    pieces: list[Prism | Ball] = [*regrouped(part.prisms), *part.balls]
+    for piece in pieces:
+        body = _extruded(piece, tolerance_mm) if isinstance(piece, Prism) else _ball(piece, tolerance_mm)
+        mesh = mesh_from(body)
+        own = [bevel for bevel in left if isinstance(piece, Prism) and is_on(bevel, piece)]
+        left = [bevel for bevel in left if bevel not in own]
+        corners, faces = beveled(mesh.points_mm, mesh.triangles, own)
+        points.append(corners)
+        triangles.append(faces + count)
+        count += len(corners)
+    return np.concatenate(points), np.concatenate(triangles)
 
 
 def _exact(prism: Prism) -> Prism:

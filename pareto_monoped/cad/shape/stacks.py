@@ -37,12 +37,17 @@ def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
 
 def stands_on(bevel: Bevel, prism: Prism) -> bool:
     """Whether the edge of a bevel that takes away is one of this prism's, which is high enough for it."""
+    takes = bevel.hole or float(bevel.edge_mm) <= float(bevel.at.radius_mm)
+    return takes and is_on(bevel, prism)
+
+
+def is_on(bevel: Bevel, prism: Prism) -> bool:
+    """The same of any bevel: that of a countersunk head adds to its shank."""
     face, end = float(bevel.face_mm), float(bevel.end_mm)
     low, high = float(prism.z0_mm), float(prism.z1_mm)
     shapes = prism.holes if bevel.hole else (prism.outline,)
     at_face = abs(face - (low if end > face else high)) < _TOUCH_MM
-    takes = bevel.hole or float(bevel.edge_mm) <= float(bevel.at.radius_mm)
-    return takes and bevel.at in shapes and at_face and abs(end - face) < high - low - _TOUCH_MM
+    return bevel.at in shapes and at_face and abs(end - face) < high - low - _TOUCH_MM
 
 
 def without_teeth(prism: Prism, bevels: Sequence[Bevel]) -> tuple[Prism, ...]:

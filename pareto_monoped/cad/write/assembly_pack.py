@@ -9,8 +9,8 @@ from pareto_monoped.cad.assembling.taking_apart import stuck, take_apart
 from pareto_monoped.cad.assembly import Instance, instances
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.picture.drawing import png
-from pareto_monoped.cad.picture.step_scenes import step_scene
-from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.picture.step_scenes import stage_of, step_picture
+from pareto_monoped.cad.product import Listed
 from pareto_monoped.cad.write import triangles
 from pareto_monoped.cad.write.foot_mould import foot_mould, rubber_ml
 from pareto_monoped.cad.write.hardware import hardware, items, tightening
@@ -37,7 +37,7 @@ td,th{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:to
 section{break-inside:avoid;margin:1.5em 0}h2{margin-top:2em}"""
 
 
-def assembly_pack(product: Product) -> dict[str, bytes]:
+def assembly_pack(product: Listed) -> dict[str, bytes]:
     """Content by path in the export's folder.
 
     Raises:
@@ -50,7 +50,8 @@ def assembly_pack(product: Product) -> dict[str, bytes]:
         names = ", ".join(_name(blocking, k) for k in sorted(members))
         raise CheckError(f"assembly: {names} cannot be put together along straight lines with room for keys")
     steps = steps_of(assembly)
-    made = {f"{FOLDER}/step_{step.number:02d}.png": png(step_scene(step, blocking, placed).picture()) for step in steps}
+    stage = stage_of(blocking, placed)
+    made = {f"{FOLDER}/step_{step.number:02d}.png": png(step_picture(step, stage)) for step in steps}
     foot, block = (_one(product, role) for role in (Role.FOOT, None))
     halves = foot_mould(foot, block)
     for name, half in zip(("front", "back"), halves, strict=True):
@@ -60,7 +61,7 @@ def assembly_pack(product: Product) -> dict[str, bytes]:
     return made
 
 
-def _one(product: Product, role: Role | None) -> Part:
+def _one(product: Listed, role: Role | None) -> Part:
     """The part with a role; without one, what the foot is moulded onto."""
     foot = next(unique.part for unique in product.unique if unique.part.role is Role.FOOT)
     if role is not None:
@@ -74,7 +75,7 @@ def _name(blocking: Blocking, body: int) -> str:
 
 
 def _page(
-    product: Product, steps: Sequence[Step], blocking: Blocking, placed: Sequence[Instance], foot: Part
+    product: Listed, steps: Sequence[Step], blocking: Blocking, placed: Sequence[Instance], foot: Part
 ) -> Iterator[str]:
     yield f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Assembly</title><style>{_STYLE}</style>'
     yield "<h1>Assembly</h1>"
@@ -141,7 +142,7 @@ def _listed(members: Sequence[int], blocking: Blocking) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def _screws(product: Product) -> Iterator[tuple[str, ...]]:
+def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
     for unique in product.unique:
         if unique.part.role in FASTENERS:
             torque, lock = tightening(unique.part)
@@ -150,7 +151,7 @@ def _screws(product: Product) -> Iterator[tuple[str, ...]]:
             yield text, str(unique.count), where, torque, lock
 
 
-def _chain(product: Product) -> Iterator[str]:
+def _chain(product: Listed) -> Iterator[str]:
     """How the chain is tensioned."""
     notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
@@ -164,7 +165,7 @@ def _chain(product: Product) -> Iterator[str]:
     yield "<li>Lock the nuts. Look again after the first 20 jumps, when the chain has bedded in.</li></ol>"
 
 
-def _printing(product: Product, foot: Part) -> Iterator[str]:
+def _printing(product: Listed, foot: Part) -> Iterator[str]:
     """Settings of all printed parts, the mould among them, and how the foot is cast."""
     yield "<h2>Printing</h2>"
     rows = [

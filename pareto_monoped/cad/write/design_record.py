@@ -8,10 +8,9 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import motor_values
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.cad.as_built import Built
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
-from pareto_monoped.robot.build import Robot
 from pareto_monoped.study.provenance import digest
 
 _DIGITS = 12
@@ -24,10 +23,8 @@ MADE_BY = f"pareto-monoped {__version__}"
 def design_record(
     *,
     searched: Design,
-    built: Design,
-    robot: Robot,
+    built: Built,
     actuator_map: ActuatorMap,
-    pose: Pose,
     jumps: Mapping[str, Mapping[str, Any]],
     calibration: Calibration,
     source: Mapping[str, Any] | None,
@@ -38,36 +35,34 @@ def design_record(
 
     Args:
         searched: the design as the search found it.
-        built: the design as it was built.
-        robot: the robot of ``built``.
+        built: the same as it was built.
         actuator_map: where its gearboxes come from.
-        pose: joint angles of the assembly.
         jumps: by ``searched`` and ``as_built``: the results of both simulations.
         calibration: the jump model of both.
         source: where the design comes from.
         formats: what was written.
         strength: whether every joint had to have its required safety factor.
     """
-    rules, motor_data = actuator_map.settings.rules, motor_values(robot.hip.motor)
+    rules, motor_data = actuator_map.settings.rules, motor_values(built.robot.hip.motor)
     return {
         "made_by": MADE_BY,
-        "motor": robot.hip.motor.name,
+        "motor": built.robot.hip.motor.name,
         "calibration": calibration.label,
         # Records made before there were other rules do not name them.
         **({} if rules == "paper" else {"rules": rules}),
         "source": dict(source or {}),
         "searched": searched.as_dict(),
         "design_hash": digest({"searched": searched.as_dict(), "rules": rules, "motor": motor_data})[:_DIGITS],
-        "as_built": built.as_dict(),
+        "as_built": built.design.as_dict(),
         "jumps": {name: dict(jump) for name, jump in jumps.items()},
-        "mass_kg": robot.mass_kg,
+        "mass_kg": built.robot.mass_kg,
         "strength": strength,
-        "pose": {"hip_rad": pose.hip_rad, "knee_rad": pose.knee_rad},
+        "pose": {"hip_rad": built.pose.hip_rad, "knee_rad": built.pose.knee_rad},
         "actuators": {
             name: _actuator(actuator) | ({"stand_in": note} if (note := actuator_map.stand_in(ratio)) else {})
             for name, actuator, ratio in (
-                ("hip", robot.hip, searched.hip_ratio),
-                ("knee", robot.knee, searched.knee_ratio),
+                ("hip", built.robot.hip, searched.hip_ratio),
+                ("knee", built.robot.knee, searched.knee_ratio),
             )
         },
         "formats": list(formats),

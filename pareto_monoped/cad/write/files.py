@@ -1,7 +1,7 @@
 """Which file of an export holds what."""
 
 from collections.abc import Collection, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.drawing import drawings
+from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
@@ -70,23 +71,10 @@ def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> 
         write(folder, path, content)
 
 
-def part_sheets(product: Product, record: Mapping[str, Any], threads: Executor) -> Future[dict[str, bytes]]:
-    """The drawings of all parts that are made, by their names, which threads draw from now on."""
-    return threads.submit(drawings.part_drawings, product.unique, drawings.origin_of(record))
-
-
-def write_sheets(folder: Path, product: Product, record: Mapping[str, Any], parts: Mapping[str, bytes]) -> None:
-    """Write the drawings of the parts, and that of the assembly."""
-    for name, content in parts.items():
-        write(folder, f"drawings/{safe(name)}.pdf", content)
-    write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
-
-
-def write_solids(folder: Path, assembly: bytes, parts: Mapping[str, bytes]) -> None:
-    """Write the STEP files that the kernel made: of the assembly, and of each unique part by its name."""
-    write(folder, "assembly.step", assembly)
-    for name, content in parts.items():
-        write(folder, f"parts/step/{safe(name)}.step", content)
+def write_assembly_sheet(folder: Path, product: Product, record: Mapping[str, Any], formats: Collection[str]) -> None:
+    """Write the drawing of the assembly."""
+    if "pdf" in formats:
+        write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
 
 
 def write_models(
@@ -114,15 +102,15 @@ def write_models(
         write(folder, "model/monoped.urdf", urdf.urdf(arrays, calibration.joints, shown, solid))
 
 
-def pictures(product: Product, threads: Executor) -> dict[str, Future[bytes]]:
-    """PNG files by name, which threads draw from now on."""
+def pictures(product: Product) -> dict[str, Future[bytes]]:
+    """PNG files by name, which the kernel's process draws from now on."""
     shown = {
         "assembly.png": scenes.assembly_scene(product),
         "exploded.png": scenes.exploded_scene(product),
         **{f"{unit}_section.png": scenes.section_scene(product, unit) for unit in ACTUATOR_UNITS},
         "knee_joint_section.png": scenes.knee_scene(product),
     }
-    return {name: threads.submit(_drawing, scene) for name, scene in shown.items()}
+    return {name: kernel.do(_drawing, scene) for name, scene in shown.items()}
 
 
 def _drawing(scene: scenes.Scene) -> bytes:

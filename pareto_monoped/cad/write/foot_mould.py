@@ -16,8 +16,8 @@ COLLAR_MM = 12.0
 """How far the halves reach up beside the foot's block, which they hold in its place."""
 PLAY_MM = 0.15
 """Around the block: what a printed hole is too small by."""
-PIN_MM, PIN_DEPTH_MM = 4.0, 8.0
-"""Dowel pins 4 x 16 (ISO 2338) that align the halves, and their depth in each."""
+PIN_DEPTH_MM = 8.0
+"""Depth in each half of the dowel pins 4 x 16 (ISO 2338) that align them."""
 _PIN_HOLE = 4.2
 POUR_MM = 6.0
 """Diameter of the holes for pouring and for the air, beside the block."""

@@ -5,7 +5,7 @@ import io
 import re
 from dataclasses import dataclass
 
-from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.product import Listed
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Role
 from pareto_monoped.geometry.tightening import LOCKER
@@ -37,7 +37,7 @@ class Item:
     remarks: list[str]
 
 
-def items(product: Product) -> list[Item]:
+def items(product: Listed) -> list[Item]:
     """Everything that is bought, equal designations together, by kind and in the order of the assembly."""
     found: dict[tuple[str, str], Item] = {}
     for unique in product.unique:
@@ -66,7 +66,7 @@ def items(product: Product) -> list[Item]:
     return sorted(found.values(), key=lambda item: item.kind)
 
 
-def hardware(product: Product) -> str:
+def hardware(product: Listed) -> str:
     """The purchasing list as CSV."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")

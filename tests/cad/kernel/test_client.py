@@ -1,6 +1,7 @@
 """The kernel's process answers, says what went wrong, and is replaced when it dies."""
 
 import dataclasses
+import os
 import signal
 
 import numpy as np
@@ -46,6 +47,14 @@ def test_what_goes_wrong_there_is_raised_here_and_the_next_question_is_answered(
     bad = dataclasses.replace(PLATE, prisms=(dataclasses.replace(PLATE.prisms[0], outline="no shape"),))
     with pytest.raises(TypeError, match="no outline for a shape of kind str"):
         kernel.solid_facts([bad]).result()
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+
+
+def test_any_function_is_called_there_and_its_exception_raised_here():
+    assert kernel.do(os.getpid).result() == kernel._process().process.pid
+    assert kernel.do(max, 3, 7).result() == 7
+    with pytest.raises(ZeroDivisionError, match="division"):
+        kernel.do(divmod, 1, 0).result()
     assert kernel.solid_facts([PLATE]).result()[0].valid
 
 

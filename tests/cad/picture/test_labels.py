@@ -41,13 +41,6 @@ def test_the_scale_bar_is_as_long_as_a_part_of_its_length():
     assert (bar[-1] - bar[0]) / (red[-1] - red[0]) == pytest.approx(length / 100.0, abs=0.01)
 
 
-def test_a_point_is_found_at_its_pixel():
-    drawn = draw([plate(0.0, 100.0, 0.0, 20.0, 1)], FRONT, width=800, height=300)
-    x, y = drawn.pixel(np.array([100.0, 0.0, 20.0]))
-    rows, columns = np.nonzero(drawn.numbers)
-    assert (x, y) == (pytest.approx(columns.max() + 1, abs=1.5), pytest.approx(rows.min(), abs=1.5))
-
-
 def test_numbers_point_into_their_parts_in_order_and_apart():
     drawn = draw([plate(10.0 * k, 10.0 * k + 9.0, 0.0, 30.0, k + 1) for k in range(12)], FRONT, width=900, height=300)
     found = balloons(drawn.numbers)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.cad.shape.closed import flaws
 from pareto_monoped.cad.write import triangles
 from pareto_monoped.cad.write.assembly_pack import assembly_pack
 from pareto_monoped.cad.write.foot_mould import COLLAR_MM, foot_mould
@@ -16,7 +17,7 @@ from pareto_monoped.geometry.roles import FASTENERS, Role
 
 @pytest.fixture(scope="module")
 def pack(product):
-    return assembly_pack(product)
+    return assembly_pack(product.listed)
 
 
 def rows_of(pack):
@@ -64,7 +65,7 @@ def test_the_mould_is_watertight_and_its_cavity_is_the_foot_without_its_pocket(p
     block = parts[foot.joint.partner]
     halves = foot_mould(foot, block)
     for half in halves:
-        assert half.is_closed
+        assert flaws(half.points_mm[half.triangles]) == ""
         assert trimesh.load(io.BytesIO(triangles.stl(half)), file_type="stl").is_watertight
     (ball,) = foot.balls
     radius, top = float(ball.radius_mm), float(ball.top_mm)

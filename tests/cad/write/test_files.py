@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import re
-from concurrent.futures import ThreadPoolExecutor
 
 import build123d as bd
 import ezdxf
@@ -19,6 +18,7 @@ from PIL import Image
 
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.picture.scenes import section_scene
+from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.dxf import LAYER, dxf, is_flat
@@ -110,7 +110,7 @@ def test_glb_shares_geometry_and_stands_upright_in_metres(product):
     scene = trimesh.load_scene(io.BytesIO(glb(product)), file_type="glb")
     assert len(scene.geometry) == len(product.unique)
     assert len(scene.graph.nodes_geometry) == len(product.instances)
-    bodies = [body.bounding_box() for body in product.world_bodies()]
+    bodies = [placed(unique.mesh.body, i.world).bounding_box() for i, unique in product.placed()]
     low, high = np.min([b[:3] for b in bodies], axis=0), np.max([b[3:] for b in bodies], axis=0)
     # glTF: x to the left, y up, z to the front.
     assert scene.bounds[0] == pytest.approx(1e-3 * low[[1, 2, 0]], abs=1e-5)
@@ -187,8 +187,7 @@ def test_laser_drawings_say_that_they_are_in_millimetres(exported):
 
 
 def test_the_section_shows_the_knee_actuator(product):
-    with ThreadPoolExecutor() as threads:
-        drawn = files.pictures(product, threads)["knee_actuator_section.png"].result()
+    drawn = files.pictures(product)["knee_actuator_section.png"].result()
     knee, hip = (section_scene(product, f"{joint}_actuator") for joint in ("knee", "hip"))
     assert drawn == png(knee.picture())
     assert knee.legend != hip.legend
