@@ -128,6 +128,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                 clearance(M3, (mount,), z0, z1, countersunk="high"),
                 clearance(M4, seats, z0, z1, countersunk="low"),
             ),
+            fits=(Dowel(diameter_mm=d.mount_dowel_mm).hole_fit,),
             note=f"{d.cheek_mm:g} mm sheet",
         ),
         screw_part(

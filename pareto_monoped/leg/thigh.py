@@ -4,6 +4,7 @@ from typing import Literal
 
 import numpy as np
 
+from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
@@ -130,6 +131,7 @@ def _plates(
             ),
             grade=ALLOYS["aw_6082_t6"],
             features=flush(-face, "low"),
+            fits=(Dowel(diameter_mm=d.output_dowel_mm).hole_fit,),
             note=note,
         ),
         Part(
@@ -147,6 +149,7 @@ def _plates(
             ),
             grade=ALLOYS["aw_6082_t6"],
             features=(*flush(half_gap, "high"), clearance(M3, screwed, half_gap, face, countersunk="high")),
+            fits=(Dowel(diameter_mm=d.mount_dowel_mm).hole_fit,),
             note=note + "; carries the knee actuator",
         ),
     )

@@ -16,6 +16,7 @@ _ABOVE_MM, _BELOW_MM = 130.0, 110.0
 """How far the hip's section reaches above and below its axis; the knee's reaches as far as 70 mm either way."""
 _KNEE_MM = 70.0
 _CAPTION_MM = 3.5
+_NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show every item.")
 
 
 def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
@@ -34,7 +35,7 @@ def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
     for size in (A1, A0):
         for scale in (scale for scale in SCALES if scale <= _SECTION_SCALE):
             views = _views(side, cuts, scale)
-            paper = compose(size, views, tables, ["The numbers are the rows of bom.csv."])
+            paper = compose(size, views, tables, _NOTES)
             if paper is not None:
                 return paper, size, scale
     raise ValueError("drawing of the assembly: the robot fits no sheet")

@@ -31,6 +31,8 @@ _NOT_CUT = SCREWS | {Role.BOLT, Role.PIN, Role.SHAFT, Role.ROD}
 # Rows: right, up and towards the viewer of each view, in the assembly's frame.
 _FROM_RIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 _FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+"""The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,12 +50,12 @@ def side_view(product: Product) -> list[Seen]:
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
         if instance.part.visibility is Visibility.INSIDE:
             continue
-        body = placed(unique.mesh.body, _to_view(_FROM_RIGHT) @ instance.world)
+        body = placed(unique.mesh.body, to_view(_FROM_RIGHT) @ instance.world)
         shown.append((body.bounding_box()[5], item, body))
     found = []
     covered: BaseGeometry = shapely.Polygon()
     for _, item, body in sorted(shown, key=lambda entry: -entry[0]):
-        region = _region(body.project())
+        region = outline_of(body.project())
         visible = region.difference(covered)
         if not visible.is_empty:
             found.append(Seen(item=item, region=visible, cut=False))
@@ -66,11 +68,11 @@ def leg_section(product: Product) -> list[Seen]:
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     found = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
-        body = placed(unique.mesh.body, _to_view(_FROM_FRONT) @ frames[instance.body] @ instance.in_body)
+        body = placed(unique.mesh.body, to_view(_FROM_FRONT) @ frames[instance.body] @ instance.in_body)
         low, high = body.bounding_box()[2], body.bounding_box()[5]
         if low >= 0.0 or high <= 0.0:
             continue
-        region = _region(body.slice(0.0))
+        region = outline_of(body.slice(0.0))
         if not region.is_empty:
             found.append(Seen(item=item, region=region, cut=instance.part.role not in _NOT_CUT))
     return found
@@ -166,14 +168,14 @@ def _balloon(paper: Paper, item: int, at: tuple[float, float], tip: tuple[float,
     paper.fill(dot)
 
 
-def _to_view(axes: Floats) -> Floats:
+def to_view(axes: Floats) -> Floats:
     """From the assembly's frame to a view's."""
     matrix = np.eye(4)
     matrix[:3, :3] = axes
     return matrix
 
 
-def _region(section: m3.CrossSection) -> BaseGeometry:
+def outline_of(section: m3.CrossSection) -> BaseGeometry:
     """A region of the plane as a Shapely geometry."""
     rings = [np.asarray(ring) for ring in section.to_polygons() if len(ring) > 2]
     # Manifold gives outer boundaries anticlockwise and holes clockwise; even-odd filling needs no order.

@@ -12,6 +12,7 @@ from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.features import Cone, Hole, Mouth
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.screws import M3, M4, M5, M25
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
 _SAME_MM = 1e-6
@@ -21,6 +22,7 @@ PLACE_FITTED_MM = 0.02
 size, so that planets share their load (our own choice)."""
 PLACE_SCREWS_MM = 0.1
 """Likewise of screws: half of the 0.2 mm by which an M3 clearance hole is wider (ISO 273, fine); two parts share it."""
+_SCREWS = (M25, M3, M4, M5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +66,12 @@ class Bore:
         """Diameter of the zone in which their axes must lie; None where general tolerances do."""
         if self.fit is not None and self.count > 1:
             return PLACE_FITTED_MM
-        return PLACE_SCREWS_MM if self.count > 1 and self.feature is not None else None
+        return PLACE_SCREWS_MM if self.count > 1 and (self.feature is not None or self._passes_screws) else None
+
+    @property
+    def _passes_screws(self) -> bool:
+        """Whether they are as wide as a screw's clearance holes; wider ones save weight."""
+        return any(abs(self.radius - screw.hole) < _SAME_MM for screw in _SCREWS)
 
     @property
     def mouths(self) -> tuple[Mouth | None, Mouth | None]:

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from pareto_monoped.cad.drawing.assembly_sheet import assembly_sheet
+from pareto_monoped.cad.drawing.exploded_sheets import exploded_sheets
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.pdf import pdf
@@ -81,7 +82,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
         date=origin.date,
         maker=origin.maker,
     )
-    return _file(_drawn(part, part.fits, part.accuracy_class, part.note), title)
+    return _file([_drawn(part, part.fits, part.accuracy_class, part.note)], title)
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:
@@ -101,7 +102,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
         date=origin.date,
         maker=origin.maker,
     )
-    return _file(assembly_sheet(product), title)
+    return _file([assembly_sheet(product), *exploded_sheets(product)], title)
 
 
 # Designs of one study share most of their parts; a part's note, fits and accuracy do not count when parts are compared.
@@ -111,12 +112,14 @@ def _drawn(part: Part, _fits: tuple[Fit, ...], _accuracy_class: int | None, _not
     return part_sheet(part)
 
 
-def _file(sheet: Sheet, title: Title) -> bytes:
-    drawn, size, scale = sheet
-    paper = Paper()
-    paper.lay(drawn)
-    titled(paper, size, scale, title)
-    return pdf([(paper, size.width_mm, size.height_mm)], f"{title.name}, {title.number}")
+def _file(sheets: Sequence[Sheet], title: Title) -> bytes:
+    pages = []
+    for number, (drawn, size, scale) in enumerate(sheets, 1):
+        paper = Paper()
+        paper.lay(drawn)
+        titled(paper, size, scale, title, f"{number}/{len(sheets)}")
+        pages.append((paper, size.width_mm, size.height_mm))
+    return pdf(pages, f"{title.name}, {title.number}")
 
 
 def _words(name: str) -> str:

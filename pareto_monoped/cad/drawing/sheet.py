@@ -181,10 +181,18 @@ def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
     return lines
 
 
-def titled(paper: Paper, size: Size, scale: float, title: Title) -> None:
-    """Add frame and title block to a sheet."""
+def titled(paper: Paper, size: Size, scale: float, title: Title, number: str = "1/1") -> None:
+    """Add frame and title block to a sheet.
+
+    Args:
+        paper: the sheet.
+        size: of the paper.
+        scale: of the views.
+        title: what the block says.
+        number: of the sheet, over how many there are.
+    """
     _border(paper, size)
-    _title_block(paper, size, scale, title)
+    _title_block(paper, size, scale, title, number)
 
 
 def _border(paper: Paper, size: Size) -> None:
@@ -202,11 +210,11 @@ def _border(paper: Paper, size: Size) -> None:
         paper.line(mark, width_mm=_FRAME_MM)
 
 
-def _title_block(paper: Paper, size: Size, scale: float, title: Title) -> None:
+def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: str) -> None:
     """The block at the lower right: rows of cells, each with a small caption over its value."""
     x0, y0 = size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM
     rows: tuple[tuple[tuple[float, str, str], ...], ...] = (
-        ((80.0, "Name", title.name), (70.0, "Drawing", title.number), (30.0, "Sheet", f"{size.name}   1/1")),
+        ((80.0, "Name", title.name), (70.0, "Drawing", title.number), (30.0, "Sheet", f"{size.name}   {number}")),
         ((80.0, "Design", title.design), (35.0, "Design hash", title.digest), (35.0, "Date of the design", title.date),
          (30.0, "Made by", title.maker)),
         ((80.0, "Material", title.material), (35.0, "Hardness", title.hardness), (25.0, "Mass of one", title.mass),

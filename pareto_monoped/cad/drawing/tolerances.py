@@ -13,6 +13,10 @@ _SEAT_RA, _FIT_RA = "0.8", "1.6"
 """Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
 _COAXIAL = "Ø0.02"
 """Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
+_SQUARE = "0.02"
+"""Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
+13 to 19 micrometres at 50 to 80 mm."""
+_SHOULDERS = "shoulders"
 
 
 def datum_fit(fits: Sequence[Fit]) -> Fit | None:
@@ -22,7 +26,7 @@ def datum_fit(fits: Sequence[Fit]) -> Fit | None:
 
 
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
-    """A row for each fit; None without fits.
+    """A row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without fits.
 
     Args:
         fits: of the part.
@@ -31,14 +35,15 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
     if not fits:
         return None
     first = datum_fit(fits)
-    widths = [max(width_mm(fit.text, LETTER_MM) for fit in fits) + 5.0, 30.0, 16.0, 34.0]
+    located = any(fit is first and fit.seat and single for fit, single in zip(fits, alone, strict=True))
+    names = [*(f"Ø{fit.text}" for fit in fits), *([_SHOULDERS] if located else [])]
+    widths = [max(width_mm(name, LETTER_MM) for name in names) + 3.0, 30.0, 16.0, 34.0]
     high = FRAME_MM + 2.0
     paper = Paper()
-    top = high * (len(fits) + 1)
+    top = high * (len(names) + 1)
     paper.text("Fits (ISO 286-2)", 0.0, top + 1.6)
-    for k, cells in enumerate(
-        [("Face", "Limits", "Ra, µm", "Geometry"), *((f"Ø{fit.text}", _limits(fit), "", "") for fit in fits)]
-    ):
+    rows = [("Face", "Limits", "Ra, µm", "Geometry"), *((f"Ø{fit.text}", _limits(fit), "", "") for fit in fits)]
+    for k, cells in enumerate([*rows, *([(_SHOULDERS, "", _FIT_RA, "")] if located else [])]):
         y, x = top - (k + 1) * high, 0.0
         for cell, width in zip(cells, widths, strict=True):
             paper.text(cell, x + 1.5, y + 0.5 * (high - LETTER_MM))
@@ -54,6 +59,8 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
             frame(paper, ["coaxial", _COAXIAL, DATUM], x, y + 1.0)
         else:
             paper.text("see view", x, y + 0.5 * (high - LETTER_MM))
+    if located:
+        frame(paper, ["square", _SQUARE, DATUM], sum(widths[:3]) + 1.5, 1.0)
     x = 0.0
     for width in (*widths, 0.0):
         paper.line([(x, 0.0), (x, top)])

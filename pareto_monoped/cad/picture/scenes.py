@@ -14,6 +14,7 @@ from pareto_monoped.cad.picture.drawing import Body, View, draw
 from pareto_monoped.cad.picture.labels import Row, labelled, numbered
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_from, placed
+from pareto_monoped.cad.shape.pulled_apart import pulled_apart
 from pareto_monoped.geometry.roles import Visibility
 
 Image = NDArray[np.uint8]
@@ -95,7 +96,8 @@ def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -
     names = {name: sum(instance.unit == name for instance in product.instances) for name in order}
     colours = {name: colour(k) for k, name in enumerate(order)}
     number = {name: k for k, name in enumerate(order, 1)}
-    moves = _pulled_apart(product)
+    boxes = np.array([placed(u.mesh.body, i.world).bounding_box() for i, u in product.placed()])
+    moves = pulled_apart(boxes, axis=1)
     bodies = []
     for (instance, unique), move in zip(product.placed(), moves, strict=True):
         at = instance.world.copy()
@@ -104,36 +106,6 @@ def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -
     view = View(towards=(-1.0, 0.62, -0.42))
     rows = tuple(numbered(names, colours))
     return Scene(bodies=tuple(bodies), view=view, width=width, height=height, legend=rows)
-
-
-def _pulled_apart(product: Product) -> list[float]:
-    """How far each instance moves along y so that parts that lie behind each other come apart."""
-    boxes = np.array([placed(u.mesh.body, i.world).bounding_box() for i, u in product.placed()])
-    low, high = boxes[:, 1], boxes[:, 4]
-    order = np.argsort(0.5 * (low + high), kind="stable")
-    moved = np.zeros(len(boxes))
-    middle = float(np.median(0.5 * (low + high)))
-    right = [k for k in order.tolist() if 0.5 * (low[k] + high[k]) >= middle]
-    left = [k for k in reversed(order.tolist()) if 0.5 * (low[k] + high[k]) < middle]
-    done: list[int] = []  # of both sides: a screw may lie on the other side of the middle than what it is in
-    for side, sign in ((right, 1.0), (left, -1.0)):
-        for k in side:
-            front = float(low[k] if sign > 0.0 else high[k])
-            for other in done:
-                if _beside(boxes[k], boxes[other]):
-                    continue
-                back = float((high if sign > 0.0 else low)[other] + moved[other])
-                moved[k] = sign * max(sign * moved[k], sign * (back - front) + _APART_MM)
-            done.append(k)
-    return [float(move) for move in moved]
-
-
-_APART_MM = 6.0
-
-
-def _beside(one: Floats, other: Floats) -> bool:
-    """Whether two boxes do not lie behind each other along y."""
-    return bool(one[0] >= other[3] or other[0] >= one[3] or one[2] >= other[5] or other[2] >= one[5])
 
 
 def _section(members: Sequence[tuple[Instance, m3.Manifold]], *, width: int, height: int) -> Scene:

@@ -1,5 +1,7 @@
 """DXF drawings of laser-cut plates: the true outline and holes, without kerf, on one layer, in millimetres.
 
+A second layer says in words what is done after cutting: countersinks, threads, reamed holes.
+
 A DXF file is a list of pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12).
 """
 
@@ -7,12 +9,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from pareto_monoped.cad.drawing.bores import bores
+from pareto_monoped.cad.drawing.lettering import TIMES
 from pareto_monoped.cad.shape.curves import Contour, Spline
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Circle, Line
 
 LAYER = "CUT"
+NOTES = "NOTES"
+"""Layer of texts, which the laser must not engrave."""
+_TEXT_MM = 2.5
+_CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))
+"""How R12 writes what is not ASCII."""
 
 Pair = tuple[int, str]
 """A group code and its value."""
@@ -31,11 +40,16 @@ _LAYERS: tuple[Pair, ...] = (
     (2, "TABLES"),
     (0, "TABLE"),
     (2, "LAYER"),
-    (70, "1"),  # number of layers
+    (70, "2"),  # number of layers
     (0, "LAYER"),
     (2, LAYER),
     (70, "0"),  # neither frozen nor locked
     (62, "7"),  # black or white, whichever shows
+    (6, "CONTINUOUS"),
+    (0, "LAYER"),
+    (2, NOTES),
+    (70, "0"),
+    (62, "1"),  # red
     (6, "CONTINUOUS"),
     (0, "ENDTAB"),
     (0, "ENDSEC"),
@@ -44,8 +58,8 @@ _ENTITIES: tuple[Pair, ...] = ((0, "SECTION"), (2, "ENTITIES"))
 _END: tuple[Pair, ...] = ((0, "ENDSEC"), (0, "EOF"))
 
 # Group codes of an entity's values; x of a point has the code given, y that plus 10, z that plus 20.
-_ENTITY, _ON_LAYER, _FIRST_POINT, _SECOND_POINT = 0, 8, 10, 11
-_RADIUS, _START_DEG, _END_DEG = 40, 50, 51
+_ENTITY, _TEXT, _ON_LAYER, _FIRST_POINT, _SECOND_POINT = 0, 1, 8, 10, 11
+_RADIUS, _HEIGHT, _START_DEG, _END_DEG = 40, 40, 50, 51
 
 
 def is_flat(part: Part) -> bool:
@@ -64,8 +78,27 @@ def dxf(part: Part) -> str:
     (prism,) = part.prisms
     drawn = [contour for shape in (prism.outline, *prism.holes) for contour in contours(shape)]
     entities = [pair for contour in drawn for pair in _contour(part.name, contour)]
-    pairs = (*_HEAD, *_LAYERS, *_ENTITIES, *entities, *_END)
+    pairs = (*_HEAD, *_LAYERS, *_ENTITIES, *entities, *_notes(part), *_END)
     return "".join(f"{code}\n{value}\n" for code, value in pairs)
+
+
+def _notes(part: Part) -> Iterator[Pair]:
+    """A text beside the first of all equal holes that are worked on after cutting; the file shows z upwards."""
+    for bore in bores(part, on_axis=True):
+        details = list(bore.details(from_above=True))
+        threaded = bore.feature is not None and bore.feature.thread is not None
+        if not (details or threaded or bore.fit is not None):
+            continue
+        text = ", ".join([bore.size(), *details])
+        if bore.count > 1:
+            text = f"{bore.count} {TIMES} {text}"
+        for character, code in _CHARACTERS:
+            text = text.replace(character, code)
+        x, y = bore.centres[0]
+        yield from _entity("TEXT", NOTES)
+        yield from _point(_FIRST_POINT, x + bore.radius + 1.0, y - 0.5 * _TEXT_MM)
+        yield _HEIGHT, _number(_TEXT_MM)
+        yield _TEXT, text
 
 
 def _contour(name: str, contour: Contour) -> Iterator[Pair]:
@@ -100,9 +133,9 @@ def _arc(arc: Arc) -> Iterator[Pair]:
     yield _END_DEG, _number(np.degrees(end_rad) % 360.0)
 
 
-def _entity(name: str) -> Iterator[Pair]:
+def _entity(name: str, layer: str = LAYER) -> Iterator[Pair]:
     yield _ENTITY, name
-    yield _ON_LAYER, LAYER
+    yield _ON_LAYER, layer
 
 
 def _point(code: int, x_mm: float, y_mm: float) -> Iterator[Pair]:

@@ -47,7 +47,7 @@ def test_a_title_block_says_what_the_part_is_and_where_it_comes_from(exported):
 
 
 def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, origin):
-    (page,) = pages(assembly_drawing(product, origin))
+    page, *_ = pages(assembly_drawing(product, origin))
     rows = list(csv.DictReader(io.StringIO(parts_list(product))))
     heights = {text: y for text, _, y in page.texts}
     names = [row["part"].replace("_", " ") for row in rows]
@@ -59,12 +59,22 @@ def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, or
 
 
 def test_each_item_has_at_most_one_balloon_and_most_have_one(product, origin):
-    (page,) = pages(assembly_drawing(product, origin))
+    page, *_ = pages(assembly_drawing(product, origin))
     numbers = [text for text, x, _ in page.texts if text.isdigit() and x < 500.0]
     balloons = [text for text in numbers if int(text) <= len(product.unique)]
     assert len(balloons) == len(set(balloons))
     # Screws beside the planes of both sections are hidden in every view.
     assert len(balloons) > 0.55 * len(product.unique)
+
+
+def test_the_exploded_sheets_number_every_item_once(product, origin):
+    _, *exploded = pages(assembly_drawing(product, origin))
+    assert exploded
+    above_title_mm = 65.0
+    numbers = [text for page in exploded for text, _, y in page.texts if text.isdigit() and y > above_title_mm]
+    assert sorted(map(int, numbers)) == list(range(1, len(product.unique) + 1))
+    said = [text for page in exploded for text, _, _ in page.texts]
+    assert [f"A1   {k}/{len(exploded) + 1}" in said for k in range(2, len(exploded) + 2)] == [True] * len(exploded)
 
 
 def test_drawings_are_the_same_bytes_each_time(product, origin):

@@ -21,9 +21,10 @@ from pareto_monoped.cad.picture.scenes import section_scene
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.write import files
-from pareto_monoped.cad.write.dxf import LAYER, dxf, is_flat
+from pareto_monoped.cad.write.dxf import LAYER, NOTES, dxf, is_flat
 from pareto_monoped.cad.write.formats import FILES
 from pareto_monoped.cad.write.triangles import glb, stl, threemf
+from pareto_monoped.geometry.features import Cone
 
 
 def test_assembly_step_gives_back_solids_names_colours_and_volumes(exported):
@@ -53,8 +54,9 @@ def test_laser_drawings_hold_outline_and_holes_on_one_layer(product):
     for kind in flat:
         document = ezdxf.read(io.StringIO(dxf(kind.part)))
         assert document.audit().errors == []
-        entities = list(document.modelspace())
-        assert {entity.dxf.layer for entity in entities} == {LAYER}
+        entities = [entity for entity in document.modelspace() if entity.dxf.layer == LAYER]
+        assert {entity.dxf.layer for entity in document.modelspace()} <= {LAYER, NOTES}
+        assert {entity.dxftype() for entity in entities} <= {"CIRCLE", "ARC", "LINE"}
         circles = [entity for entity in entities if entity.dxftype() == "CIRCLE"]
         holes = [contour for hole in kind.part.prisms[0].holes for contour in contours(hole)]
         assert len(circles) == sum(contour.circle is not None for contour in holes)
@@ -65,6 +67,37 @@ def test_laser_drawings_hold_outline_and_holes_on_one_layer(product):
         enclosed = areas[0] - sum(areas[1:]) - sum(np.pi * circle.dxf.radius**2 for circle in circles)
         prism = kind.part.prisms[0]
         assert enclosed == pytest.approx(float(prism.moments().area), rel=2e-3)
+
+
+def test_laser_drawings_say_beside_each_hole_what_follows_cutting(product):
+    """Every countersink, thread and fit of a flat part, as many as its record has, at a hole of that kind."""
+    for kind in product.unique:
+        if not is_flat(kind.part):
+            continue
+        document = ezdxf.read(io.StringIO(dxf(kind.part)))
+        texts = [entity for entity in document.modelspace() if entity.dxf.layer == NOTES]
+        assert {entity.dxftype() for entity in texts} <= {"TEXT"}
+        said = [re.fullmatch(r"(?:(\d+) x )?(.*)", text.plain_text()) for text in texts]
+        (prism,) = kind.part.prisms
+        expected = {"countersink": 0, "-": 0, " H": 0}
+        for feature in kind.part.features:
+            count = sum(len(contours(shape)) for shape in feature.shapes)
+            sunk = any(mouth is not None and mouth.kind is Cone.COUNTERSINK for mouth in (feature.low, feature.high))
+            expected["countersink"] += count * sunk
+            expected["-"] += count * (feature.thread is not None)
+        for fit in kind.part.fits:
+            round_holes = [c.circle for hole in prism.holes for c in contours(hole) if c.circle is not None]
+            expected[" H"] += sum(fit.holds(2.0 * float(circle.radius_mm)) for circle in round_holes)
+        for word, count in expected.items():
+            assert sum(int(m[1] or 1) for m in said if word in m[2]) == count, (kind.name, word)
+        for text in texts:
+            near = [c for h in prism.holes for c in contours(h) if c.circle is not None]
+            away = [
+                np.hypot(text.dxf.insert.x - float(c.circle.x_mm), text.dxf.insert.y - float(c.circle.y_mm))
+                - float(c.circle.radius_mm)
+                for c in near
+            ]
+            assert min(away) < 2.5, kind.name
 
 
 def _area(chain):
