@@ -27,16 +27,23 @@ TOLERANCE_MM = 1e-9
 class CandidateSets:
     """What the rules look at: one gear set or arrays of them, with what was laid out around them.
 
-    ``strength`` has the margins of ``rating.width.strength_margins``, where they are known already.
+    ``at`` may be missing for rules that do not need it (``Constraint.laid_out``). ``strength`` has the margins of
+    ``rating.width.strength_margins``, where they are known already.
     """
 
     gears: GearSet
     face_width_mm: Numbers
-    at: Layout
     motor: Motor
     family: Family
     settings: ActuatorSettings
+    at: Layout | None = None
     strength: Mapping[str, Numbers] | None = None
+
+    @property
+    def around(self) -> Layout:
+        """The layout, for rules that need it."""
+        assert self.at is not None
+        return self.at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +56,7 @@ class Constraint:
         margin: what is left until it is broken, negative beyond.
         cures: what would help where it forbids every gearbox.
         rule_sets: the sets of rules that it belongs to.
+        laid_out: whether it looks at the layout, which costs more to work out than all other rules together.
     """
 
     says: str
@@ -56,6 +64,7 @@ class Constraint:
     margin: Callable[[CandidateSets], Numbers]
     cures: tuple[str, ...]
     rule_sets: tuple[RuleSet, ...] = RULE_SETS
+    laid_out: bool = False
 
 
 def _meshing(sets: CandidateSets) -> Numbers:
@@ -125,7 +134,7 @@ def _planet_rim(sets: CandidateSets) -> Numbers:
 
 
 def _ring_rim(sets: CandidateSets) -> Numbers:
-    return sets.at.r_ring - sets.gears.ring_root_radius_mm - 3.5 * sets.gears.module_mm
+    return sets.around.r_ring - sets.gears.ring_root_radius_mm - 3.5 * sets.gears.module_mm
 
 
 def _ring_interference(sets: CandidateSets) -> Numbers:
@@ -149,15 +158,15 @@ def _within_stator(sets: CandidateSets) -> Numbers:
 
 
 def _bearing(sets: CandidateSets) -> Numbers:
-    return np.where(np.isfinite(sets.at.r_bore), 0.0, -1.0)
+    return np.where(np.isfinite(sets.around.r_bore), 0.0, -1.0)
 
 
 def _bearing_room(sets: CandidateSets) -> Numbers:
     if sets.family == "ISSPG":
         # The seat in front of the stator and its flange must stay inside the casing's bolts and rim.
         data = sets.settings.parts.casing
-        return sets.at.r_casing - (sets.at.r_seat + data.ring_wall_mm + data.flange_width_mm)
-    return sets.at.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.at.r_seat
+        return sets.around.r_casing - (sets.around.r_seat + data.ring_wall_mm + data.flange_width_mm)
+    return sets.around.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.around.r_seat
 
 
 def _face_width(sets: CandidateSets) -> Numbers:
@@ -177,7 +186,7 @@ def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
 
 
 def _output_bearing(sets: CandidateSets) -> Numbers:
-    return output_margin(sets.gears.ratio * sets.motor.peak_torque_n_m, sets.at, sets.settings)
+    return output_margin(sets.gears.ratio * sets.motor.peak_torque_n_m, sets.around, sets.settings)
 
 
 def _planet_bearing(sets: CandidateSets) -> Numbers:
@@ -253,6 +262,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         source="ISO 6336-3, rim thickness factor 1 of internal gears",
         margin=_ring_rim,
         cures=("a thicker ring", "a smaller module"),
+        laid_out=True,
     ),
     "ring_interference": Constraint(
         says="the ring's tips meet the planet's flanks outside its base circle",
@@ -277,12 +287,14 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         source="bearing catalogue, ISO 15",
         margin=_bearing,
         cures=("a larger bearing in the catalogue",),
+        laid_out=True,
     ),
     "bearing_room": Constraint(
         says="the main bearing passes the ring's shoulder (ESSPG), its seat stays inside the casing (ISSPG)",
         source="assembly",
         margin=_bearing_room,
         cures=("a bearing of smaller section", "a wider motor"),
+        laid_out=True,
     ),
     "face_width": Constraint(
         says="face width <= 1.5 sun diameters and 40 modules",
@@ -318,6 +330,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_output_bearing,
         cures=("a larger sprocket", "a stronger bearing in the catalogue"),
         rule_sets=("iso6336",),
+        laid_out=True,
     ),
     "planet_bearing": Constraint(
         says="L10 and s0 of the planets' needles keep their limits, or pv of their bushes",
@@ -331,18 +344,28 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
 the ranges of module and planets in V hold for every candidate."""
 
 
-def violations(sets: CandidateSets) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    """Which of the active constraints each gear set breaks.
-
-    Returns:
-        The names, and an array of shape (names, sets), True where broken.
-    """
-    settings = sets.settings
-    names = tuple(
+def active_rules(settings: ActuatorSettings) -> tuple[ConstraintName, ...]:
+    """The rules of a search, in the order of ``CONSTRAINTS``."""
+    return tuple(
         name
         for name, rule in CONSTRAINTS.items()
         if settings.rules in rule.rule_sets and name not in settings.constraints_off
     )
+
+
+def violations(
+    sets: CandidateSets, names: tuple[ConstraintName, ...] | None = None
+) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
+    """Which of the active constraints each gear set breaks.
+
+    Args:
+        sets: the gear sets.
+        names: the rules asked for; default all active ones.
+
+    Returns:
+        The names, and an array of shape (names, sets), True where broken.
+    """
+    names = active_rules(sets.settings) if names is None else names
     shape = np.shape(sets.gears.sun_teeth)
     broken = [np.broadcast_to(CONSTRAINTS[name].margin(sets), shape) < -TOLERANCE_MM for name in names]
     return names, np.array(broken, dtype=bool).reshape(len(names), *shape)

@@ -1,22 +1,19 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pareto_monoped.actuator.actuator import Actuator, actuator_mass_kg, build_actuator
-from pareto_monoped.actuator.candidates import candidates, interval_tenths
-from pareto_monoped.actuator.face import face_width_mm, rated_width_mm
-from pareto_monoped.actuator.gearset import GearSet, joined
-from pareto_monoped.actuator.layout import FAMILIES, Family, layout, radial_room_mm
+from pareto_monoped.actuator.actuator import Actuator, build_actuator
+from pareto_monoped.actuator.candidates import candidates
+from pareto_monoped.actuator.gearset import joined
+from pareto_monoped.actuator.judge import Judge
+from pareto_monoped.actuator.layout import FAMILIES, Family, radial_room_mm
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.sheet import ratings
-from pareto_monoped.actuator.rating.width import LOAD_RULES, STRENGTH_RULES
 from pareto_monoped.actuator.ratiomap import (
     RATIO_HIGH,
     RATIO_LOW,
@@ -25,47 +22,16 @@ from pareto_monoped.actuator.ratiomap import (
     FamilyResult,
     MapEntry,
 )
-from pareto_monoped.actuator.rules import CandidateSets, violations
-from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import DEFAULT_RULES, RuleSet
-from pareto_monoped.geometry.shapes import Numbers
-
-_FIRST = 8
-"""How many sets of every interval are rated first, the lightest at the least face width."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Judged:
-    """What the rules say of every gear set of a family; arrays of shape (n,).
-
-    Attributes:
-        gears: the gear sets.
-        tenths: lower end of each set's interval.
-        width_mm, mass_kg: face width and mass; infinite mass for sets that cannot be built, or need not be weighed.
-        names, broken: rules, and which of them each set breaks, shape (names, n).
-        considered: sets that are solutions or are kept out by a single rule, as far as these may be lighter than the
-            two lightest of their interval.
-    """
-
-    gears: GearSet
-    tenths: NDArray[np.int64]
-    width_mm: NDArray[np.float64]
-    mass_kg: NDArray[np.float64]
-    names: tuple[ConstraintName, ...]
-    broken: NDArray[np.bool_]
-    considered: NDArray[np.bool_]
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
     """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
-    judge = _Judge(motor=motor, family=family, settings=settings)
     gears = candidates(radial_room_mm(motor, family, settings), settings)
-    judged = judge.by_lewis(gears) if settings.rules == "paper" else judge.by_rating(gears)
-    names, broken, mass = judged.names, judged.broken, judged.mass_kg
+    judged = Judge(motor=motor, family=family, settings=settings).judge(gears)
+    names, broken, mass, nearness = judged.names, judged.broken, judged.mass_kg, judged.nearness
     count = broken.sum(axis=0)
-    # A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
-    weak = np.isin(names, list(LOAD_RULES))
-    nearness = np.where(broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
     found = {}
     order = np.argsort(judged.tenths, kind="stable")
     bounds = np.searchsorted(judged.tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
@@ -90,118 +56,6 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
             for place in range(2)
         )
         found[low] = FamilyResult(best=best, runner_up=runner_up, in_the_way=in_the_way)
-    return found
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Judge:
-    """Applies the rules to arrays of gear sets of one motor and family."""
-
-    motor: Motor
-    family: Family
-    settings: ActuatorSettings
-
-    def by_lewis(self, gears: GearSet) -> _Judged:
-        """All sets under the rules ``paper``."""
-        width = np.asarray(face_width_mm(gears, self.motor, self.family, self.settings))
-        names, broken = self._rules_broken(gears, width)
-        near = broken.sum(axis=0) <= 1
-        mass = np.full(len(width), np.inf)
-        mass[near] = self._mass_kg(gears.where(near), width[near])
-        return _Judged(
-            gears=gears,
-            tenths=_tenths_of(gears),
-            width_mm=width,
-            mass_kg=mass,
-            names=names,
-            broken=broken,
-            considered=near,
-        )
-
-    def by_rating(self, gears: GearSet) -> _Judged:
-        """All sets under the rules ``iso6336``.
-
-        To rate a gear set costs more than all other rules together. Sets that break more than one of the others at the
-        least face width are neither solutions nor kept out by a single rule, and are not rated. Nor are sets that are
-        too heavy at the least face width already: first, the lightest of every interval there are rated, then all that
-        may still be lighter than the second of them. Sets that break one rule come last, where a lighter set has been
-        kept out or no other set is near.
-        """
-        data, tenths = self.settings.parts.rating, _tenths_of(gears)
-        width = np.maximum(data.face_width_min_mm, data.face_modules_min * gears.module_mm)
-        unrated = dict.fromkeys((*STRENGTH_RULES, "planet_bearing"), np.zeros(len(width)))
-        names, broken = self._rules_broken(gears, width, unrated)
-        count = broken.sum(axis=0)
-        near = np.flatnonzero(count <= 1)
-        least, mass = np.full(len(width), np.inf), np.full(len(width), np.inf)
-        least[near] = self._mass_kg(gears.where(near), width[near])
-        rated = np.zeros(len(width), dtype=bool)
-        fitting, kept_out = near[count[near] == 0], near[count[near] == 1]
-        alone = ~np.isin(tenths, tenths[fitting])
-        for wanted in (fitting[_rank(tenths[fitting], least[fitting]) < _FIRST], fitting, kept_out):
-            # No set is lighter with a wider face, and what a rule keeps out matters only where it is the lightest.
-            place = 0 if wanted is kept_out else 1
-            bound = _lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf), place)[tenths[wanted]]
-            heavy = least[wanted] > bound
-            useless = (count[wanted] == 1) & ~alone[wanted] & np.isinf(bound)
-            todo = wanted[~rated[wanted] & ~heavy & ~useless]
-            chosen = gears.where(todo)
-            width[todo], strength = rated_width_mm(chosen, self.motor, self.family, self.settings)
-            broken[:, todo] = self._rules_broken(chosen, width[todo], strength)[1]
-            mass[todo] = self._mass_kg(chosen, width[todo])
-            rated[todo] = True
-        return _Judged(
-            gears=gears,
-            tenths=tenths,
-            width_mm=width,
-            mass_kg=mass,
-            names=names,
-            broken=broken,
-            considered=rated,
-        )
-
-    def _mass_kg(self, gears: GearSet, width_mm: NDArray[np.float64]) -> NDArray[np.float64]:
-        at = layout(self.motor, self.family, gears, width_mm, self.settings)
-        mass = np.asarray(actuator_mass_kg(at, self.motor, self.family, self.settings))
-        return np.where(np.isnan(mass), np.inf, mass)
-
-    def _rules_broken(
-        self,
-        gears: GearSet,
-        width_mm: NDArray[np.float64],
-        strength: Mapping[str, Numbers] | None = None,
-    ) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-        sets = CandidateSets(
-            gears=gears,
-            face_width_mm=width_mm,
-            at=layout(self.motor, self.family, gears, width_mm, self.settings),
-            motor=self.motor,
-            family=self.family,
-            settings=self.settings,
-            strength=strength,
-        )
-        return violations(sets)
-
-
-def _tenths_of(gears: GearSet) -> NDArray[np.int64]:
-    return interval_tenths(np.asarray(gears.sun_teeth, dtype=np.int64), np.asarray(gears.ring_teeth, dtype=np.int64))
-
-
-def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Place of each value among those of its group, from 0."""
-    order = np.lexsort((values, groups))
-    first = np.searchsorted(groups[order], groups[order])
-    rank = np.empty(len(order), dtype=np.intp)
-    rank[order] = np.arange(len(order)) - first
-    return rank
-
-
-def _lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64], place: int) -> NDArray[np.float64]:
-    """For each interval, by its tenths, the lightest mass, or the next by ``place``; infinite where there is none."""
-    found = np.full(10 * RATIO_HIGH, np.inf)
-    known = np.flatnonzero(np.isfinite(mass_kg))
-    chosen = known[_rank(tenths[known], mass_kg[known]) == place]
-    found[tenths[chosen]] = mass_kg[chosen]
     return found
 
 

@@ -36,8 +36,6 @@ class Webs:
         r_screw_mm: radius of the screws' circle.
         phase_rad: angle of the first web; the first planet is at 0.
         path: cross-section around the +x axis.
-        area_mm2: of it.
-        second_moment_mm4: of it, against bending around the carrier's axis.
     """
 
     count: Numbers
@@ -46,8 +44,6 @@ class Webs:
     r_screw_mm: Numbers
     phase_rad: Numbers
     path: Path
-    area_mm2: Numbers
-    second_moment_mm4: Numbers
 
     @property
     def reach_mm(self) -> Numbers:
@@ -63,6 +59,27 @@ class Webs:
     def present(self) -> NDArray[np.bool_]:
         """Which carriers have webs, shape (n,) or ()."""
         return np.asarray(self.count) > 0
+
+    @property
+    def section(self) -> "WebSection":
+        """What the stiffness of one web follows from."""
+        moments = self.path.moments()
+        return WebSection(present=self.present, area_mm2=moments.area, second_moment_mm4=moments.yy)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WebSection:
+    """Cross-section of one web.
+
+    Attributes:
+        present: whether the carrier has webs.
+        area_mm2: of it.
+        second_moment_mm4: of it, against bending around the carrier's axis.
+    """
+
+    present: NDArray[np.bool_]
+    area_mm2: Numbers
+    second_moment_mm4: Numbers
 
     def stiffness_n_per_mm(self, length_mm: Numbers, material: ElasticMaterial) -> Numbers:
         """Of one web against a force around the carrier's axis, at the second carrier; 0 where there are none.
@@ -111,7 +128,6 @@ def webs_of(gears: GearSet, settings: ActuatorSettings) -> Webs:
             Arc(x_pin, -y_pin, keep, -end, -start),
         )
     )
-    section = path.moments()
     return Webs(
         count=np.where(fits, gears.planets, 0)[()],
         room_mm=room,
@@ -119,6 +135,4 @@ def webs_of(gears: GearSet, settings: ActuatorSettings) -> Webs:
         r_screw_mm=r_screw,
         phase_rad=half,
         path=path,
-        area_mm2=section.area,
-        second_moment_mm4=section.yy,
     )

@@ -15,6 +15,7 @@ A profile shift of x modules moves the teeth outwards by x m, in an internal gea
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,27 +64,43 @@ def half_angle(
     return np.asarray(pitch + np.tan(pressure_angle_rad) - pressure_angle_rad - unwound)
 
 
-def _teeth_integrals(
+def _teeth_area_mm2(
     gear: "ExternalGear | InternalGear", low_mm: Numbers, high_mm: Numbers, thinning_mm: Numbers
-) -> tuple[Numbers, Numbers]:
-    """Area and polar moment of all teeth between two radii."""
-    base = _array(gear.base_radius_mm)
+) -> Numbers:
+    """Area of all teeth between two radii."""
     area: Numbers = 0.0
+    for sign, radius in ((1.0, _array(high_mm)), (-1.0, _array(low_mm))):
+        psi, t, base = _flank(gear, radius, thinning_mm)
+        area = area + sign * (psi * radius**2 + base**2 * t**3 / 3.0)
+    return gear.teeth * area
+
+
+def _teeth_polar_mm4(
+    gear: "ExternalGear | InternalGear", low_mm: Numbers, high_mm: Numbers, thinning_mm: Numbers
+) -> Numbers:
+    """Polar moment of all teeth between two radii."""
     polar: Numbers = 0.0
     for sign, radius in ((1.0, _array(high_mm)), (-1.0, _array(low_mm))):
-        psi = half_angle(
-            radius_mm=radius,
-            teeth=gear.teeth,
-            module_mm=gear.module_mm,
-            thinning_mm=thinning_mm,
-            shift=gear.shift,
-            pressure_angle_rad=gear.pressure_angle_rad,
-        )
-        # Below the base circle psi stays what it is there, so psi r^2 is right and the tangent terms vanish.
-        t = np.sqrt(np.maximum(np.square(radius / base) - 1.0, 0.0))
-        area = area + sign * (psi * radius**2 + base**2 * t**3 / 3.0)
+        psi, t, base = _flank(gear, radius, thinning_mm)
         polar = polar + sign * (0.5 * psi * radius**4 + 0.5 * base**4 * (t**3 / 3.0 + t**5 / 5.0))
-    return gear.teeth * area, gear.teeth * polar
+    return gear.teeth * polar
+
+
+def _flank(
+    gear: "ExternalGear | InternalGear", radius_mm: NDArray[np.float64], thinning_mm: Numbers
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Half angle of a tooth at a radius, the tangent of the pressure angle there, and the base circle's radius."""
+    base = _array(gear.base_radius_mm)
+    psi = half_angle(
+        radius_mm=radius_mm,
+        teeth=gear.teeth,
+        module_mm=gear.module_mm,
+        thinning_mm=thinning_mm,
+        shift=gear.shift,
+        pressure_angle_rad=gear.pressure_angle_rad,
+    )
+    # Below the base circle psi stays what it is there, so psi r^2 is right and the tangent terms vanish.
+    return psi, np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0)), base
 
 
 def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers, outwards: float) -> Numbers:
@@ -195,13 +212,17 @@ class ExternalGear:
             )
         )
 
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        return _area_mm2(self)
+
     def moments(self) -> Moments:
         """Exact for the teeth and the root disc; for the fillets see ``_fillets_mm2``."""
         root = self.root_radius_mm
-        area, polar = _teeth_integrals(self, root, self.tip_radius_mm, self.backlash_mm)
+        polar = _teeth_polar_mm4(self, root, self.tip_radius_mm, self.backlash_mm)
         fillets = _fillets_mm2(self, root, 1.0)
         return _round_moments(
-            np.pi * np.square(root) + area + fillets,
+            self.area_mm2(),
             0.5 * np.pi * np.square(root) ** 2 + polar + fillets * np.square(root),
         )
 
@@ -248,12 +269,36 @@ class InternalGear:
         """Outermost circle, at the bottom of the spaces."""
         return self.pitch_radius_mm + (DEDENDUM + self.shift) * self.module_mm
 
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        return _area_mm2(self)
+
     def moments(self) -> Moments:
         """As of ``ExternalGear``; the fillets at the root make the hole smaller."""
         tip, root = self.tip_radius_mm, self.root_radius_mm
-        area, polar = _teeth_integrals(self, tip, root, -_array(self.backlash_mm))
+        polar = _teeth_polar_mm4(self, tip, root, -_array(self.backlash_mm))
         fillets = _fillets_mm2(self, root, -1.0)
         return _round_moments(
-            np.pi * np.square(tip) + area - fillets,
+            self.area_mm2(),
             0.5 * np.pi * np.square(tip) ** 2 + polar - fillets * np.square(root),
         )
+
+
+def _area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
+    """Area of a gear, or of the hole of a ring; kept for single gears, which several prisms have in common."""
+    try:
+        return _remembered_area_mm2(gear)
+    except TypeError:  # arrays have no hash
+        return _outline_area_mm2(gear)
+
+
+def _outline_area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
+    root, tip = gear.root_radius_mm, gear.tip_radius_mm
+    if isinstance(gear, InternalGear):
+        area = _teeth_area_mm2(gear, tip, root, -_array(gear.backlash_mm))
+        return np.pi * np.square(tip) + area - _fillets_mm2(gear, root, -1.0)
+    area = _teeth_area_mm2(gear, root, tip, gear.backlash_mm)
+    return np.pi * np.square(root) + area + _fillets_mm2(gear, root, 1.0)
+
+
+_remembered_area_mm2 = lru_cache(maxsize=1024)(_outline_area_mm2)

@@ -40,7 +40,10 @@ class Prism:
 
     def volume_mm3(self) -> Numbers:
         """The first of ``integrals``, for searches that weigh thousands of parts."""
-        return self.moments().area * (np.asarray(self.z1_mm, dtype=np.float64) - self.z0_mm)
+        area = self.outline.area_mm2()
+        for hole in self.holes:
+            area = area - hole.area_mm2()
+        return area * (np.asarray(self.z1_mm, dtype=np.float64) - self.z0_mm)
 
     def integrals(self) -> tuple[Numbers, ...]:
         """Volume integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""

@@ -8,7 +8,7 @@ Green's theorem each is an integral along the boundary, in closed form for strai
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import lru_cache, reduce
 from typing import Protocol
 
@@ -68,6 +68,10 @@ class Shape(Protocol):
         """The region's integrals about the local origin."""
         ...
 
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``, to the last bit, for searches that weigh thousands of parts."""
+        ...
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Circle:
@@ -77,9 +81,13 @@ class Circle:
     x_mm: Numbers = 0.0
     y_mm: Numbers = 0.0
 
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        return np.pi * np.square(self.radius_mm)
+
     def moments(self) -> Moments:
         """Closed form."""
-        area = np.pi * np.square(self.radius_mm)
+        area = self.area_mm2()
         second = 0.25 * area * np.square(self.radius_mm)
         return Moments(area, 0.0, 0.0, second, second, 0.0).moved(self.x_mm, self.y_mm)
 
@@ -99,9 +107,13 @@ class Pattern:
     x_mm: Numbers = 0.0
     y_mm: Numbers = 0.0
 
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        return self.count * np.pi * np.square(self.radius_mm)
+
     def moments(self) -> Moments:
         """Closed form."""
-        area = self.count * np.pi * np.square(self.radius_mm)
+        area = self.area_mm2()
         second = area * (0.25 * np.square(self.radius_mm) + 0.5 * np.square(self.pitch_radius_mm))
         return Moments(area, 0.0, 0.0, second, second, 0.0).moved(self.x_mm, self.y_mm)
 
@@ -140,13 +152,23 @@ class Path:
     """A region bounded by lines and arcs that run anticlockwise and close."""
 
     pieces: tuple[Line | Arc, ...]
+    _known: Moments | None = field(default=None, init=False, repr=False, compare=False)
+
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        many = any(isinstance(value, np.ndarray) for piece in self.pieces for value in _numbers(piece))
+        return _enclosed_mm2(self.pieces) if many and self._known is None else self.moments().area
 
     def moments(self) -> Moments:
         """Green's theorem: each piece with the origin spans a sector, and the sectors add up."""
-        try:
-            return _remembered(self.pieces)
-        except TypeError:  # arrays have no hash
-            return _boundary(self.pieces)
+        if self._known is None:
+            try:
+                known = _remembered(self.pieces)
+            except TypeError:  # arrays have no hash
+                known = _boundary(self.pieces)
+            object.__setattr__(self, "_known", known)
+            return known
+        return self._known
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,6 +186,10 @@ class Spread:
     path: Path
     count: Numbers
     phase_rad: Numbers = 0.0
+
+    def area_mm2(self) -> Numbers:
+        """The first of ``moments``."""
+        return self.count * self.path.area_mm2()
 
     def moments(self) -> Moments:
         """Those of one path, averaged over all angles."""
@@ -199,9 +225,15 @@ def polygon(points: Sequence[tuple[Numbers, Numbers]]) -> Path:
     return Path(tuple(Line(*one, *other) for one, other in zip(points, (*points[1:], points[0]), strict=True)))
 
 
+def _numbers(piece: Line | Arc) -> tuple[Numbers, ...]:
+    if isinstance(piece, Line):
+        return piece.x0_mm, piece.y0_mm, piece.x1_mm, piece.y1_mm
+    return piece.x_mm, piece.y_mm, piece.radius_mm, piece.start_rad, piece.end_rad
+
+
 def _boundary(pieces: tuple[Line | Arc, ...]) -> Moments:
-    lines = [(p.x0_mm, p.y0_mm, p.x1_mm, p.y1_mm) for p in pieces if isinstance(p, Line)]
-    arcs = [(p.x_mm, p.y_mm, p.radius_mm, p.start_rad, p.end_rad) for p in pieces if isinstance(p, Arc)]
+    lines = [_numbers(piece) for piece in pieces if isinstance(piece, Line)]
+    arcs = [_numbers(piece) for piece in pieces if isinstance(piece, Arc)]
     total = Moments(0.0)
     if lines:
         total = total + _added(_triangles(*_columns(lines)))
@@ -211,6 +243,22 @@ def _boundary(pieces: tuple[Line | Arc, ...]) -> Moments:
 
 
 _remembered = lru_cache(maxsize=256)(_boundary)
+
+
+def _enclosed_mm2(pieces: tuple[Line | Arc, ...]) -> Numbers:
+    """The area of ``_boundary`` alone: the same terms in the same order, a fifth of the work."""
+    lines = [_numbers(piece) for piece in pieces if isinstance(piece, Line)]
+    arcs = [_numbers(piece) for piece in pieces if isinstance(piece, Arc)]
+    total: Numbers = 0.0
+    if lines:
+        total = total + reduce(np.add, _twice_mm2(*_columns(lines)) / 2.0)
+    if arcs:
+        x, y, r, start, end = _columns(arcs)
+        sectors = r * r * (end - start) / 2.0
+        towards = _twice_mm2(x + r * np.cos(start), y + r * np.sin(start), x, y) / 2.0
+        away = _twice_mm2(x, y, x + r * np.cos(end), y + r * np.sin(end)) / 2.0
+        total = total + (reduce(np.add, sectors) + reduce(np.add, towards) + reduce(np.add, away))
+    return total
 
 
 def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
@@ -225,14 +273,21 @@ def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
 
 def _added(moments: Moments) -> Moments:
     """Sum over the pieces, term by term, because the order of NumPy's own sum depends on the shape."""
-    return Moments(*(reduce(np.add, getattr(moments, field.name))[()] for field in fields(moments)))
+    return Moments(*(reduce(np.add, getattr(moments, each.name))[()] for each in fields(moments)))
+
+
+def _twice_mm2(
+    x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Twice the areas of triangles between the origin and straight lines."""
+    return x0 * y1 - x1 * y0
 
 
 def _triangles(
     x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
 ) -> Moments:
     """Triangles between the origin and straight lines, one row per line."""
-    twice = x0 * y1 - x1 * y0
+    twice = _twice_mm2(x0, y0, x1, y1)
     return Moments(
         twice / 2.0,
         (x0 + x1) * twice / 6.0,

@@ -46,16 +46,16 @@ def test_section_is_that_of_its_polygon(gears):
     x, y = all_polygons([webs.path], 1e-5)[0].T
     x_next, y_next = np.roll(x, -1), np.roll(y, -1)
     twice = x * y_next - x_next * y
-    assert webs.area_mm2 == pytest.approx(0.5 * twice.sum(), rel=1e-4)
+    assert webs.section.area_mm2 == pytest.approx(0.5 * twice.sum(), rel=1e-4)
     second = (twice * (y**2 + y * y_next + y_next**2)).sum() / 12.0
-    assert webs.second_moment_mm4 == pytest.approx(second, rel=1e-4)
+    assert webs.section.second_moment_mm4 == pytest.approx(second, rel=1e-4)
 
 
 def test_a_web_bends_and_shears_as_finite_elements_do():
     """Timoshenko elements: one end clamped, the other guided without slope, a force of 1 N there."""
     webs, length, count = webs_of(THREE, SETTINGS), 12.0, 50
-    bending = 70e3 * webs.second_moment_mm4
-    shear = MATERIALS.aluminium.shear_modulus_mpa * webs.area_mm2 / 1.2
+    bending = 70e3 * webs.section.second_moment_mm4
+    shear = MATERIALS.aluminium.shear_modulus_mpa * webs.section.area_mm2 / 1.2
     h = length / count
     phi = 12.0 * bending / (shear * h**2)
     k = (
@@ -78,7 +78,7 @@ def test_a_web_bends_and_shears_as_finite_elements_do():
     load = np.zeros(len(free))
     load[-1] = 1.0
     sway = np.linalg.solve(whole[np.ix_(free, free)], load)[-1]
-    assert webs.stiffness_n_per_mm(length, MATERIALS.aluminium) == pytest.approx(1.0 / sway, rel=1e-6)
+    assert webs.section.stiffness_n_per_mm(length, MATERIALS.aluminium) == pytest.approx(1.0 / sway, rel=1e-6)
 
 
 @given(st.integers(18, 60), st.integers(18, 120), st.integers(3, 7), st.sampled_from([0.5, 0.6, 0.8, 1.0]))

@@ -6,7 +6,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.geometry.shapes import Circle, Pattern, hull, rectangle
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.shapes import Circle, Pattern, Spread, hull, rectangle
 from tests.geometry.polygons import integrals_of, region_integrals
 
 sizes = st.floats(min_value=0.5, max_value=50.0)
@@ -78,3 +79,26 @@ def test_a_population_has_the_moments_of_its_members():
         for name in ("area", "x", "y", "xx", "yy", "xy"):
             value = np.broadcast_to(getattr(many, name), lengths.shape)[index]
             assert value == pytest.approx(getattr(one, name), rel=1e-13, abs=1e-6)
+
+
+KINDS = {
+    "circle": lambda k: Circle(radius_mm=4.0 + k, x_mm=1.0, y_mm=-k),
+    "pattern": lambda k: Pattern(radius_mm=1.5, pitch_radius_mm=12.0 + k, count=6),
+    "lines": lambda k: rectangle(width_mm=3.0 + k, height_mm=5.0, x_mm=k),
+    "lines and arcs": lambda k: hull(top_radius_mm=10.0 + k, bottom_radius_mm=20.0, length_mm=60.0 + k),
+    "spread": lambda k: Spread(path=hull(top_radius_mm=2.0 + k, bottom_radius_mm=4.0, length_mm=9.0), count=3),
+    "external gear": lambda k: ExternalGear(teeth=20 + k, module_mm=0.6, backlash_mm=0.04, shift=0.3),
+    "internal gear": lambda k: InternalGear(teeth=70 + k, module_mm=0.6, backlash_mm=0.04, shift=-0.4),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_area_alone_is_that_of_the_moments_to_the_last_bit(kind):
+    """The search ranks by masses from areas alone, and actuators are weighed from all moments."""
+    many = np.linspace(0.0, 7.0, 57)
+    for numbers in (many, 3.0, 3):
+        # Each drawn anew, because a path keeps what it has worked out.
+        area, moments = KINDS[kind](numbers).area_mm2(), KINDS[kind](numbers).moments()
+        assert np.array_equal(area, moments.area)
+        shape = KINDS[kind](numbers)
+        assert np.array_equal(shape.moments().area, shape.area_mm2())

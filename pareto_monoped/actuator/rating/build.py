@@ -84,7 +84,7 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
         sun_mesh=sun_mesh,
         ring_mesh=ring_mesh,
         settings=settings,
-        webs=webs_of(gears, settings),
+        webs=webs_of(gears, settings).section,
         width_low_mm=reduce(
             np.maximum,
             (data.face_width_min_mm, data.face_modules_min * gears.module_mm, planet_width_mm(gears, motor, settings)),

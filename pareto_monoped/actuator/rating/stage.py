@@ -4,17 +4,18 @@ Everything that does not depend on the face width is computed once: what each me
 face width. What they have to carry then takes a few dozen operations per width, which makes the search fast.
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating import load
 from pareto_monoped.actuator.rating.geometry import ToothForm
 from pareto_monoped.actuator.rating.life import highest_share
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.webs import Webs
+from pareto_monoped.actuator.webs import WebSection
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GearGrade
 
@@ -131,7 +132,7 @@ class Stage:
         gears: the gear sets.
         sun_mesh, ring_mesh: the meshes.
         settings: of stage 1.
-        webs: of the carrier.
+        webs: cross-sections of the carrier's webs.
         width_low_mm, width_high_mm: least and largest face width allowed.
         carried: ``Mesh.least_carried`` of both meshes.
     """
@@ -140,10 +141,20 @@ class Stage:
     sun_mesh: Mesh
     ring_mesh: Mesh
     settings: ActuatorSettings
-    webs: Webs
+    webs: WebSection
     width_low_mm: Numbers
     width_high_mm: Numbers
     carried: tuple[Safeties, Safeties]
+
+    def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "Stage":
+        """Some of the gear sets, by a mask or indices; enough for ``safeties``.
+
+        The gears in the meshes (``Mesh.pinion`` and ``wheel``) stay those of all sets: what they carry is in
+        ``carried``.
+        """
+        shape = np.shape(self.width_low_mm)
+        found: Stage = _rows(self, chosen, shape) if shape else self
+        return found
 
     def loads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
         """Loads of sun mesh and ring mesh under the duty, at the peak torque and a face width."""
@@ -224,6 +235,22 @@ class Stage:
         ]
         least = Safeties(*map(np.minimum, *both))
         return least.overload_flank, least.overload_root
+
+
+def _rows(record: Any, chosen: NDArray[np.bool_] | NDArray[np.intp], shape: tuple[int, ...]) -> Any:
+    """A record of records with some rows of all arrays of a shape, without the members of meshes."""
+    if isinstance(record, np.ndarray):
+        return record[chosen] if record.shape == shape else record
+    if isinstance(record, GearSet):
+        return record.where(chosen)
+    if isinstance(record, Safeties):
+        return Safeties(*(_rows(value, chosen, shape) for value in record))
+    if isinstance(record, tuple):
+        return tuple(_rows(value, chosen, shape) for value in record)
+    if isinstance(record, Stage | Mesh | WebSection):
+        values = {each.name: _rows(getattr(record, each.name), chosen, shape) for each in fields(record)}
+        return replace(record, **values)
+    return record
 
 
 def acting(duty: MeshLoad, over: MeshLoad) -> Safeties:

@@ -83,7 +83,7 @@ def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> fl
     length_mm = float(at.z_shoulder - at.z_secondary_front)
     second_moment_mm4 = np.pi * settings.parts.carrier.pin_diameter_mm**4 / 64.0
     bending = settings.materials.steel.youngs_modulus_mpa * second_moment_mm4
-    web = float(at.webs.stiffness_n_per_mm(length_mm, settings.materials.aluminium))
+    web = float(at.webs.section.stiffness_n_per_mm(length_mm, settings.materials.aluminium))
     sway = 0.25 / (12.0 * bending / length_mm**3 + web)
     softness = 1e-3 * (length_mm**3 / (720.0 * bending) + sway)  # m/N
     return float(softness / (float(gears.planets) * (1e-3 * float(gears.carrier_radius_mm)) ** 2))

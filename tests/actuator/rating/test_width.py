@@ -1,6 +1,7 @@
 """The least face width: nothing narrower is enough, and it follows torque and steel as it must."""
 
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 import pytest
@@ -59,6 +60,32 @@ def test_one_gear_set_gets_the_width_that_it_has_among_others():
         alone = least_width_mm(build_stage(many.chosen(k), MOTOR, "ISSPG", SETTINGS))
         assert alone.shape == ()
         assert alone == together[k]
+
+
+def test_some_rows_of_a_stage_are_as_safe_as_among_all():
+    """The search for the width leaves the sets alone that have one."""
+    stage = build_stage(drawn(60, 5), MOTOR, "ESSPG", SETTINGS)
+    width = np.linspace(6.0, 25.0, 60)
+    everything = stage.safeties(width)
+    mask = np.arange(60) % 7 < 3
+    for chosen in (mask, np.array([41, 3, 3, 17])):
+        for got, expected in zip(stage.rows(chosen).safeties(width[chosen]), everything, strict=True):
+            assert np.array_equal(got, expected[chosen])
+
+
+def test_a_set_that_no_width_suits_gets_the_safest_of_those_tried():
+    stage = build_stage(drawn(200, 6), load_motor("U12"), "ESSPG", SETTINGS)
+    found = least_width_mm(stage)
+    hopeless = ~keeps(stage, found)
+    assert 20 < hopeless.sum() < 180
+    low = np.ceil(np.round(stage.width_low_mm / 0.1, 6))
+    high = np.maximum(low, np.floor(np.round(stage.width_high_mm / 0.1, 6)))
+    margins = []
+    for share in np.linspace(0.0, 1.0, 12):
+        width = np.round(low + share * (high - low)) * 0.1
+        margins.append(reduce(np.minimum, strength_margins(stage.safeties(width), stage).values()))
+    got = reduce(np.minimum, strength_margins(stage.safeties(found), stage).values())
+    assert got[hopeless] == pytest.approx(np.max(margins, axis=0)[hopeless], rel=1e-9)
 
 
 def test_a_limit_that_is_off_does_not_widen_the_gears():

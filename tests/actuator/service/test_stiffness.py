@@ -91,7 +91,7 @@ def test_webs_are_springs_at_the_pins_second_ends(vt8020, ratio):
     at = layout_of(actuator, settings)
     length = actuator.face_width_mm + 2 * settings.planet_clearance_mm
     stiffness, radius = 206e3 * math.pi * 6.0**4 / 64.0, actuator.gears.carrier_radius_mm
-    web = float(at.webs.stiffness_n_per_mm(length, settings.materials.aluminium))
+    web = float(at.webs.section.stiffness_n_per_mm(length, settings.materials.aluminium))
     assert web > 1e4
     force = 1e3 / (actuator.gears.planets * radius)
     turned = beam_mean_deflection_mm(length, stiffness, force, spring=web) / radius
