@@ -30,7 +30,9 @@ def small_search(rules):
 def test_nothing_that_is_left_out_matters(rules):
     motor, settings = small_search(rules)
     gears = candidates(radial_room_mm(motor, "ESSPG", settings), settings)
-    # Width, layout, rules and mass of every set, also of those that the search rules out by teeth alone.
+    # Width, layout, rules and mass of every set that has a rating, also of those that teeth alone rule out.
+    ring = gears.ring()
+    gears = gears.where(np.asarray(ring.tip_radius_mm > ring.base_radius_mm))
     width = np.asarray(face_width_mm(gears, motor, "ESSPG", settings))
     at = layout(motor, "ESSPG", gears, width, settings)
     sets = CandidateSets(gears=gears, face_width_mm=width, at=at, motor=motor, family="ESSPG", settings=settings)
