@@ -10,7 +10,7 @@ from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
-from pareto_monoped.geometry.shapes import Circle, Pattern, Shape, Spread
+from pareto_monoped.geometry.shapes import Circle, Path, Pattern, Shape, Spread
 
 # Pairs that touch or mesh by design, checked in other ways.
 MESHING = {frozenset(pair) for pair in (("planet", "sun"), ("planet", "ring"))}
@@ -40,7 +40,7 @@ class Ring:
 def outer_mm(shape: Shape) -> float:
     if isinstance(shape, Circle):
         return float(shape.radius_mm)
-    if isinstance(shape, Spread):
+    if isinstance(shape, Spread | Path):
         return float(max(np.hypot(*points.T).max() for points in all_polygons([shape])))
     assert isinstance(shape, ExternalGear)
     return float(shape.tip_radius_mm)
@@ -113,7 +113,7 @@ def screw_clashes(screw: Part, other: Part) -> list[str]:
     """Where a screw runs through material of another part that has no hole for it, or turns past it too closely."""
     found = []
     for body in screw.prisms:
-        radius, middle = float(body.outline.radius_mm), float(screw.pitch_radius_mm)
+        radius, middle = outer_mm(body.outline), float(screw.pitch_radius_mm)
         play = 0.2 if other.group != screw.group else 0.0
         for prism in other.prisms:
             if min(prism.z1_mm, body.z1_mm) - max(prism.z0_mm, body.z0_mm) < 1e-9 - play:
