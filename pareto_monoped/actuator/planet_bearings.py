@@ -12,6 +12,8 @@ from pareto_monoped.geometry.shapes import Numbers
 
 _BUSH_PLAY_MM = 0.2
 """Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
+_BUSH_LENGTHS_MM = (4.0, 6.0, 8.0, 10.0)
+"""Of bushes for pins of 6 mm (ISO 3547-1; makers add the shortest)."""
 _SPACER_PLAY_MM = 0.2
 """Radial play of a spacer ring on the pin and in the planet; our own choice."""
 _LEAST_SPACER_MM = 0.32
@@ -37,10 +39,24 @@ def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=tube(at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * settings.planet_bore_mm, pin),
             process="bought",
             group=Group.PLANET,
-            note=f"PTFE bronze bush, {stands_out:g} mm longer than the planet on either side",
+            note=_bush_note(at.face_width_mm + 2.0 * stands_out, settings),
             count=at.gears.planets,
             pitch_radius_mm=at.r_pins,
         ),
+    )
+
+
+def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
+    """Which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
+    if np.ndim(length_mm):
+        return ""
+    pieces = int(np.ceil(float(length_mm) / _BUSH_LENGTHS_MM[-1]))
+    each = float(length_mm) / pieces
+    bought = next(length for length in _BUSH_LENGTHS_MM if length >= each)
+    size = f"{settings.parts.carrier.pin_diameter_mm:g} x {settings.planet_bore_mm:g} x {bought:g}"
+    return (
+        f"{pieces} PTFE bronze bush{'' if pieces == 1 else 'es'} {size} mm (ISO 3547), each cut to {each:.1f} mm, end "
+        "to end; longer than the planet on either side"
     )
 
 

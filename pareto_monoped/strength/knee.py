@@ -1,4 +1,4 @@
-"""The knee's axle and bearings: dowels between axle and shank, static load of the bearings."""
+"""The knee's axle and bearings: dowels between axle and shank, static load and life of the bearings."""
 
 from typing import Any
 
@@ -46,10 +46,27 @@ def bearing_safety(static_n: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any
         cross: cosine of the angle between both forces.
         loads: pull of the chain, torque of the stop, force at the knee.
     """
-    pull, torque, knee = loads
+    return _BEARINGS * static_n / bearings_n(lever_mm, cross, *loads)
+
+
+def bearings_n(lever_mm: Any, cross: Any, pull: Any, torque: Any, knee: Any) -> Any:
+    """Load of both bearings of the knee together; arguments as of ``bearing_safety``."""
     push = 1e3 * torque / lever_mm
     together = np.sqrt(np.square(pull) + np.square(push) + 2.0 * cross * pull * push)
-    return _BEARINGS * static_n / (knee + together)
+    return knee + together
+
+
+def bearing_life(dynamic_n: Any, turns: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any:
+    """L10 of the knee's bearings (ISO 281) over the turns of the duty, if each turn had the peak load.
+
+    Args:
+        dynamic_n: C of a bearing.
+        turns: of the duty.
+        lever_mm: see ``bearing_safety``, as for the next two.
+        cross: cosine.
+        loads: of the jump.
+    """
+    return 1e6 * (_BEARINGS * dynamic_n / bearings_n(lever_mm, cross, *loads)) ** 3 / turns
 
 
 def _dowels(s: Structure) -> float:
@@ -73,6 +90,14 @@ def stop_direction(s: Structure) -> float:
 def _bearings(s: Structure) -> tuple[float, ...]:
     static = float(rated_bearing(2.0 * s.leg.bearing_bore_radius_mm).static_rating_n)
     return static, knee_stop(s.leg).lever_mm, stop_direction(s)
+
+
+def _life(s: Structure) -> tuple[float, ...]:
+    """In each jump the knee swings through its range and back."""
+    stop = knee_stop(s.leg)
+    turns = s.settings.parts.duty.jumps * 2.0 * (stop.upper_rad - stop.lower_rad) / (2.0 * np.pi)
+    dynamic = float(rated_bearing(2.0 * s.leg.bearing_bore_radius_mm).dynamic_rating_n)
+    return dynamic, turns, stop.lever_mm, stop_direction(s)
 
 
 _CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
@@ -100,6 +125,19 @@ JOINTS = (
         loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
         capacity=_bearings,
         factor=bearing_safety,
+        parts=("knee_bearing",),
+        cure=_CURE,
+    ),
+    LegJoint(
+        name="knee_bearing_life",
+        group="joints",
+        formula="1e6 (2 C / P)^3 / (jumps 2 range / 2 pi), P as of knee_bearing_static",
+        source="ISO 281, L10; swings as parts of turns",
+        required=1.0,
+        required_source="a life of the duty's jumps; the peak is taken for all of the swing",
+        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
+        capacity=_life,
+        factor=bearing_life,
         parts=("knee_bearing",),
         cure=_CURE,
     ),

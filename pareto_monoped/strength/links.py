@@ -1,8 +1,7 @@
 """The plates of thigh and shank: bending, pull and the force across the link, in elastic theory.
 
 The plates carry everything. The printed cores keep them apart and, bonded to them, keep their narrow sides from
-buckling: a core's side of 3.5 mm of PETG (2 GPa) holds a side of a plate at 2 sqrt(k E I) = 40 kN, with the stiffness
-k = E b / (gap / 2) of the core, and no side carries more than 5 kN.
+buckling. Sections through holes and the buckling of the sides are in ``strength.plates``.
 
 A plate with windows is a frame. Its two sides carry moment M and axial force N like a beam, M / Z + N / A at the outer
 edge. The force V across it bends the sides between bridges and rungs as well (Vierendeel): each has V / 2, so that its

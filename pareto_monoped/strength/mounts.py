@@ -4,6 +4,7 @@ Dowels carry the torque and the force across the joint; the friction of the scre
 Torque T and force F load a dowel with T / (n r) and F / n; the sum of both is the load of the worst placed one.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,14 +17,11 @@ from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.materials import ALLOYS, MATERIALS
-from pareto_monoped.strength.bolted import (
-    head_force_n,
-    thread_force_n,
-)
-from pareto_monoped.strength.drive import dowel_force_n, fastening, shank_and_thread_mm, yield_mpa
-from pareto_monoped.strength.joint import LegJoint, Structure
+from pareto_monoped.strength.drive import dowel_force_n, yield_mpa
+from pareto_monoped.strength.joint import LegJoint, Side, Structure
 from pareto_monoped.strength.press_fit import PressFit
-from pareto_monoped.strength.shaft_hub import MISES, SHAPE_SAFETY
+from pareto_monoped.strength.shaft_hub import SHAPE_SAFETY
+from pareto_monoped.strength.threads import tightened
 
 _CARRIER, _HOUSING, _PLATE = "aw_7075_t6", "aw_6082_t6", "aw_6082_t6"
 """Alloys of the output flange, of the actuator's housing and of the thigh's plates."""
@@ -107,24 +105,6 @@ def _screws(parts: tuple[Part, ...], pitch_radius_mm: float, group: Group) -> Pa
     return found
 
 
-def tightened(screw: Part, thread_mpa: float, seat_mpa: float) -> float:
-    """Force that thread and seat of a screw carry, whichever is less, over the preload that it is tightened to.
-
-    A countersunk head is not looked at: its cone lies on more metal than a cap's face.
-
-    Args:
-        screw: which.
-        thread_mpa: yield stress of what it is driven into.
-        seat_mpa: yield stress of what its head stands on.
-    """
-    found = fastening(screw)
-    _, engaged = shank_and_thread_mm(screw)
-    forces = [thread_force_n(found.thread, engaged, MISES * thread_mpa)]
-    if found.head != "countersunk":
-        forces.append(head_force_n(found, seat_mpa))
-    return min(forces) / found.preload_n
-
-
 def screws_tightened(s: Structure) -> float:
     """The least of ``tightened`` over all screws between the actuators and the links."""
     d, thigh, base = s.leg, hip_joints(s.leg), base_parts(_ANY_LENGTH_M, s.leg)
@@ -160,63 +140,35 @@ def _pressed(dowel: Dowel, wall_mm: float, stress_mpa: float) -> float:
     return fit.elastic_limit_mpa(stress_mpa) / fit.pressure_mpa(most)
 
 
-_SHAPE = "our own choice: dowels that share a load do not quite share it evenly"
-_DOWELS = "1 / (T / (n d l Rp0.2 r) + F / (n d l Rp0.2))"
-_SOURCE = "Roloff/Matek, 9.2: pressure in the holes of pins; both loads summed"
+_Capacity = Callable[[Structure], tuple[float, float]]
+
+
+def _dowel_row(name: str, side: Side, force: str, capacity: _Capacity, parts: tuple[str, ...]) -> LegJoint:
+    """A circle of dowels between an actuator and a link, under its gearbox's torque and a force across it."""
+    return LegJoint(
+        name=name,
+        group="joints",
+        formula="1 / (T / (n d l Rp0.2 r) + F / (n d l Rp0.2))",
+        source="Roloff/Matek, 9.2: pressure in the holes of pins; both loads summed",
+        required=SHAPE_SAFETY,
+        required_source="our own choice: dowels that share a load do not quite share it evenly",
+        loads=(f"peak_gear_torque_{side}_n_m", force),
+        capacity=capacity,
+        factor=dowels_under,
+        parts=parts,
+        cure=f"release the {side}'s torque before its stop, or a lower {side}_ratio",
+    )
+
+
+_CHAIN, _FOOT = "peak_chain_tension_n", "peak_foot_force_n"
 
 JOINTS = (
-    LegJoint(
-        name="hip_output_dowels",
-        group="joints",
-        formula=_DOWELS,
-        source=_SOURCE,
-        required=SHAPE_SAFETY,
-        required_source=_SHAPE,
-        loads=("peak_gear_torque_hip_n_m", "peak_foot_force_n"),
-        capacity=hip_output,
-        factor=dowels_under,
-        parts=("hip_coupling_dowel", "hip_coupling", "thigh_plate_inner"),
-        cure="release the hip's torque before its stop, or a lower hip_ratio",
+    _dowel_row(
+        "hip_output_dowels", "hip", _FOOT, hip_output, ("hip_coupling_dowel", "hip_coupling", "thigh_plate_inner")
     ),
-    LegJoint(
-        name="knee_output_dowels",
-        group="joints",
-        formula=_DOWELS,
-        source=_SOURCE,
-        required=SHAPE_SAFETY,
-        required_source=_SHAPE,
-        loads=("peak_gear_torque_knee_n_m", "peak_chain_tension_n"),
-        capacity=knee_output,
-        factor=dowels_under,
-        parts=("drive_dowel", "drive_coupling", "drive_sprocket"),
-        cure="release the knee's torque before its stop, or a lower knee_ratio",
-    ),
-    LegJoint(
-        name="knee_mount_dowels",
-        group="joints",
-        formula=_DOWELS,
-        source=_SOURCE,
-        required=SHAPE_SAFETY,
-        required_source=_SHAPE,
-        loads=("peak_gear_torque_knee_n_m", "peak_chain_tension_n"),
-        capacity=knee_mount,
-        factor=dowels_under,
-        parts=("knee_mount_dowel", "thigh_plate_outer"),
-        cure="release the knee's torque before its stop, or a lower knee_ratio",
-    ),
-    LegJoint(
-        name="hip_mount_dowels",
-        group="joints",
-        formula=_DOWELS,
-        source=_SOURCE,
-        required=SHAPE_SAFETY,
-        required_source=_SHAPE,
-        loads=("peak_gear_torque_hip_n_m", "peak_foot_force_n"),
-        capacity=hip_mount,
-        factor=dowels_under,
-        parts=("hip_mount_dowel", "base_near_cheek"),
-        cure="release the hip's torque before its stop, or a lower hip_ratio",
-    ),
+    _dowel_row("knee_output_dowels", "knee", _CHAIN, knee_output, ("drive_dowel", "drive_coupling", "drive_sprocket")),
+    _dowel_row("knee_mount_dowels", "knee", _CHAIN, knee_mount, ("knee_mount_dowel", "thigh_plate_outer")),
+    _dowel_row("hip_mount_dowels", "hip", _FOOT, hip_mount, ("hip_mount_dowel", "base_near_cheek")),
     LegJoint(
         name="actuator_screws_tightened",
         group="joints",

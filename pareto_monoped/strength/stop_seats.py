@@ -6,19 +6,25 @@ elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 
 
 import numpy as np
 
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M4
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.faces import hip_seats
 from pareto_monoped.leg.sandwich import sleeve_hole
-from pareto_monoped.leg.stop_parts import FOOT_DEPTH, HALF_FOOT, HALF_HEAD, HEAD, TOE, WING
+from pareto_monoped.leg.stop_parts import FOOT_DEPTH, HALF_FOOT, HALF_HEAD, HEAD, TOE, WING, base_stop_parts
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.leg.thigh_outline import HEEL_WIDTH, heel_arm_mm
-from pareto_monoped.materials import ALLOYS
+from pareto_monoped.materials import ALLOYS, MATERIALS
+from pareto_monoped.strength.bolted import least_preload_n
+from pareto_monoped.strength.drive import fastening, shank_and_thread_mm
 from pareto_monoped.strength.joint import SIDES, LegJoint, Side, Structure
 
 ALLOY = ALLOYS["aw_6082_t6"]
 """Of plates, seats, strikers and rods."""
 _PLATES = 2
+RUBBER_FRICTION = 0.8
+"""Of dry rubber on metal (handbooks: 0.5 to 0.8)."""
 
 
 def edges_n(plates_mm: float, face_mm: float, yield_mpa: float) -> float:
@@ -50,6 +56,21 @@ def rod_n(radius_mm: float, bore_mm: float, from_support_mm: float, yield_mpa: f
     """Force across a tube at which it yields, near one of its supports: M = F a, more than F a b / (a + b)."""
     modulus = 0.25 * np.pi * (radius_mm**4 - bore_mm**4) / radius_mm
     return float(modulus * yield_mpa / from_support_mm)
+
+
+def lifted_n(screw: Part) -> float:
+    """Force of a bumper at which its striker, sliding along the joint's axis, lifts the seat off the cheek.
+
+    The rods carry the stop's force. Along them, nothing but the screw holds the seat, against the friction of rubber.
+    """
+    grip, _ = shank_and_thread_mm(screw)
+    preload = least_preload_n(
+        fastening(screw),
+        grip,
+        steel_mpa=MATERIALS.steel.youngs_modulus_mpa,
+        clamped_mpa=MATERIALS.aluminium.youngs_modulus_mpa,
+    )
+    return preload / RUBBER_FRICTION
 
 
 def rod_share(force_at: tuple[float, float], normal_rad: float, rods: tuple[tuple[float, float], ...]) -> float:
@@ -113,6 +134,12 @@ def rods(s: Structure) -> float:
     return _torque_n_m(stop, one / share)
 
 
+def seat_screw(s: Structure) -> float:
+    """Of the screw that holds one of the hip's seats on the near cheek."""
+    (screw,) = (part for part in base_stop_parts(s.leg) if part.role is Role.SCREW)
+    return _torque_n_m(hip_stop(s.leg), lifted_n(screw))
+
+
 _PARTS = {"hip": ("hip_striker_front", "hip_striker_rear"), "knee": ("knee_seat_extension", "knee_seat_flexion")}
 
 
@@ -152,5 +179,6 @@ JOINTS = (
     _row("knee_heel", "knee", "lever Z R_e / arm / T", heel, ("thigh_plate_inner", "thigh_plate_outer")),
     _row("knee_striker", "knee", "lever 8 Z R_e / gap / T", striker, ("knee_striker",)),
     _row("knee_striker_bolt", "knee", "lever d 2 t R_e / T", striker_bolt, ("knee_striker_bolt",)),
+    _row("hip_stop_screws", "hip", "lever F_V / mu_rubber / T", seat_screw, ("hip_seat_screw",)),
     _row("hip_stop_rods", "hip", "lever Z R_e / (a (1/2 + e / s)) / T", rods, ("base_rod",)),
 )

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from pareto_monoped.actuator.bearings import rated_bearing
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.leg.base import base_parts
@@ -12,7 +13,8 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.stops import hip_stop, knee_stop
 from pareto_monoped.leg.thigh import thigh_parts
-from pareto_monoped.strength import knee, stop_seats, turnbuckles
+from pareto_monoped.strength import chain, knee, stop_seats, turnbuckles
+from pareto_monoped.strength.bolted import least_preload_n
 from pareto_monoped.strength.table import TABLE
 from tests.leg.polygons import polygon
 from tests.strength.support import structure
@@ -212,3 +214,41 @@ def test_the_base_s_rods_under_the_hip_s_stop():
     torques = [1e-3 * stop.lever_mm * one / (0.5 + arm / distance) for arm in arms]
     assert any(capacity("hip_stop_rods") == pytest.approx(torque, rel=1e-3) for torque in torques)
     assert seat.role is Role.BRACKET
+
+
+def test_the_chain_wears_by_pressure_times_path():
+    """Bend by bend: 31 MPa for 15,000 h at 0.1 m/s over two sprockets of 19 teeth; one joint of ours, jump by jump."""
+    drive = D.chain
+    pin_m = 0.5e-3 * drive.pin_diameter_mm
+    seconds = 15000.0 * 3600.0
+    loops = seconds * 0.1 / (100 * 0.0127)
+    rated = 31e6 * loops * 4.0 * (2.0 * np.pi / 19.0) * pin_m
+    jumps = MAP.settings.parts.duty.jumps
+    path = sum(2.0 * np.pi / 14.0 * pin_m for _ in range(2)) * jumps
+    pull = ROWS["chain_wear"].capacity(S)
+    pressure = pull / (drive.pin_diameter_mm * 1e-3 * drive.inner_link_mm * 1e-3)
+    assert pressure * path == pytest.approx(rated, rel=1e-9)
+    assert chain.wear_n(drive, 2.0 * jumps) == pytest.approx(0.5 * pull)
+
+
+def test_the_knee_s_bearings_live_for_the_jumps_of_the_duty():
+    """ISO 281 turn by turn: the bearings carry the sum of forces on two rows, in every swing there and back."""
+    row, stop = ROWS["knee_bearing_life"], knee_stop(D)
+    pull, torque, knee = 3000.0, 160.0, 900.0
+    numbers = row.capacity(S)
+    found = row.factor(*numbers, pull, torque, knee)
+    static = ROWS["knee_bearing_static"]
+    total = 2.0 * 2470.0 / static.factor(*static.capacity(S), pull, torque, knee)
+    life = (rated_bearing(20.0).dynamic_rating_n / (0.5 * total)) ** 3 * 1e6
+    swings = 2.0 * MAP.settings.parts.duty.jumps * np.degrees(stop.upper_rad - stop.lower_rad) / 360.0
+    assert found == pytest.approx(life / swings)
+
+
+def test_the_hip_s_stop_screws_hold_against_the_drag_of_rubber():
+    """One screw M4 of class 8.8, tightened least and settled; the striker drags with 0.8 of the stop's force."""
+    torque = ROWS["hip_stop_screws"].capacity(S)
+    push = 1e3 * torque / hip_stop(D).lever_mm
+    screw = BASE["hip_seat_screw"]
+    left = least_preload_n(screw.fastening, D.cheek_mm, steel_mpa=206000.0, clamped_mpa=70000.0)
+    assert 0.8 * push == pytest.approx(left)
+    assert screw.count * len(screw.places_mm) == 2  # one for each seat

@@ -1,0 +1,24 @@
+"""Bushes of planets under the rules of the paper: what is bought makes up the length that is drawn."""
+
+import re
+
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+
+FOUND = [entry.actuator for entry in map_for("VT8020", rules="paper").entries if entry.actuator is not None]
+
+
+@pytest.mark.parametrize("actuator", FOUND[::4], ids=lambda actuator: f"{actuator.ratio:.2f}")
+def test_bushes_of_the_catalogue_make_the_drawn_one(actuator):
+    (bush,) = (part for part in actuator.parts if part.name == "planet_bush")
+    (tube,) = bush.prisms
+    length = float(tube.z1_mm - tube.z0_mm)
+    found = re.match(r"(\d+) PTFE bronze bush(?:es)? 6 x 8 x (\d+) mm \(ISO 3547\), each cut to ([\d.]+) mm", bush.note)
+    pieces, bought, cut = int(found[1]), float(found[2]), float(found[3])
+    assert pieces * cut == pytest.approx(length, abs=0.05 * pieces)
+    assert bought in (4.0, 6.0, 8.0, 10.0)
+    assert cut - 0.05 <= bought < cut + 2.05  # the next longer one
+    assert (pieces - 1) * 10.0 < length  # no more pieces than needed
+    (hole,) = tube.holes
+    assert (2.0 * hole.radius_mm, 2.0 * tube.outline.radius_mm) == (6.0, 8.0)
