@@ -123,8 +123,13 @@ def test_an_interrupt_waits_until_an_export_has_taken_its_place(tmp_path, monkey
         return moved[-1]
 
     monkeypatch.setattr(Path, "replace", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        move_in(new, old)
+    # A shell starts its background jobs, such as a test run, with Ctrl-C ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            move_in(new, old)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert {path.name: path.read_text() for path in old.iterdir()} == dict.fromkeys(["a", "b", "design.json"], "new")
 
 
