@@ -13,7 +13,8 @@ from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import InternalGear
-from pareto_monoped.geometry.shapes import Circle, Numbers
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.shapes import Circle, Pattern
 
 
 def check(product: Product) -> Check:
@@ -25,49 +26,62 @@ def check(product: Product) -> Check:
 def in_pose(product: Product) -> tuple[list[Overlap], int]:
     """Overlaps of all pairs of instances in the product's pose, and the number of pairs."""
     meshes = [PlacedMesh.of(i.name, k.mesh.body, i.world) for i, k in product.placed()]
-    rings = {instance.name: _rings(instance) for instance in product.instances}
+    records = {id(instance.part): _record(instance.part) for instance in product.instances}
+    stacks = {instance.name: _stack(instance, records[id(instance.part)]) for instance in product.instances}
     found: list[Overlap] = []
     for one, other in near(meshes):
-        if not _apart(rings[one.name], rings[other.name]):
+        if not _apart(stacks[one.name], stacks[other.name]):
             found += overlap_of(one, other, "in the pose")
     count = len(meshes)
     return found, count * (count - 1) // 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Rings:
-    """An instance's prisms as rings around its own axis.
+class _Stack:
+    """The layers of a part around its axis, in the part's frame or in the assembly.
 
     Attributes:
         axis: x and z of the axis in the assembly, in mm.
-        rows: per prism the least and greatest radius, the low and high y, in mm; shape (n, 4).
+        rows: per prism the least and greatest radius, the low and high end along the axis, in mm; shape (n, 4).
+        bores: per round hole the number of its prism, x and y of its axis (in the assembly x and z) and its radius;
+            shape (m, 4).
     """
 
     axis: NDArray[np.float64]
     rows: NDArray[np.float64]
+    bores: NDArray[np.float64]
 
 
-def _rings(instance: Instance) -> _Rings | None:
-    """The rings of an instance; None if it is not made of prisms only."""
-    rows = []
-    for prism in instance.part.prisms:
-        heights = _heights(instance, prism.z0_mm, prism.z1_mm)
-        bores = [hole for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
-        least = max((_bore_radius(bore) for bore in bores), default=0.0)
+def _record(part: Part) -> _Stack | None:
+    """The layers of a part in its own frame; None if it is not made of prisms only."""
+    rows, bores = [], []
+    for number, prism in enumerate(part.prisms):
+        inner = [_bore_radius(hole) for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
         greatest = max(float(np.hypot(*points.T).max()) for points in all_polygons([prism.outline]))
-        rows.append((least, greatest, min(heights), max(heights)))
+        rows.append((max(inner, default=0.0), greatest, float(prism.z0_mm), float(prism.z1_mm)))
+        for hole in prism.holes:
+            if isinstance(hole, Circle | Pattern):
+                centres = hole.centres_mm() if isinstance(hole, Pattern) else [(float(hole.x_mm), float(hole.y_mm))]
+                bores += [(float(number), x, y, float(hole.radius_mm)) for x, y in centres]
     # A head counts as a cylinder as wide as its face: the question is only whether the meshes need a look.
-    for head in instance.part.features:
+    for head in part.features:
         if isinstance(head, CountersunkHead):
             (bevel,) = head.bevels
-            heights = _heights(instance, bevel.face_mm, bevel.end_mm)
-            rows.append((0.0, float(head.radius_mm), min(heights), max(heights)))
-    return _Rings(axis=instance.world[[0, 2], 3], rows=np.array(rows)) if rows and not instance.part.balls else None
+            rows.append((0.0, float(head.radius_mm), float(bevel.face_mm), float(bevel.end_mm)))
+    if not rows or part.balls:
+        return None
+    return _Stack(axis=np.zeros(2), rows=np.array(rows), bores=np.array(bores).reshape(-1, 4))
 
 
-def _heights(instance: Instance, *along_mm: Numbers) -> list[float]:
-    """Heights y in the assembly of heights along an instance's own axis."""
-    return [float((instance.world @ np.array([0.0, 0.0, float(z), 1.0]))[1]) for z in along_mm]
+def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
+    """A part's layers where an instance of it stands; its axis is parallel to the joints'."""
+    if record is None:
+        return None
+    world = instance.world
+    rows, bores = record.rows.copy(), record.bores.copy()
+    rows[:, 2:] = np.sort(world[1, 2] * rows[:, 2:] + world[1, 3], axis=1)
+    bores[:, 1:3] = bores[:, 1:3] @ world[[0, 2], :2].T + world[[0, 2], 3]
+    return _Stack(axis=world[[0, 2], 3], rows=rows, bores=bores)
 
 
 def _bore_radius(hole: Circle | InternalGear) -> float:
@@ -77,11 +91,31 @@ def _bore_radius(hole: Circle | InternalGear) -> float:
     return float(hole.radius_mm) if float(hole.x_mm) == 0.0 and float(hole.y_mm) == 0.0 else 0.0
 
 
-def _apart(one: _Rings | None, other: _Rings | None) -> bool:
-    """Whether two instances on one axis keep apart as rings, so that their meshes need not be intersected."""
-    if one is None or other is None or float(np.abs(one.axis - other.axis).max()) > TOUCH_MM:
+def _apart(one: _Stack | None, other: _Stack | None) -> bool:
+    """Whether the records of two instances say that they keep apart, so that their meshes need not be intersected."""
+    if one is None or other is None:
         return False
+    on_one_axis = float(np.abs(one.axis - other.axis).max()) <= TOUCH_MM
+    return (on_one_axis and _as_rings(one, other)) or _in_holes(one, other) or _in_holes(other, one)
+
+
+def _common(one: _Stack, other: _Stack) -> NDArray[np.bool_]:
+    """Which layers have a stretch of the axis in common, shape (n of one, n of the other)."""
+    a, b = one.rows[:, None], other.rows[None]
+    return np.asarray(np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 2], b[..., 2]) > TOUCH_MM)
+
+
+def _as_rings(one: _Stack, other: _Stack) -> bool:
+    """Whether two instances on one axis are rings, one around the other or one behind the other."""
     a, b = one.rows[:, None], other.rows[None]
     radial = np.minimum(a[..., 1], b[..., 1]) - np.maximum(a[..., 0], b[..., 0]) > TOUCH_MM
-    axial = np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 2], b[..., 2]) > TOUCH_MM
-    return not bool(np.any(radial & axial))
+    return not bool(np.any(radial & _common(one, other)))
+
+
+def _in_holes(one: _Stack, other: _Stack) -> bool:
+    """Whether every layer of one stands in a round hole of each layer of the other beside it, such as a screw."""
+    beside = _common(one, other)
+    room = other.bores[:, 3] - np.hypot(*(other.bores[:, 1:3] - one.axis).T)
+    widest = np.zeros(len(other.rows))
+    np.maximum.at(widest, other.bores[:, 0].astype(np.intp), room)
+    return bool(np.all(one.rows[:, 1, None] <= widest[None] + TOUCH_MM, where=beside))

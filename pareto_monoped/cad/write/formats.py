@@ -12,7 +12,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     "stl": (("parts/stl/", "each part as triangles, mm"),),
     "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
     "dxf": (
-        ("laser/", "the plates for the laser cutter: true outline without kerf, one layer, mm"),
+        (
+            "laser/",
+            "the plates for the laser cutter: true outline without kerf on the layer CUT, mm; NOTES says what follows",
+        ),
         ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
     ),
     "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
@@ -23,7 +26,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
     "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
     "pdf": (
-        ("drawings/assembly.pdf", "the robot with sections, balloons and the list of items, A1"),
+        (
+            "drawings/assembly.pdf",
+            "the robot with sections and the list of items, then its units pulled apart, with balloons, A1",
+        ),
         ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
     ),
     "assembly": (

@@ -9,7 +9,7 @@ from pareto_monoped.cad.write.formats import FILES
 from pareto_monoped.strength.single import JointFactor
 
 _HOW = {
-    "laser cut": "Laser-cut from sheet by `laser/`; countersink where the parts list says so; deburr.",
+    "laser cut": "Laser-cut by the layer CUT in `laser/`; countersink, tap and ream as its layer NOTES says; deburr.",
     "3D printed": "Print from `print/`, solid (100 percent), 0.2 mm layers; PETG, nylon or the like.",
     "machined": "Turn and mill from bar by `parts/step/`; gears as their notes in the parts list say.",
     "moulded": "Cast polyurethane or rubber in a printed mould around the foot block's tongue.",

@@ -13,7 +13,7 @@ from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import MATERIALS
 from pareto_monoped.robot.frames import PART_TO_BODY
 from tests.cad.check.faults import moved, shifted, with_instance
@@ -113,3 +113,40 @@ def test_parts_on_one_axis_overlap_where_one_meets_the_other(product, shaft, aro
     found, pairs = overlap.in_pose(on_one_axis(product, *parts))
     assert pairs == 1
     assert any(o.depth_mm > OVERLAP.value for o in found) is overlaps
+
+
+PLATE = turned("plate", disc(20.0, 0.0, 5.0, Pattern(radius_mm=2.0, pitch_radius_mm=10.0, count=4, phase_rad=0.3)))
+
+
+@pytest.mark.parametrize(
+    ("pin", "away_mm", "looked_at", "overlaps"),
+    [
+        (disc(2.0, -3.0, 8.0), 0.0, False, False),
+        (disc(2.1, -3.0, 8.0), 0.0, True, True),
+        (disc(1.8, -3.0, 8.0), 0.19, False, False),
+        (disc(1.8, -3.0, 8.0), 0.5, True, True),
+    ],
+)
+def test_a_pin_in_a_hole_is_left_to_the_records_and_no_other(product, pin, away_mm, looked_at, overlaps):
+    """The plate is turned about its axis, and the pin stands in its third hole."""
+    plate, shaft = on_one_axis(product, PLATE, turned("pin", pin)).instances
+    turn, place = turn_z(0.7), np.eye(4)
+    place[:3, 3] = [*PLATE.prisms[0].holes[0].centres_mm()[2], 0.0]
+    place[0, 3] += away_mm
+    plate = dataclasses.replace(plate, world=plate.world @ turn)
+    shaft = dataclasses.replace(shaft, world=plate.world @ place)
+    one, other = (overlap._stack(i, overlap._record(i.part)) for i in (plate, shaft))
+    assert overlap._apart(one, other) is overlap._apart(other, one) is not looked_at
+    both = dataclasses.replace(on_one_axis(product, plate.part, shaft.part), instances=(plate, shaft))
+    found, _ = overlap.in_pose(both)
+    assert any(o.depth_mm > OVERLAP.value for o in found) is overlaps
+
+
+def test_a_pin_that_reaches_a_layer_without_a_hole_is_looked_at(product):
+    """Two layers, of which the second has no hole."""
+    closed = turned("closed", *PLATE.prisms, disc(20.0, 5.0, 6.0))
+    plate, shaft = on_one_axis(product, closed, turned("pin", disc(2.0, 1.0, 5.5))).instances
+    place = np.eye(4)
+    place[:3, 3] = [*PLATE.prisms[0].holes[0].centres_mm()[0], 0.0]
+    shaft = dataclasses.replace(shaft, world=plate.world @ place)
+    assert not overlap._apart(*(overlap._stack(i, overlap._record(i.part)) for i in (plate, shaft)))
