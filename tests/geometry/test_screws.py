@@ -97,9 +97,10 @@ def test_a_hexagon_head_is_one_over_flats_and_corners():
     assert head.z1_mm - head.z0_mm == 2.0
 
 
-@pytest.mark.parametrize(("screw", "bearing"), [(M3, 4.57), (M4, 5.88), (M5, 6.88)])
-def test_a_hexagon_bears_on_the_ring_of_its_standard(screw, bearing):
-    """Least diameter dw of the bearing face (ISO 4017, product grade A); drawn within 5 percent."""
+@pytest.mark.parametrize(("screw", "flats", "bearing"), [(M3, 5.5, 4.57), (M4, 7.0, 5.88), (M5, 8.0, 6.88)])
+def test_a_hexagon_bears_on_the_ring_of_its_standard(screw, flats, bearing):
+    """Width across flats, and least diameter dw of the bearing face within 5 percent (ISO 4017, product grade A)."""
+    assert screw.fastening("hexagon", "8.8").head_mm == flats
     assert screw.fastening("hexagon", "8.8").bearing_mm == pytest.approx(bearing, rel=0.05)
     assert screw.fastening("hexagon", "8.8").bearing_mm < screw.fastening("cap", "8.8").bearing_mm
 
