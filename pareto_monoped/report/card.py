@@ -106,7 +106,7 @@ def study_card(
         hypervolume_unit=study.objectives.volume_unit,
         reference=data.reference_point.text(),
         bounds={
-            name: [value.lower, value.upper] if isinstance(value, Bounds) else [value, value]
+            name: list(data.coordinates.limits(name)) if isinstance(value, Bounds) else [value, value]
             for name, value in study.variables.items()
         },
         summary=sentences(data, front, again.cases),

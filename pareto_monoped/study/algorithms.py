@@ -1,17 +1,21 @@
 """The registry of search algorithms: settings in, algorithm out. Each implementation is imported only when used."""
 
-import numpy as np
-
-from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.study.algorithm_settings import EvolutionSettings, OptunaSettings, RandomSettings, WeightedSettings
+from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.protocol import Algorithm, Space
+from pareto_monoped.study.protocol import Algorithm
 
 
-def make_algorithm(study: Study) -> Algorithm:
-    """The search algorithm that the study's settings name, before its first ``ask``."""
-    free = np.array([name in study.free for name in NAMES])
-    space = Space(names=study.free, lower=study.lower[free], upper=study.upper[free], objectives=study.objectives)
+def make_algorithm(study: Study, coordinates: Coordinates | None = None) -> Algorithm:
+    """The search algorithm that the study's settings name, before its first ``ask``.
+
+    Args:
+        study: its settings.
+        coordinates: what it searches; every free variable within its bounds if None.
+    """
+    coordinates = coordinates or plain_coordinates(study)
+    space = coordinates.space
     match study.algorithm:
         case EvolutionSettings() as settings:
             from pareto_monoped.study.evolution import Evolution
@@ -24,9 +28,9 @@ def make_algorithm(study: Study) -> Algorithm:
         case WeightedSettings() as settings:
             from pareto_monoped.study.weighted import WeightedSearch
 
-            nominal = PAPER_CASES["nominal"].design
-            start = np.array([settings.start.get(name, getattr(nominal, name)) for name in space.names])
-            return WeightedSearch(space, settings, start, study.seed, study.reference_point)
+            start = PAPER_CASES["nominal"].design.replace(settings.start).as_array()
+            first = coordinates.values(start[None])[0]
+            return WeightedSearch(space, settings, first, study.seed, study.reference_point)
         case RandomSettings() as settings:
             from pareto_monoped.study.random_search import RandomSearch
 

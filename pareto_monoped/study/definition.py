@@ -75,6 +75,7 @@ class _File:
     stop: Stop = field(default_factory=Stop)
     audit: bool = True
     strength: bool = False  # of a stored study; a file without it takes the default of ``strength_for``
+    gear_list: bool = False  # of a stored study; a file without it searches the list
     algorithm: dict[str, Any] = field(default_factory=dict)
 
 
@@ -84,7 +85,8 @@ class Study:
 
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
-    measure of strength is then constrained.
+    measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
+    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Study:
     stop: Stop
     audit: bool
     strength: bool = False
+    gear_list: bool = False
     algorithm: AlgorithmSettings
 
     @property
@@ -125,15 +128,17 @@ class Study:
     def as_dict(self) -> dict[str, Any]:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
-        Left out are optional variables at their defaults, limits that are off and came later, the rules ``paper``, and
-        strength that is not asked for. The paper's objectives stand as 0.1.0 stored them. So studies stored before
-        there were others keep their hash.
+        Left out are optional variables at their defaults, limits that are off and came later, the rules ``paper``,
+        strength that is not asked for, and a list of gearboxes that is not searched. The paper's objectives stand as
+        0.1.0 stored them. So studies stored before there were others keep their hash.
         """
         plain = asdict(self)
         if self.rules == "paper":
             del plain["rules"]
         if not self.strength:
             del plain["strength"]
+        if not self.gear_list:
+            del plain["gear_list"]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
             for name, v in zip(NAMES, self._ordered(), strict=True)
@@ -179,6 +184,7 @@ def load_study(
     if strength is not None:
         values["strength"] = strength
     values.setdefault("strength", strength_for(str(values.get("calibration"))))
+    values.setdefault("gear_list", True)
     if objectives is not None:
         values["objectives"] = list(objectives)
         if isinstance(corner := values.get("reference_point"), dict):
@@ -216,6 +222,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         stop=file.stop,
         audit=file.audit,
         strength=file.strength,
+        gear_list=file.gear_list,
         algorithm=_algorithm(file.algorithm, corner, source),
     )
 

@@ -4,9 +4,12 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pymoo.algorithms.base.genetic import GeneticAlgorithm
+from pymoo.core.duplicate import DefaultDuplicateElimination
 from pymoo.core.population import Population
 from pymoo.core.problem import Problem
+from pymoo.core.repair import Repair
 from pymoo.core.termination import NoTermination
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
@@ -14,33 +17,44 @@ from pymoo.operators.mutation.pm import PM
 from pareto_monoped.study.algorithm_settings import EvolutionSettings
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 from pareto_monoped.study.random_state import generator_state, set_generator_state
+from pareto_monoped.study.seen import Seen, drawn
 
 
 class Evolution:
-    """A genetic algorithm of pymoo.
+    """A genetic algorithm of pymoo that asks for no design twice.
 
     Between generations, all three keep only the population with its ranks and crowding distances, the number of
-    generations and the random generator. These are the state.
+    generations and the random generator. These are the state. The designs so far are in the history.
     """
 
     def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
-        self._algorithm = _algorithm(settings, seed)
-        problem = Problem(
-            n_var=len(space.names), n_obj=len(space.objectives.names), n_ieq_constr=1, xl=space.lower, xu=space.upper
-        )
+        self._space = space
+        self._seen = Seen()
+        self._algorithm = _algorithm(settings, seed, space, self._seen)
+        lower, upper = space.edges
+        problem = Problem(n_var=len(space.names), n_obj=len(space.objectives.names), n_ieq_constr=1, xl=lower, xu=upper)
         self._algorithm.setup(problem, termination=NoTermination())
         self._asked: Population = Population.empty()
 
     def ask(self) -> Proposal | None:
-        """The first population, later the offspring of the current one; None if pymoo finds no new offspring."""
+        """The first population, later new offspring of the current one.
+
+        Where a population has only known offspring, as in a small space, new designs are drawn uniformly; None if
+        there are none left.
+        """
         asked = self._algorithm.ask()
-        if asked is None:
-            return None
+        if asked is None or len(asked) == 0:
+            generator, size = self._algorithm.random_state, self._algorithm.pop_size
+            values = drawn(self._space, self._seen, generator, size)
+            if len(values) == 0:
+                return None
+            asked = Population.new(X=values)
         self._asked = asked
         return Proposal(values=self._asked.get("X").astype(float))
 
     def tell(self, scores: Scores) -> None:
         """Select the survivors. Infeasible designs rank behind all feasible ones, in the order of their violation."""
+        self._seen.add(self._asked.get("X"))
         self._asked.set("F", scores.minimised())
         self._asked.set("G", scores.violation[:, None])
         self._algorithm.tell(infills=self._asked)
@@ -60,7 +74,9 @@ class Evolution:
         return state
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Set the whole state; the history is not needed."""
+        """Set the whole state, and remember the designs of the history."""
+        for values, _ in history:
+            self._seen.add(values)
         algorithm = self._algorithm
         set_generator_state(algorithm.random_state, state["generator"])
         if "X" not in state:
@@ -85,7 +101,30 @@ def _jsonable(value: float) -> float | str:
     return value if np.isfinite(value) else str(value)
 
 
-def _algorithm(settings: EvolutionSettings, seed: int) -> GeneticAlgorithm:
+class _Snap(Repair):
+    """Rounds the variables that are whole numbers."""
+
+    def __init__(self, space: Space) -> None:
+        super().__init__()
+        self._space = space
+
+    def _do(self, problem: Problem, X: Floats, **_: Any) -> Floats:
+        return self._space.snap(X)
+
+
+class _Unseen(DefaultDuplicateElimination):
+    """Leaves out what is in the population already, as pymoo does, and what was ever asked for."""
+
+    def __init__(self, seen: Seen) -> None:
+        super().__init__()
+        self._seen = seen
+
+    def _do(self, pop: Population, other: Population | None, is_duplicate: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        found: NDArray[np.bool_] = super()._do(pop, other, is_duplicate)
+        return found if other is not None else found | ~self._seen.new(pop.get("X"))
+
+
+def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen) -> GeneticAlgorithm:
     from pymoo.algorithms.moo.age2 import AGEMOEA2
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.algorithms.moo.sms import SMSEMOA
@@ -96,5 +135,7 @@ def _algorithm(settings: EvolutionSettings, seed: int) -> GeneticAlgorithm:
         pop_size=settings.population,
         crossover=SBX(prob=settings.crossover_probability, eta=settings.crossover_eta),
         mutation=PM(eta=settings.mutation_eta),
+        repair=_Snap(space),
+        eliminate_duplicates=_Unseen(seen),
         seed=seed,
     )

@@ -11,6 +11,10 @@ import optuna
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.algorithm_settings import OptunaSettings
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
+from pareto_monoped.study.seen import Seen, drawn
+
+_KNOWN = 20
+"""Known designs in a batch after which uniform ones are drawn; our own choice, a fraction of a second of waiting."""
 
 
 class OptunaSampler:
@@ -24,22 +28,53 @@ class OptunaSampler:
     def __init__(self, space: Space, settings: OptunaSettings, seed: int) -> None:
         self._settings = settings
         self._seed = seed
+        self._space = space
         self._generation = 0
         self._distributions: dict[str, optuna.distributions.BaseDistribution] = {
-            name: optuna.distributions.FloatDistribution(low, high)
+            name: optuna.distributions.IntDistribution(int(low), int(high))
+            if name in space.gears
+            else optuna.distributions.FloatDistribution(low, high)
             for name, low, high in zip(space.names, space.lower.tolist(), space.upper.tolist(), strict=True)
         }
         self._asked: list[optuna.trial.Trial] = []
+        self._seen = Seen()
         with _quiet():
             self._study = optuna.create_study(directions=_directions(space.objectives), sampler=self._sampler())
 
-    def ask(self) -> Proposal:
-        """The sampler's next designs."""
+    def ask(self) -> Proposal | None:
+        """The sampler's next designs that are new; uniform ones after ``_KNOWN`` known ones; None if there is no other.
+
+        Known designs end as failed trials. Samplers ignore those, so a study rebuilt without them continues alike.
+        """
+        batch, known, self._asked = self._settings.batch, 0, []
         with _quiet():
             self._study.sampler = self._sampler()
-            self._asked = [self._study.ask(self._distributions) for _ in range(self._settings.batch)]
-        values = [[trial.params[name] for name in self._distributions] for trial in self._asked]
-        return Proposal(values=np.array(values, dtype=np.float64))
+            while len(self._asked) < batch and known < 2 * _KNOWN:
+                if known >= _KNOWN:
+                    self._enqueue(batch)
+                trial = self._study.ask(self._distributions)
+                rows = np.array([self._row(one) for one in [*self._asked, trial]], dtype=np.float64)
+                if self._seen.new(rows)[-1]:
+                    self._asked.append(trial)
+                else:
+                    known += 1
+                    self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
+        return Proposal(values=np.array([self._row(trial) for trial in self._asked])) if self._asked else None
+
+    def _enqueue(self, count: int) -> None:
+        """Make the next trial one that is drawn uniformly, if there is a new one; the seed is the sampler's."""
+        generator = np.random.default_rng([self._seed, self._generation, len(self._asked)])
+        for row in drawn(self._space, self._seen, generator, count)[:1].tolist():
+            self._study.enqueue_trial(self._params(row))
+
+    def _params(self, row: list[float]) -> dict[str, Any]:
+        return {
+            name: int(value) if name in self._space.gears else value
+            for name, value in zip(self._distributions, row, strict=True)
+        }
+
+    def _row(self, trial: optuna.trial.Trial) -> list[float]:
+        return [float(trial.params[name]) for name in self._distributions]
 
     def tell(self, scores: Scores) -> None:
         """Complete the trials of the last ``ask``; the violation becomes Optuna's constraint."""
@@ -47,6 +82,7 @@ class OptunaSampler:
             for trial, values, violation in zip(self._asked, _values(scores), scores.violation.tolist(), strict=True):
                 trial.set_constraint("violation", violation)
                 self._study.tell(trial, values)
+        self._seen.add(np.array([self._row(trial) for trial in self._asked]))
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
@@ -59,6 +95,7 @@ class OptunaSampler:
         with _quiet():
             for generation, (values, scores) in enumerate(history):
                 self._add(generation, values, scores)
+                self._seen.add(values)
             sampler = self._study.sampler
             if isinstance(sampler, optuna.samplers.NSGAIISampler):
                 # Optuna caches the parents of a generation when it first needs them, and derives them from the parents
@@ -69,7 +106,7 @@ class OptunaSampler:
     def _add(self, generation: int, values: Floats, scores: Scores) -> None:
         for row, found, violation in zip(values.tolist(), _values(scores), scores.violation.tolist(), strict=True):
             trial = optuna.trial.create_trial(
-                params=dict(zip(self._distributions, row, strict=True)),
+                params=self._params(row),
                 distributions=self._distributions,
                 values=found,
                 constraints={"violation": violation},

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.study.definition import Bounds, Study
+from pareto_monoped.study.coordinates import Coordinates
+from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.scoring import values_of
 
@@ -59,20 +60,21 @@ def _optuna_storage(path: Path) -> Any:
 class OptunaTables:
     """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
-    def __init__(self, path: Path, study_id: int, study: Study) -> None:
+    def __init__(self, path: Path, study_id: int, coordinates: Coordinates) -> None:
+        study = coordinates.study
         self._path = path
         self._study_id = study_id
         self._objectives = study.objectives
         self._free = [i for i, name in enumerate(NAMES) if name in study.free]
+        limits = {name: coordinates.limits(name) for name in study.free}
         self._distributions = {
             name: json.dumps(
                 {
                     "name": "FloatDistribution",
-                    "attributes": {"step": None, "low": bounds.lower, "high": bounds.upper, "log": False},
+                    "attributes": {"step": None, "low": low, "high": high, "log": False},
                 }
             )
-            for name, bounds in study.variables.items()
-            if isinstance(bounds, Bounds)
+            for name, (low, high) in limits.items()
         }
 
     def insert(self, connection: sqlite3.Connection, generation: Generation) -> None:

@@ -1,10 +1,11 @@
 """The interface between run loop and search algorithms: ask for designs, tell their scores, save, restore.
 
-An algorithm never simulates and never stores. It sees the free variables only, in their own units.
+An algorithm never simulates and never stores. It sees the free variables only, in their own units, and a list of
+gearboxes by position (``study.coordinates``).
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,18 +17,42 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Gear:
+    """What a search knows of a gearbox: its real ratio and its mass."""
+
+    ratio: float
+    mass_kg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
     """What is searched, and for what.
 
     Attributes:
         names, lower, upper: names and bounds of the free variables, each of length d.
         objectives: two or three measures.
+        gears: the gearboxes of each variable that chooses one; its values are the whole numbers from 0 to n - 1.
     """
 
     names: tuple[str, ...]
     lower: Floats
     upper: Floats
     objectives: Objectives = HEIGHT_AND_ENERGY
+    gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
+
+    @property
+    def whole(self) -> NDArray[np.bool_]:
+        """Which variables are whole numbers, shape (d,)."""
+        return np.array([name in self.gears for name in self.names])
+
+    @property
+    def edges(self) -> tuple[Floats, Floats]:
+        """Bounds of numbers that ``snap`` rounds, each of shape (d,): every whole number owns an equal share."""
+        return self.lower - 0.5 * self.whole, self.upper + 0.5 * self.whole
+
+    def snap(self, values: Floats) -> Floats:
+        """Values within the edges with whole numbers where they must be, shape (n, d); the others stay."""
+        return np.where(self.whole, np.clip(np.round(values), self.lower, self.upper), values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,28 +8,34 @@ import numpy as np
 from pareto_monoped.study.algorithm_settings import RandomSettings
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 from pareto_monoped.study.random_state import generator_state, set_generator_state
+from pareto_monoped.study.seen import Seen, drawn
 
 
 class RandomSearch:
-    """Draws designs uniformly within the bounds."""
+    """Draws designs uniformly within the bounds, none of them twice."""
 
     def __init__(self, space: Space, settings: RandomSettings, seed: int) -> None:
         self._space = space
         self._batch = settings.population
         self._generator = np.random.default_rng(seed)
+        self._seen = Seen()
+        self._asked = np.zeros((0, len(space.names)))
 
-    def ask(self) -> Proposal:
-        """``population`` designs, independent of each other and of all scores."""
-        unit = self._generator.random((self._batch, len(self._space.names)))
-        return Proposal(values=self._space.lower + unit * (self._space.upper - self._space.lower))
+    def ask(self) -> Proposal | None:
+        """``population`` designs, independent of all scores; fewer or None if nearly all designs have been drawn."""
+        self._asked = drawn(self._space, self._seen, self._generator, self._batch)
+        return Proposal(values=self._asked) if len(self._asked) else None
 
     def tell(self, scores: Scores) -> None:
-        """Ignore the scores: random search does not learn."""
+        """Remember which designs there were; random search does not learn from scores."""
+        self._seen.add(self._asked)
 
     def state(self) -> dict[str, Any]:
         """State of the random generator."""
         return {"generator": generator_state(self._generator)}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Set the random generator; the history is not needed."""
+        """Set the random generator, and remember the designs of the history."""
         set_generator_state(self._generator, state["generator"])
+        for values, _ in history:
+            self._seen.add(values)

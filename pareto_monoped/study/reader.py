@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.motors import Motor
     from pareto_monoped.actuator.search import ActuatorMap
     from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.study.coordinates import Coordinates
 
 _DTYPES = {column.name: column.dtype for column in COLUMNS}
 _HISTORY = {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
@@ -89,6 +90,14 @@ class StudyData:
         from pareto_monoped.actuator.search import map_of
 
         return map_of(self.motor, self.study.rules)
+
+    @cached_property
+    def coordinates(self) -> "Coordinates":
+        """What the study searches."""
+        from pareto_monoped.study.coordinates import coordinates_of, plain_coordinates
+
+        study = self.study
+        return coordinates_of(study, self.actuator_map) if study.gear_list else plain_coordinates(study)
 
     @property
     def _source(self) -> str:

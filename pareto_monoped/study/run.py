@@ -91,7 +91,8 @@ def run(
         threads = workers or default_workers()
         if not db.exists():
             simulator = load_simulator(study, workers=threads)
-            create_database(db, study, _meta(study, simulator), make_algorithm(study).state())
+            algorithm = make_algorithm(study, simulator.coordinates(study))
+            create_database(db, study, _meta(study, simulator), algorithm.state())
             data = read_study(db)
         else:
             data = read_study(db)
@@ -193,9 +194,10 @@ def _go_on(
     if _nothing_left(data, study, budget):
         return _summary(db, data, data, 0.0)
     _refuse_other_results(data, simulator, db)
-    with Store(db, study) as store:
+    coordinates = simulator.coordinates(study)
+    with Store(db, study, coordinates=coordinates) as store:
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
-        session = Session(data, study, simulator.evaluator, store, budget, progress)
+        session = Session(data, study, simulator.evaluator, store, budget, progress, coordinates)
         with Interrupt(notify) as interrupt:
             reason = session.go(interrupt)
         finished = reason != "interrupted"

@@ -16,6 +16,7 @@ from pareto_monoped.pareto.at_height import AtHeight, best_at_height
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
+from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
@@ -57,13 +58,14 @@ class Session:
         store: Store,
         budget: int,
         progress: Callable[[Progress], None],
+        coordinates: Coordinates | None = None,
     ) -> None:
         self._study = study
         self._evaluate = evaluate
         self._store = store
         self._budget = budget
         self._progress = progress
-        self._free = np.array([name in study.free for name in NAMES])
+        self._coordinates = coordinates or plain_coordinates(study)
         self._generation = data.checkpoint.generation
         self.total = self._before = len(data.trials)
         self._seconds_before = data.wall_time_s
@@ -75,9 +77,9 @@ class Session:
         names = list(study.objectives.names)
         self._front = np.zeros((0, len(names)))
         self._add_to_front(data.trials.loc[feasible, names].to_numpy())
-        self._algorithm: Algorithm = make_algorithm(study)
+        self._algorithm: Algorithm = make_algorithm(study, self._coordinates)
         try:
-            self._algorithm.restore(data.checkpoint.state, _history(data, self._free))
+            self._algorithm.restore(data.checkpoint.state, _history(data, self._coordinates))
         except (KeyError, TypeError, ValueError, IndexError) as error:
             raise DatabaseError(
                 f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
@@ -128,8 +130,7 @@ class Session:
         proposal = self._algorithm.ask()
         if proposal is None:
             return None
-        designs = np.tile(self._study.lower, (len(proposal.values), 1))
-        designs[:, self._free] = proposal.values
+        designs = self._coordinates.designs(proposal.values)
         there = len(self._designs)
         if not np.array_equal(designs[:there], self._designs):
             raise DatabaseError(
@@ -202,14 +203,14 @@ def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], S
     )
 
 
-def _history(data: StudyData, free: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.float64], Scores]]:
-    """Values of the free variables and scores of every complete generation, in order."""
+def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:
+    """Coordinates and scores of every complete generation, in order."""
     numbers = data.trials["generation"].to_numpy()[: data.checkpoint.evaluations]
     edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.evaluations]
     for first, end in pairwise(edges):
         if first < end:
             designs, known = _rows(data, first, end)
-            yield designs[:, free], known
+            yield coordinates.values(designs), known
 
 
 def _joined(before: Scores, new: Scores | None) -> Scores:

@@ -13,6 +13,7 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.study.coordinates import Coordinates, coordinates_of
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.reader import StudyData
 
@@ -39,6 +40,10 @@ class Simulator:
     def contents(self) -> dict[str, dict[str, Any]]:
         """Every value of ``motor`` and ``calibration``, as JSON values."""
         return {"motor": motor_values(self.motor), "calibration": calibration_values(self.calibration)}
+
+    def coordinates(self, study: Study) -> Coordinates:
+        """What an algorithm searches in ``study``: lists of this motor's gearboxes where the study has them."""
+        return coordinates_of(study, self.evaluator.actuator_map)
 
     def probe(self) -> list[list[float | None]]:
         """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.

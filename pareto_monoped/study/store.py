@@ -13,6 +13,7 @@ from typing import Any
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import replacing
 from pareto_monoped.study.columns import COLUMNS, LATER
+from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
@@ -67,8 +68,21 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
 class Store:
     """A study database that is open for writing. Use it as a context manager."""
 
-    def __init__(self, path: Path, study: Study, *, known_schemas: Sequence[str] = KNOWN_SCHEMAS) -> None:
+    def __init__(
+        self,
+        path: Path,
+        study: Study,
+        *,
+        coordinates: Coordinates | None = None,
+        known_schemas: Sequence[str] = KNOWN_SCHEMAS,
+    ) -> None:
         """Open an existing study for writing.
+
+        Args:
+            path: the database.
+            study: its definition.
+            coordinates: what is searched; every free variable within its bounds if None.
+            known_schemas: revisions of Optuna's schema that are written directly.
 
         Raises:
             DatabaseError: not a study, damaged, read-only, or of a newer version.
@@ -83,12 +97,12 @@ class Store:
             # One other thread writes the generations, one at a time, and the run loop waits for it.
             self._connection = sqlite3.connect(path, isolation_level=None, timeout=30.0, check_same_thread=False)
             try:
-                self._open(study, known_schemas)
+                self._open(coordinates or plain_coordinates(study), known_schemas)
             except BaseException:
                 self._connection.close()
                 raise
 
-    def _open(self, study: Study, known_schemas: Sequence[str]) -> None:
+    def _open(self, coordinates: Coordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
         connection.execute("PRAGMA trusted_schema = OFF")
         check(connection, self.path)
@@ -99,7 +113,7 @@ class Store:
             raise DatabaseError(
                 f"study database {str(self.path)!r}: holds {len(rows)} studies, must be 1; give a file that 'run' made"
             )
-        self._optuna = OptunaTables(self.path, int(rows[0][0]), study)
+        self._optuna = OptunaTables(self.path, int(rows[0][0]), coordinates)
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
         self._add_later_columns()

@@ -30,7 +30,7 @@ class WeightedSearch:
         Args:
             space: the free variables and two objectives.
             settings: weights, population and the like.
-            start: where each run starts, in the units of the variables, shape (d,).
+            start: where each run starts, a point of the space, shape (d,).
             seed: of the study.
             corner: the study's reference point, which scales other objectives than the paper's.
         """
@@ -38,8 +38,8 @@ class WeightedSearch:
         self._settings = settings
         self._seed = seed
         self._corner = corner
-        extent = space.upper - space.lower
-        self._start = np.clip((start - space.lower) / extent, 0.0, 1.0)
+        lower, upper = space.edges
+        self._start = np.clip((start - lower) / (upper - lower), 0.0, 1.0)
         self._run = 0
         self._iteration = 0
         self._strategy = self._fresh()
@@ -51,9 +51,9 @@ class WeightedSearch:
             return None
         self._asked = self._strategy.ask()
         unit = np.clip(np.array(self._asked), 0.0, 1.0)
-        values = self._space.lower + unit * (self._space.upper - self._space.lower)
+        lower, upper = self._space.edges
         return Proposal(
-            values=np.minimum(values, self._space.upper),
+            values=self._space.snap(np.minimum(lower + unit * (upper - lower), upper)),
             height_weight=self._settings.height_weights[self._run],
         )
 
