@@ -30,6 +30,27 @@ class EvolutionSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SurrogateSettings:
+    """Evolution that ranks many offspring by a cheap model and simulates the most promising.
+
+    Attributes:
+        population: designs simulated per generation.
+        drawn_generations: generations that are spread over the space before the model begins.
+        offspring: how many offspring are ranked for each that is simulated.
+        crossover_eta, mutation_eta: of simulated binary crossover and polynomial mutation.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Literal["surrogate"]
+    population: Annotated[int, Field(ge=4, le=100_000)] = 40
+    drawn_generations: Annotated[int, Field(ge=1, le=1000)] = 3
+    offspring: Annotated[int, Field(ge=2, le=100)] = 40
+    crossover_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 15.0
+    mutation_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OptunaSettings:
     """Optuna's NSGA-II and TPE samplers, which are asked for ``population`` designs at a time.
 
@@ -91,7 +112,7 @@ class WeightedSettings:
     )
 
 
-AlgorithmSettings = EvolutionSettings | OptunaSettings | RandomSettings | WeightedSettings
+AlgorithmSettings = EvolutionSettings | OptunaSettings | RandomSettings | SurrogateSettings | WeightedSettings
 
 ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
     "nsga2": EvolutionSettings,
@@ -100,6 +121,7 @@ ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
     "optuna_nsga2": OptunaSettings,
     "optuna_tpe": OptunaSettings,
     "random": RandomSettings,
+    "surrogate": SurrogateSettings,
     "weighted_cmaes": WeightedSettings,
 }
 """Name of an algorithm in a study file -> its settings."""

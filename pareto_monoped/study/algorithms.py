@@ -1,7 +1,13 @@
 """The registry of search algorithms: settings in, algorithm out. Each implementation is imported only when used."""
 
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.study.algorithm_settings import EvolutionSettings, OptunaSettings, RandomSettings, WeightedSettings
+from pareto_monoped.study.algorithm_settings import (
+    EvolutionSettings,
+    OptunaSettings,
+    RandomSettings,
+    SurrogateSettings,
+    WeightedSettings,
+)
 from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.protocol import Algorithm
@@ -25,6 +31,10 @@ def make_algorithm(study: Study, coordinates: Coordinates | None = None) -> Algo
             from pareto_monoped.study.optuna_samplers import OptunaSampler
 
             return OptunaSampler(space, settings, study.seed)
+        case SurrogateSettings() as settings:
+            from pareto_monoped.study.surrogate import SurrogateSearch
+
+            return SurrogateSearch(space, settings, study.seed)
         case WeightedSettings() as settings:
             from pareto_monoped.study.weighted import WeightedSearch
 

@@ -77,11 +77,14 @@ class Scores:
         objectives: which measures the search is for.
         values: of these m objectives, shape (n, m); NaN where the jump failed.
         violation: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed.
+        constraints: how far each of k constraints is missed, as a share of its limit, shape (n, k); it holds at <= 0.
+            Shape (n, 0) where a search has none.
     """
 
     objectives: Objectives
     values: Floats
     violation: Floats
+    constraints: Floats
 
     def minimised(self) -> Floats:
         """All objectives as minimisation, shape (n, m). Failed jumps get zeros; their violation tells them apart."""
@@ -89,7 +92,12 @@ class Scores:
 
     def of(self, rows: slice) -> "Scores":
         """The scores of some of the designs."""
-        return Scores(objectives=self.objectives, values=self.values[rows], violation=self.violation[rows])
+        return Scores(
+            objectives=self.objectives,
+            values=self.values[rows],
+            violation=self.violation[rows],
+            constraints=self.constraints[rows],
+        )
 
 
 class Algorithm(Protocol):

@@ -8,7 +8,12 @@ from importlib.metadata import version
 from typing import Any
 
 from pareto_monoped import __version__
-from pareto_monoped.study.algorithm_settings import EvolutionSettings, OptunaSettings, WeightedSettings
+from pareto_monoped.study.algorithm_settings import (
+    EvolutionSettings,
+    OptunaSettings,
+    SurrogateSettings,
+    WeightedSettings,
+)
 from pareto_monoped.study.definition import Study
 
 _NOT_RESULTS = ("audit", "description", "evaluations", "stop")
@@ -19,7 +24,7 @@ def versions(study: Study) -> dict[str, str]:
     """Versions of the packages that decide the trials of ``study``; of search libraries, only the one in use."""
     names = ["mujoco", "numba", "numpy"]
     match study.algorithm:
-        case EvolutionSettings():
+        case EvolutionSettings() | SurrogateSettings():  # whose operators are pymoo's
             names += ["pymoo"]
         case OptunaSettings():
             names += ["optuna"]

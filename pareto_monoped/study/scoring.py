@@ -1,9 +1,10 @@
 """Judge evaluations by a study's constraints: feasible, infeasible or failed, with a graded violation and a reason."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
@@ -44,18 +45,32 @@ def judge(evaluations: Evaluations, constraints: Constraints, objectives: Object
     for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *objectives.names)):
         failed = failed | ~np.isfinite(getattr(evaluations, name))
     reasons = list(evaluations.reason)
-    columns = []
-    for limit in constraints.limits:
-        values = np.asarray(getattr(evaluations, limit.measure), dtype=np.float64)
-        shares = np.where(failed | np.isnan(values), FAILED_VIOLATION, limit.shares(values))
-        columns.append(shares)
+    measures = {limit.measure: getattr(evaluations, limit.measure) for limit in constraints.limits}
+    table = missed(constraints, measures, failed)
+    for limit, shares in zip(constraints.limits, table.T, strict=True):
         for i in np.flatnonzero(~failed & (shares > 0.0)):
-            also = f"{reasons[i]}; " if reasons[i] else ""
-            reasons[i] = f"{also}{limit.measure} = {values[i]:.4g} is {limit.violated} the limit of {limit.value:g}"
-    table = np.column_stack(columns) if columns else np.zeros((len(failed), 0))
+            also, value = f"{reasons[i]}; " if reasons[i] else "", measures[limit.measure][i]
+            reasons[i] = f"{also}{limit.measure} = {value:.4g} is {limit.violated} the limit of {limit.value:g}"
     violation = np.maximum(table, 0.0).sum(axis=1)
     state = np.where(failed, "failed", np.where(violation > 0.0, "infeasible", "feasible"))
     return Judgement(state=state, reason=tuple(reasons), constraints=table, violation=violation)
+
+
+def missed(
+    constraints: Constraints, measures: Mapping[str, ArrayLike], failed: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """How far n designs miss k constraints, as shares of their limits, shape (n, k).
+
+    Args:
+        constraints: the limits.
+        measures: values of each constrained measure, shape (n,).
+        failed: which jumps failed, shape (n,).
+    """
+    table = np.zeros((len(failed), len(constraints.limits)))
+    for column, limit in zip(table.T, constraints.limits, strict=True):
+        values = np.asarray(measures[limit.measure], dtype=np.float64)
+        column[:] = np.where(failed | np.isnan(values), FAILED_VIOLATION, limit.shares(values))
+    return table
 
 
 def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.float64]:
@@ -65,4 +80,9 @@ def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.fl
 
 def scores(evaluations: Evaluations, judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:
     """What a search algorithm may know about these evaluations."""
-    return Scores(objectives=objectives, values=values_of(evaluations, objectives), violation=judgement.violation)
+    return Scores(
+        objectives=objectives,
+        values=values_of(evaluations, objectives),
+        violation=judgement.violation,
+        constraints=judgement.constraints,
+    )

@@ -22,7 +22,7 @@ from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.protocol import Algorithm, Scores
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.scoring import judge, scores, values_of
+from pareto_monoped.study.scoring import judge, missed, scores, values_of
 from pareto_monoped.study.simulator import Evaluate
 from pareto_monoped.study.store import Store
 
@@ -195,11 +195,13 @@ class Session:
 
 
 def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Scores]:
-    rows = data.trials.iloc[first:end]
+    rows, study = data.trials.iloc[first:end], data.study
+    measures = {limit.measure: rows[limit.measure].to_numpy() for limit in study.constraints.limits}
     return rows[list(NAMES)].to_numpy(dtype=np.float64), Scores(
-        objectives=data.study.objectives,
-        values=rows[list(data.study.objectives.names)].to_numpy(dtype=np.float64),
+        objectives=study.objectives,
+        values=rows[list(study.objectives.names)].to_numpy(dtype=np.float64),
         violation=rows["violation"].to_numpy(),
+        constraints=missed(study.constraints, measures, (rows["state"] == "failed").to_numpy()),
     )
 
 
@@ -221,4 +223,5 @@ def _joined(before: Scores, new: Scores | None) -> Scores:
         objectives=before.objectives,
         values=np.concatenate((before.values, new.values)),
         violation=np.concatenate((before.violation, new.violation)),
+        constraints=np.concatenate((before.constraints, new.constraints)),
     )

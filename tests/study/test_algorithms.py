@@ -39,7 +39,7 @@ def zdt1(values, lower, upper):
     failed = unit[:, -1] > 0.97
     violation = np.where(failed, 100.0, np.maximum(0.0, 0.1 - f1))
     values = np.where(failed[:, None], np.nan, np.column_stack((1.0 - f1, f2)))
-    return Scores(objectives=HEIGHT_AND_ENERGY, values=values, violation=violation)
+    return Scores(objectives=HEIGHT_AND_ENERGY, values=values, violation=violation, constraints=violation[:, None])
 
 
 def free_bounds(definition):
@@ -137,7 +137,11 @@ def test_infeasible_designs_give_way_to_feasible_ones(name):
         values = algorithm.ask().values
         unit = (values - lower) / (upper - lower)
         violation = np.maximum(0.0, unit[:, 0] - 0.1)
-        algorithm.tell(Scores(objectives=HEIGHT_AND_ENERGY, values=unit[:, 1:3], violation=violation))
+        algorithm.tell(
+            Scores(
+                objectives=HEIGHT_AND_ENERGY, values=unit[:, 1:3], violation=violation, constraints=violation[:, None]
+            )
+        )
     assert (violation == 0.0).mean() > 0.8
 
 
@@ -182,6 +186,7 @@ def test_the_weighted_cost_is_the_papers():
         objectives=HEIGHT_AND_ENERGY,
         values=np.array([[0.8, 20.0], [0.52, 1.0], [np.nan, np.nan]]),
         violation=np.array([0, 0.05, 100]),
+        constraints=np.zeros((3, 0)),
     )
     cost = algorithm.cost(scores)
     assert cost[0] == pytest.approx(0.25 * 80.0 * np.exp(-0.8) + 0.75 * 20.0, rel=1e-14)
@@ -202,6 +207,7 @@ OF_THREE = (
     "optuna_nsga2",
     "optuna_tpe",
     "random",
+    "surrogate",
     pytest.param("age_moea2", marks=pytest.mark.long),
 )
 
@@ -213,7 +219,12 @@ def dtlz2(values, lower, upper):
     a, b = 0.5 * np.pi * unit[:, 0], 0.5 * np.pi * unit[:, 1]
     columns = (-radius * np.cos(a) * np.cos(b), radius * np.cos(a) * np.sin(b), radius * np.sin(a))
     violation = np.maximum(0.0, 0.05 - unit[:, 0])
-    return Scores(objectives=Objectives(names=tuple(THREE)), values=np.column_stack(columns), violation=violation)
+    return Scores(
+        objectives=Objectives(names=tuple(THREE)),
+        values=np.column_stack(columns),
+        violation=violation,
+        constraints=violation[:, None],
+    )
 
 
 @pytest.mark.parametrize("told", [0, 1, 6])
@@ -230,7 +241,7 @@ def test_with_three_objectives_it_goes_on_exactly_from_json(name, told):
         assert np.array_equal(values, wanted)
 
 
-@pytest.mark.parametrize("name", ["sms_emoa", "nsga2"])
+@pytest.mark.parametrize("name", ["sms_emoa", "nsga2", "surrogate"])
 def test_with_three_objectives_it_beats_random_search(name):
     reference = reference_point(
         Objectives(names=tuple(THREE)), {"height_m": -2.5, "electrical_energy_j": 2.5, "mass_kg": 2.5}
@@ -264,5 +275,12 @@ def test_the_weighted_search_runs_on_another_pair():
         unit = (algorithm.ask().values - lower) / (upper - lower)
         away = ((unit - 0.3) ** 2).sum(axis=1)
         first = away.mean() if first is None else first
-        algorithm.tell(Scores(objectives=objectives, values=np.column_stack((1 + away, away)), violation=violation))
+        algorithm.tell(
+            Scores(
+                objectives=objectives,
+                values=np.column_stack((1 + away, away)),
+                violation=violation,
+                constraints=violation[:, None],
+            )
+        )
     assert away.mean() < 0.2 * first

@@ -45,7 +45,12 @@ def searched(study, actuator_map, generations=4):
         asked.append(proposal.values)
         values = np.column_stack((proposal.values[:, 0], proposal.values.sum(axis=1)))
         algorithm.tell(
-            Scores(objectives=study.objectives, values=values, violation=np.zeros(len(values))),
+            Scores(
+                objectives=study.objectives,
+                values=values,
+                violation=np.zeros(len(values)),
+                constraints=np.zeros((len(values), 0)),
+            )
         )
     return coordinates, np.vstack(asked)
 

@@ -12,6 +12,7 @@ from pareto_monoped.study.reader import read_study
 ROOT = Path(__file__).parents[2]
 WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 30'
 NSGA2 = 'name = "nsga2"\npopulation = 20'
+SURROGATE = 'name = "surrogate"\npopulation = 20\ndrawn_generations = 2'
 
 
 def killed(folder, algorithms, evaluations, kills, seed=3, variables="", top=""):
@@ -44,7 +45,7 @@ def killed(folder, algorithms, evaluations, kills, seed=3, variables="", top="")
 
 
 def test_killed_three_times(tmp_path):
-    killed(tmp_path, [NSGA2, WEIGHTED], evaluations=240, kills=3)
+    killed(tmp_path, [NSGA2, WEIGHTED, SURROGATE], evaluations=240, kills=3)
 
 
 def test_killed_with_optional_variables_free(tmp_path):
@@ -64,7 +65,7 @@ def test_killed_with_other_objectives(tmp_path):
 
 
 def test_killed_with_three_objectives_and_a_constraint(tmp_path):
-    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20'], evaluations=240, kills=3, top=THREE)
+    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20', SURROGATE], evaluations=240, kills=3, top=THREE)
     data = read_study(tmp_path / "0" / "killed.db")
     assert data.study.objectives.names == ("height_m", "electrical_energy_j", "mass_kg")
     assert (data.trials["mass_kg"] > 4.6).any()
@@ -73,7 +74,7 @@ def test_killed_with_three_objectives_and_a_constraint(tmp_path):
 
 @pytest.mark.long
 def test_three_objectives_killed_five_times(tmp_path):
-    names = ("nsga2", "age_moea2", "optuna_nsga2", "optuna_tpe", "random")
+    names = ("nsga2", "age_moea2", "optuna_nsga2", "optuna_tpe", "random", "surrogate")
     killed(tmp_path, [f'name = "{name}"' for name in names], evaluations=400, kills=5, top=THREE)
 
 
@@ -84,5 +85,5 @@ def test_killed_twenty_times(tmp_path):
 
 @pytest.mark.long
 def test_the_other_algorithms_killed_five_times(tmp_path):
-    names = ("sms_emoa", "age_moea2", "optuna_nsga2", "optuna_tpe", "random")
+    names = ("sms_emoa", "age_moea2", "optuna_nsga2", "optuna_tpe", "random", "surrogate")
     killed(tmp_path, [f'name = "{name}"' for name in names], evaluations=400, kills=5)

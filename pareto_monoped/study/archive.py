@@ -1,0 +1,121 @@
+"""All simulated designs of a search, and how they stand: which are the front, and how far the others are behind it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.study.protocol import Floats, Scores, Space
+
+_POSTS = 20
+"""Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
+_CHUNK = 256
+"""Points that are compared with a front at once, which keeps the tables in the processor's cache."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standing:
+    """How n designs stand.
+
+    Attributes:
+        costs: objectives, less is better: logarithms where all values are above 0, so that a percent counts as much at
+            10 J as at 70 J; shape (n, m), NaN where the jump failed.
+        front: rows of the designs on the front, by their first cost.
+        posts: places in ``front`` that stand for its parts, the best in each objective first.
+        behind: how far each design is behind the front as a share of its extent, plus its violation, shape (n,).
+        order: rows of the designs that jumped, the nearest to the front first.
+        low, extent: of the front's costs, each of shape (m,).
+    """
+
+    costs: Floats
+    front: NDArray[np.intp]
+    posts: NDArray[np.intp]
+    behind: Floats
+    order: NDArray[np.intp]
+    low: Floats
+    extent: Floats
+
+    def scaled(self, costs: Floats) -> Floats:
+        """Costs as shares of the front's extent, shape (n, m)."""
+        return (costs - self.low) / self.extent
+
+
+class Archive:
+    """All designs that a search has simulated."""
+
+    def __init__(self, space: Space) -> None:
+        self.space = space
+        self.values: Floats = np.zeros((0, len(space.names)))
+        self.constraints: Floats = np.zeros((0, 0))
+        self._objectives: Floats = np.zeros((0, len(space.objectives.names)))
+        self._violation: Floats = np.zeros(0)
+
+    def add(self, values: Floats, scores: Scores) -> None:
+        """Add simulated designs: points of the space, shape (n, d), and their scores."""
+        missed = scores.constraints if scores.constraints.shape[1] else scores.violation[:, None]
+        self.constraints = np.vstack((self.constraints, missed)) if len(self.values) else missed
+        self.values = np.vstack((self.values, values))
+        self._objectives = np.vstack((self._objectives, scores.values))
+        self._violation = np.concatenate((self._violation, scores.violation))
+
+    def standing(self) -> Standing:
+        """How the designs stand now."""
+        costs = self._costs()
+        jumped = np.asarray(np.isfinite(costs).all(axis=1))
+        front = np.flatnonzero(front_mask(self._objectives, self.space.objectives, self._violation == 0.0))
+        front = front[np.argsort(costs[front, 0], kind="stable")]
+        low, extent = np.zeros(costs.shape[1]), np.ones(costs.shape[1])
+        posts, behind = np.zeros(0, dtype=np.intp), self._violation.copy()
+        if len(front):
+            low = costs[front].min(axis=0)
+            span = costs[front].max(axis=0) - low
+            extent = np.where(span > 0.0, span, 1.0)
+            scaled = (costs[front] - low) / extent
+            posts = _posts(scaled)
+            points = (np.where(jumped[:, None], costs, low) - low) / extent
+            behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
+        order = np.argsort(behind, kind="stable")
+        return Standing(
+            costs=costs, front=front, posts=posts, behind=behind, order=order[jumped[order]], low=low, extent=extent
+        )
+
+    def _costs(self) -> Floats:
+        values = self._objectives
+        positive = ~(values <= 0.0).any(axis=0)
+        logarithms = np.log(np.where(positive, values, 1.0))
+        return np.where(positive, logarithms, values) * self.space.objectives.signs
+
+
+def shortfall(points: Floats, front: Floats) -> Floats:
+    """How far points are behind a front: the shift in all objectives after which none is dominated.
+
+    The additive epsilon indicator (Zitzler et al. 2003) of the front against each point; below 0 for a point that gains
+    over the front.
+
+    Args:
+        points: objectives, less is better, shape (n, m).
+        front: shape (k, m), k at least 1.
+
+    Returns:
+        Shape (n,).
+    """
+    result = np.empty(len(points))
+    for first in range(0, len(points), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        # One objective after the other: a reduction over an axis of two or three is many times as slow.
+        least = points[rows, :1] - front[:, 0]
+        for k in range(1, points.shape[1]):
+            np.minimum(least, points[rows, k : k + 1] - front[:, k], out=least)
+        result[rows] = least.max(axis=1)
+    return result
+
+
+def _posts(front: Floats) -> NDArray[np.intp]:
+    """Rows of the front that stand for its parts: the best in each objective, then always the farthest from them."""
+    chosen = list(dict.fromkeys(front.argmin(axis=0).tolist()))
+    away = np.min([np.square(front - front[row]).sum(axis=1) for row in chosen], axis=0)
+    while len(chosen) < _POSTS and away.max() > 0.0:
+        chosen.append(int(away.argmax()))
+        away = np.minimum(away, np.square(front - front[chosen[-1]]).sum(axis=1))
+    return np.array(chosen, dtype=np.intp)

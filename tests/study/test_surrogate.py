@@ -1,0 +1,169 @@
+"""The parts of the surrogate-assisted search against plain versions of them, and the search on a known function."""
+
+import numpy as np
+import pytest
+
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.study.algorithm_settings import SurrogateSettings
+from pareto_monoped.study.archive import Archive, shortfall
+from pareto_monoped.study.protocol import Gear, Scores, Space
+from pareto_monoped.study.response_surface import features_of, fitted
+from pareto_monoped.study.surrogate import SurrogateSearch
+from pareto_monoped.study.variation import offspring, spread
+
+GEARS = tuple(Gear(ratio=4.0 + 0.3 * k, mass_kg=0.5 + 0.02 * (k - 4) ** 2) for k in range(12))
+SPACE = Space(
+    names=("thigh_length_m", "knee_ratio", "stiffness_n_per_m"),
+    lower=np.array([0.3, 0.0, 5.0]),
+    upper=np.array([0.5, 11.0, 200.0]),
+    gears={"knee_ratio": GEARS},
+)
+SETTINGS = SurrogateSettings(name="surrogate", population=20)
+
+
+def scored(values, *, limit=-1.0):
+    """Height and energy from link, real ratio, gearbox mass and log(1 + K); ratios below the limit miss it."""
+    gears = values[:, 1].astype(int)
+    ratio = np.array([gear.ratio for gear in GEARS])[gears]
+    mass = np.array([gear.mass_kg for gear in GEARS])[gears]
+    link, gain = (values[:, 0] - 0.3) / 0.2, np.log1p(values[:, 2]) / np.log1p(200.0)
+    height = 0.6 + 0.4 * link * gain + 0.05 * ratio - 0.3 * mass * gain
+    energy = np.exp(2.0 + 1.5 * gain + 0.3 * (link - 0.4) ** 2 + 0.1 * ratio * gain)
+    missed = (limit - ratio) / abs(limit)
+    return Scores(
+        objectives=HEIGHT_AND_ENERGY,
+        values=np.column_stack((height, energy)),
+        violation=np.maximum(missed, 0.0),
+        constraints=missed[:, None],
+    )
+
+
+def archive_of(count=200, seed=1, **more):
+    archive = Archive(SPACE)
+    values = spread(SPACE, count, np.random.default_rng(seed))
+    archive.add(values, scored(values, **more))
+    return archive
+
+
+def test_the_model_is_exact_for_cubics_of_its_features():
+    """Noise-free values of any cubic come back at points that the fit has not seen; ridge alone keeps a little off."""
+    generator = np.random.default_rng(2)
+    features = features_of(SPACE)
+    known, new = spread(SPACE, 400, generator), spread(SPACE, 100, generator)
+    terms = features.terms(known)
+    assert terms.shape == (400, 35)  # 4 features: 1 + 4 + 10 + 20
+    truth = generator.standard_normal((35, 2))
+    coefficients = fitted(terms, terms @ truth, np.ones(400))
+    error = features.terms(new) @ (coefficients - truth)
+    assert np.abs(error).max() < 0.02 * np.abs(terms @ truth).max()
+
+
+def test_terms_are_the_products_of_scaled_features():
+    values = spread(SPACE, 50, np.random.default_rng(3))
+    gears = [GEARS[int(k)] for k in values[:, 1]]
+
+    def scaled(column, lower, upper):
+        return 2.0 * (np.asarray(column) - lower) / (upper - lower) - 1.0
+
+    masses = [gear.mass_kg for gear in GEARS]
+    x = scaled(values[:, 0], 0.3, 0.5)
+    ratio = scaled([gear.ratio for gear in gears], GEARS[0].ratio, GEARS[-1].ratio)
+    mass = scaled([gear.mass_kg for gear in gears], min(masses), max(masses))
+    gain = scaled(np.log1p(values[:, 2]), np.log1p(5.0), np.log1p(200.0))
+    one = np.ones(50)
+    columns = (one, x, ratio, mass, gain)
+    wanted = [columns[i] * columns[j] * columns[k] for i in range(5) for j in range(i, 5) for k in range(j, 5)]
+    got = features_of(SPACE).terms(values)
+    assert np.allclose(np.sort(got, axis=1), np.sort(np.column_stack(wanted), axis=1), rtol=0.0, atol=1e-12)
+
+
+def test_weights_decide_which_points_the_fit_follows():
+    terms = np.ones((4, 1))
+    targets = np.array([[0.0], [0.0], [1.0], [1.0]])
+    assert fitted(terms, targets, np.array([1.0, 1.0, 3.0, 3.0]))[0, 0] == pytest.approx(0.75, rel=1e-6)
+
+
+def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
+    """Against the definition, one point after the other."""
+    generator = np.random.default_rng(4)
+    for objectives in (2, 3):
+        points, front = generator.random((300, objectives)), generator.random((40, objectives))
+        plain = [max(min(p[k] - f[k] for k in range(objectives)) for f in front) for p in points]
+        assert shortfall(points, front) == pytest.approx(plain, rel=1e-14)
+
+
+def test_the_standing_of_an_archive():
+    archive = archive_of(limit=5.0)
+    standing = archive.standing()
+    scores = scored(archive.values, limit=5.0)
+    feasible = np.flatnonzero(scores.violation == 0.0)
+    # Energies and heights are above 0, so costs are logarithms.
+    costs = np.column_stack((-np.log(scores.values[:, 0]), np.log(scores.values[:, 1])))
+    assert np.allclose(standing.costs, costs)
+    dominated = [any((costs[j] <= costs[i]).all() and (costs[j] < costs[i]).any() for j in feasible) for i in feasible]
+    assert set(standing.front) == set(feasible[~np.array(dominated)])
+    assert (np.diff(costs[standing.front, 0]) > 0.0).all()
+    # The ends of the front stand for parts of it, and nothing on it is behind it.
+    assert {0, len(standing.front) - 1} <= set(standing.posts.tolist())
+    assert np.allclose(standing.behind[standing.front], 0.0)
+    assert (standing.behind[scores.violation > 0.0] > 0.0).all()
+    assert (np.diff(standing.behind[standing.order]) >= 0.0).all()
+
+
+def test_jumps_that_failed_are_neither_parents_nor_fitted():
+    archive = archive_of()
+    values = spread(SPACE, 30, np.random.default_rng(9))
+    lost = np.full((30, 2), np.nan)
+    archive.add(
+        values,
+        Scores(
+            objectives=HEIGHT_AND_ENERGY, values=lost, violation=np.full(30, 100.0), constraints=np.full((30, 1), 100.0)
+        ),
+    )
+    assert set(archive.standing().order.tolist()) == set(range(200))
+
+
+def test_offspring_keep_to_the_space_and_half_of_them_stay_near_the_front():
+    archive = archive_of(600)
+    standing = archive.standing()
+    children = offspring(archive, standing, SETTINGS, np.random.default_rng(5))
+    assert len(children) == SETTINGS.population * SETTINGS.offspring
+    assert (children >= SPACE.lower).all()
+    assert (children <= SPACE.upper).all()
+    assert np.array_equal(children[:, 1], np.round(children[:, 1]))
+    drawn = archive.values[standing.front]
+    away = [np.abs((drawn - child)[:, [0, 2]] / [0.2, 195.0]).sum(axis=1).min() for child in children]
+    assert np.median(away) < 0.05
+
+
+def test_a_spread_has_one_design_in_each_stratum():
+    values = spread(SPACE, 40, np.random.default_rng(6))
+    assert np.array_equal(np.sort(np.floor((values[:, 0] - 0.3) / 0.2 * 40)), np.arange(40.0))
+
+
+@pytest.mark.parametrize("limit", [-1.0, 5.5])
+def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
+    """After 300 designs nearly all it asks for is on, or within a percent of, the front of 20,000 spread designs."""
+    algorithm = SurrogateSearch(SPACE, SETTINGS, 1)
+    for _ in range(15):
+        values = algorithm.ask().values
+        algorithm.tell(scored(values, limit=limit))
+    many = spread(SPACE, 20_000, np.random.default_rng(7))
+    found = scored(many, limit=limit)
+    truth = Archive(SPACE)
+    truth.add(many, found)
+    standing = truth.standing()
+    asked = scored(algorithm.ask().values, limit=limit)
+    costs = np.column_stack((-np.log(asked.values[:, 0]), np.log(asked.values[:, 1])))
+    behind = shortfall(standing.scaled(costs), standing.scaled(standing.costs[standing.front]))
+    assert (asked.violation == 0.0).mean() > 0.9
+    assert (behind < 0.01).mean() > 0.9
+
+
+def test_without_a_feasible_design_it_looks_for_the_least_violation():
+    algorithm = SurrogateSearch(SPACE, SETTINGS, 1)
+    for _ in range(8):
+        values = algorithm.ask().values
+        scores = scored(values, limit=7.25)  # only the heaviest ratio, 7.3, keeps this limit
+        algorithm.tell(scores)
+    assert (scores.violation == 0.0).mean() > 0.5
