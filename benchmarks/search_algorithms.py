@@ -1,13 +1,17 @@
-"""Search algorithms on the real problem (Case C, VT8020, ``reference``): share of the front against number of jumps.
+"""Search algorithms on the real problem: share of the front against number of jumps.
 
     python benchmarks/search_algorithms.py                       # a short look: 1,000 jumps, 2 seeds, small reference
     python benchmarks/search_algorithms.py --full                # what benchmarks/search_algorithms.md shows
     python benchmarks/search_algorithms.py --full --evaluations 5000 --only nsga2-100 random
+    python benchmarks/search_algorithms.py --motor U8 --objectives height_m,electrical_energy_j
 
+The problem is Case C of the VT8020 under ``reference`` unless an option says otherwise: strength is asked for, and gear
+ratios go through the list of gearboxes.
 All seeds of one algorithm advance together, and their generations are simulated as one batch; the result of a jump
 does not depend on its batch. Quality is the hypervolume of all designs evaluated so far, not of the last population,
-as a share of the hypervolume of the reference front. Results are kept in build/search_algorithms.json; the table
-shows everything in that file.
+as a share of the hypervolume of the reference front, which takes in everything that the contenders found, too. A
+second table has the least of the second objective at given heights, in percent above the best known. Results are kept
+in build/, one file per problem; the tables show everything in that file.
 """
 
 import argparse
@@ -22,23 +26,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.jump.calibration import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import epsilon, hypervolume, igd_plus, reference_point
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.protocol import Algorithm
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.scoring import judge, scores
-from pareto_monoped.study.simulator import Evaluate, load_simulator
+from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent
-MARKS = (1_000, 2_000, 5_000, 10_000)
-REFERENCE_POINT = reference_point(HEIGHT_AND_ENERGY)
+MARKS = (1_000, 2_000, 5_000, 8_000)
+HEIGHTS_M = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 # Ten weights of the paper's cost, chosen so that the runs end at points along the whole front.
 WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
 CONTENDERS: dict[str, dict[str, Any]] = {
+    "surrogate-40": {"name": "surrogate"},
+    "surrogate-20": {"name": "surrogate", "population": 20, "drawn_generations": 6},
     "nsga2-20": {"name": "nsga2", "population": 20},
     "nsga2-40": {"name": "nsga2", "population": 40},
     "nsga2-100": {"name": "nsga2", "population": 100},
@@ -57,44 +64,48 @@ CONTENDERS: dict[str, dict[str, Any]] = {
 TPE_EVALUATIONS = 2_000
 
 
-def study(settings: dict[str, Any], seed: int, evaluations: int) -> Study:
-    """Case C with these algorithm settings; the runs of a sweep over weights share the evaluations evenly."""
+def study(problem: dict[str, Any], settings: dict[str, Any], seed: int, evaluations: int) -> Study:
+    """A problem with these algorithm settings; the runs of a sweep over weights share the evaluations evenly."""
     if settings["name"] == "weighted_cmaes":
         settings = settings | {"iterations": max(1, evaluations // (8 * len(settings["height_weights"])))}
     values = {"name": "b", "case": "C", "evaluations": evaluations, "seed": seed, "algorithm": settings}
-    return study_from_dict(values, source="benchmark")
+    return study_from_dict(values | problem, source="benchmark")
 
 
 class Archive:
     """The front of all designs that one search has evaluated, and its hypervolume at each mark."""
 
-    def __init__(self, marks: tuple[int, ...]) -> None:
-        self.front = np.zeros((0, 2))
+    def __init__(self, corner: ReferencePoint, marks: tuple[int, ...]) -> None:
+        self.front = np.zeros((0, len(corner.values)))
         self.evaluations = 0
         self.volumes: dict[int, float] = {}
+        self._corner = corner
         self._marks = marks
 
     def add(self, points: NDArray[np.float64], feasible: NDArray[np.bool_]) -> None:
-        """Add n evaluated designs, in order; ``points`` has shape (n, 2): height and energy."""
+        """Add n evaluated designs, in order; ``points`` has the objectives, shape (n, m)."""
         for mark in self._marks:
             if self.evaluations < mark <= self.evaluations + len(points):
                 part = mark - self.evaluations
-                self.volumes[mark] = hypervolume(self._joined(points[:part][feasible[:part]]), REFERENCE_POINT)
+                self.volumes[mark] = hypervolume(self._joined(points[:part][feasible[:part]]), self._corner)
         self.front = self._joined(points[feasible])
         self.evaluations += len(points)
 
     def _joined(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         every = np.vstack((self.front, points))
-        return every[front_mask(every, HEIGHT_AND_ENERGY)]
+        return every[front_mask(every, self._corner.objectives)]
 
 
 def search(
-    evaluate: Evaluate, settings: dict[str, Any], seeds: list[int], evaluations: int, marks: tuple[int, ...]
+    simulator: Simulator, studies: list[Study], evaluations: int, marks: tuple[int, ...]
 ) -> tuple[list[Archive], float]:
-    """One search per seed, all advancing together; their archives, and the seconds of the algorithm per 1,000 jumps."""
-    studies = [study(settings, seed, evaluations) for seed in seeds]
-    running: list[tuple[Algorithm, Archive, Study]] = [(make_algorithm(s), Archive(marks), s) for s in studies]
-    archives = [archive for _, archive, _ in running]
+    """Searches that advance together; their archives, and the seconds of the algorithm per 1,000 jumps."""
+    coordinates = simulator.coordinates(studies[0])
+    corner, constraints, objectives = studies[0].reference_point, studies[0].constraints, studies[0].objectives
+    running: list[tuple[Algorithm, Archive]] = [
+        (make_algorithm(s, simulator.coordinates(s)), Archive(corner, marks)) for s in studies
+    ]
+    archives = [archive for _, archive in running]
     thinking = 0.0
     while running:
         began = time.perf_counter()
@@ -103,66 +114,78 @@ def search(
         alive = [(run, proposal) for run, proposal in asked if proposal is not None]
         if not alive:
             break
-        result = evaluate(np.vstack([proposal.values for _, proposal in alive]))
-        judgement = judge(result, alive[0][0][2].constraints)
-        all_scores = scores(result, judgement)
-        points = np.column_stack((result.height_m, result.energy_j))
+        result = simulator.evaluator(coordinates.designs(np.vstack([proposal.values for _, proposal in alive])))
+        judgement = judge(result, constraints, objectives)
+        all_scores = scores(result, judgement, objectives)
         first = 0
-        for (algorithm, archive, _), proposal in alive:
+        for (algorithm, archive), proposal in alive:
             rows = slice(first, first + len(proposal.values))
             first = rows.stop
             began = time.perf_counter()
             algorithm.tell(all_scores.of(rows))
             thinking += time.perf_counter() - began
-            archive.add(points[rows], judgement.state[rows] == "feasible")
+            archive.add(all_scores.values[rows], judgement.state[rows] == "feasible")
         running = [run for run, _ in alive]
     total = sum(archive.evaluations for archive in archives)
     return archives, 1000.0 * thinking / total
 
 
-def reference(evaluate: Evaluate, evaluations: int) -> dict[str, Any]:
-    """The front of many evaluations: half by NSGA-II with a population of 200, half by SMS-EMOA with 100."""
+def reference(simulator: Simulator, problem: dict[str, Any], evaluations: int) -> dict[str, Any]:
+    """The front of many evaluations, in equal parts by NSGA-II, SMS-EMOA and the surrogate-assisted search."""
     fronts = []
-    for settings in ({"name": "nsga2", "population": 200}, {"name": "sms_emoa", "population": 100}):
+    for settings in (
+        {"name": "nsga2", "population": 200},
+        {"name": "sms_emoa", "population": 100},
+        {"name": "surrogate", "population": 80},
+    ):
         # At least 5,000 jumps per search; with fewer, the reference is no better than the searches it measures.
         seeds = list(range(101, 101 + max(1, min(4, evaluations // 10_000))))
-        archives, _ = search(evaluate, settings, seeds, evaluations // (2 * len(seeds)), ())
+        part = evaluations // (3 * len(seeds))
+        archives, _ = search(simulator, [study(problem, settings, seed, part) for seed in seeds], part, ())
         fronts += [archive.front for archive in archives]
         print(f"reference: {settings['name']} done", file=sys.stderr, flush=True)
-    points = np.vstack(fronts)
-    front = points[front_mask(points, HEIGHT_AND_ENERGY)]
-    return {"evaluations": evaluations, "front": front.tolist(), "hypervolume": hypervolume(front, REFERENCE_POINT)}
+    return {"evaluations": evaluations, "front": np.vstack(fronts).tolist()}
 
 
-def contend(evaluate: Evaluate, name: str, seeds: list[int], evaluations: int, best: dict[str, Any]) -> dict[str, Any]:
+def contend(
+    simulator: Simulator, problem: dict[str, Any], name: str, seeds: list[int], evaluations: int
+) -> dict[str, Any]:
     """The results of one contender: one row of the table."""
     settings = CONTENDERS[name]
     budget = min(evaluations, TPE_EVALUATIONS) if settings["name"] == "optuna_tpe" else evaluations
     marks = tuple(mark for mark in MARKS if mark <= budget)
-    archives, thinking = search(evaluate, settings, seeds, budget, marks)
-    front = np.array(best["front"])
-    shares = {str(m): [a.volumes[m] / best["hypervolume"] for a in archives if m in a.volumes] for m in marks}
+    studies = [study(problem, settings, seed, budget) for seed in seeds]
+    archives, thinking = search(simulator, studies, budget, marks)
+    volumes = {str(m): [a.volumes[m] for a in archives if m in a.volumes] for m in marks}
     if settings["name"] == "weighted_cmaes":
         # Its runs follow one another, so only the end is a fair mark; runs that converge early end the sweep early.
-        shares = {str(budget): [hypervolume(a.front, REFERENCE_POINT) / best["hypervolume"] for a in archives]}
+        volumes = {str(budget): [hypervolume(a.front, studies[0].reference_point) for a in archives]}
     return {
         "evaluations": budget,
-        "shares": shares,
-        "epsilon": [epsilon(archive.front, front) for archive in archives],
-        "igd_plus": [igd_plus(archive.front, front) for archive in archives],
+        "volumes": volumes,
+        "fronts": [archive.front.tolist() for archive in archives],
         "thinking_s_per_1000": thinking,
     }
 
 
-def table(results: dict[str, Any]) -> str:
-    """The table in Markdown."""
+def best_known(results: dict[str, Any], objectives: Objectives) -> NDArray[np.float64]:
+    """The front of the reference and of everything that the contenders found, shape (k, m)."""
+    fronts = [results["reference"]["front"], *(front for row in results["rows"].values() for front in row["fronts"])]
+    points = np.vstack([np.array(front) for front in fronts if front])
+    return np.asarray(points[front_mask(points, objectives)])
 
-    def cell(values: list[float] | None, scale: float = 100.0) -> str:
-        if not values:
-            return ""
-        low, middle, high = min(values) * scale, statistics.median(values) * scale, max(values) * scale
-        return f"{middle:.2f} ({low:.2f} to {high:.2f})"
 
+def cell(values: list[float] | None, scale: float = 100.0) -> str:
+    """Median (least to greatest) of a quantity."""
+    if not values:
+        return ""
+    low, middle, high = min(values) * scale, statistics.median(values) * scale, max(values) * scale
+    return f"{middle:.2f} ({low:.2f} to {high:.2f})"
+
+
+def table(results: dict[str, Any], best: NDArray[np.float64], corner: ReferencePoint) -> str:
+    """The table of shares in Markdown."""
+    whole, objectives = hypervolume(best, corner), corner.objectives
     lines = [
         "| algorithm, population | "
         + " | ".join(f"{mark:,}" for mark in MARKS)
@@ -170,25 +193,55 @@ def table(results: dict[str, Any]) -> str:
         "|---|" + "---|" * (len(MARKS) + 3),
     ]
     rows = sorted(
-        results["rows"].items(), key=lambda item: -max(statistics.median(v) for v in item[1]["shares"].values())
+        results["rows"].items(), key=lambda item: -max(statistics.median(v) for v in item[1]["volumes"].values())
     )
     for name, row in rows:
-        cells = [cell(row["shares"].get(str(mark))) for mark in MARKS]
-        extra = [cell(row["epsilon"]), cell(row["igd_plus"]), f"{row['thinking_s_per_1000']:.2f}"]
-        lines.append(f"| {name} | " + " | ".join(cells + extra) + " |")
+        fronts = [np.array(front) for front in row["fronts"]]
+        cells = [cell(row["volumes"].get(str(mark)), 100.0 / whole) for mark in MARKS]
+        cells += [cell([measure(front, best, objectives) for front in fronts]) for measure in (epsilon, igd_plus)]
+        lines.append(f"| {name} | " + " | ".join([*cells, f"{row['thinking_s_per_1000']:.2f}"]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def least_at_heights(results: dict[str, Any], best: NDArray[np.float64]) -> str:
+    """The least of the second objective at the end, in percent above the best known: a table in Markdown."""
+
+    def least(front: NDArray[np.float64], height: float) -> float:
+        return float(front[front[:, 0] >= height, 1].min(initial=np.inf))
+
+    heights = [height for height in HEIGHTS_M if np.isfinite(least(best, height))]
+    lines = ["| percent above the best known at | " + " | ".join(f"{h:g} m" for h in heights) + " |"]
+    lines += ["|---|" + "---|" * len(heights)]
+    for name, row in results["rows"].items():
+        fronts = [np.array(front) for front in row["fronts"]]
+        cells = [cell([least(front, h) / least(best, h) - 1.0 for front in fronts]) for h in heights]
+        lines.append(f"| {name}, {row['evaluations']:,} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--full", action="store_true", help="10,000 jumps, 5 seeds, reference of 200,000; keep results")
+    parser.add_argument("--full", action="store_true", help="8,000 jumps, 5 seeds, reference of 200,000; keep results")
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="run only these contenders")
-    parser.add_argument("--evaluations", type=int, help="jumps per search, instead of 1,000 or 10,000")
+    parser.add_argument("--evaluations", type=int, help="jumps per search, instead of 1,000 or 8,000")
+    parser.add_argument("--motor", default="VT8020")
+    parser.add_argument("--calibration", default="reference")
+    parser.add_argument("--objectives", default="height_m,energy_j", help="two or three measures, separated by commas")
     arguments = parser.parse_args()
-    evaluations, seeds, effort = (10_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
+    evaluations, seeds, effort = (8_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
     evaluations = arguments.evaluations or evaluations
-    simulator = load_simulator(study({"name": "random"}, 1, 1), workers=default_workers())
-    kept = HERE.parent / "build" / "search_algorithms.json"
+    problem: dict[str, Any] = {
+        "motor": arguments.motor,
+        "calibration": arguments.calibration,
+        "rules": rules_for(arguments.calibration),
+        "strength": strength_for(arguments.calibration),
+        "gear_list": True,
+        "objectives": arguments.objectives.split(","),
+    }
+    first = study(problem, {"name": "random"}, 1, 1)
+    simulator = load_simulator(first, workers=default_workers())
+    words = [Path(arguments.motor).stem, Path(arguments.calibration).stem, *problem["objectives"]]
+    kept = HERE.parent / "build" / f"search_algorithms-{'-'.join(words)}.json"
     kept.parent.mkdir(exist_ok=True)
     results: dict[str, Any] = {"rows": {}}
     if arguments.full and kept.exists():
@@ -197,20 +250,23 @@ def main() -> None:
     if results.get("probe") != simulator.probe():
         results = {"probe": simulator.probe(), "machine": platform.machine(), "rows": {}}
     if "reference" not in results:
-        results["reference"] = reference(simulator.evaluator, effort)
-    default = ("nsga2-40", "random", "weighted_cmaes, 10 weights")
+        results["reference"] = reference(simulator, problem, effort)
+    default = ("surrogate-40", "nsga2-40", "random")
     for name in arguments.only or (CONTENDERS if arguments.full else default):
-        results["rows"][name] = contend(simulator.evaluator, name, seeds, evaluations, results["reference"])
+        results["rows"][name] = contend(simulator, problem, name, seeds, evaluations)
         print(f"{name} done", file=sys.stderr, flush=True)
         if arguments.full:
             kept.write_text(json.dumps(results, indent=1) + "\n")
-    best = results["reference"]
+    best, corner = best_known(results, first.objectives), first.reference_point
     print(
-        f"Reference front: {len(best['front'])} designs of {best['evaluations']:,} evaluations, "
-        f"hypervolume {best['hypervolume']:.4f} m J.\n"
+        f"Reference front: {len(best)} designs of {results['reference']['evaluations']:,} evaluations and of all "
+        f"contenders, hypervolume {hypervolume(best, corner):.4f} {first.objectives.volume_unit} "
+        f"from {corner.text()}.\n"
         f"Shares of it, epsilon and IGD+ in percent: median (least to greatest) of {len(seeds)} seeds.\n"
     )
-    print(table(results))
+    print(table(results, best, corner))
+    if first.objectives.names[0] == "height_m" and len(first.objectives.names) == 2:
+        print(least_at_heights(results, best))
 
 
 if __name__ == "__main__":
