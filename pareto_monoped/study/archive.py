@@ -10,6 +10,8 @@ from pareto_monoped.study.protocol import Floats, Scores, Space
 
 _POSTS = 20
 """Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
+_LEAST_SHARE = 0.01
+"""Values that come nearer to 0 have logarithms that rule over all others. Our own choice: two orders of magnitude."""
 _CHUNK = 256
 """Points that are compared with a front at once, which keeps the tables in the processor's cache."""
 
@@ -19,8 +21,9 @@ class Standing:
     """How n designs stand.
 
     Attributes:
-        costs: objectives, less is better: logarithms where all values are above 0, so that a percent counts as much at
-            10 J as at 70 J; shape (n, m), NaN where the jump failed.
+        costs: objectives, less is better: logarithms where all values are above 0 and those of feasible designs above
+            ``_LEAST_SHARE`` of the greatest, so that a percent counts as much at 10 J as at 70 J; shape (n, m), NaN
+            where the jump failed.
         front: rows of the designs on the front, by their first cost.
         posts: places in ``front`` that stand for its parts, the best in each objective first.
         behind: how far each design is behind the front as a share of its extent, plus its violation, shape (n,).
@@ -81,10 +84,12 @@ class Archive:
         )
 
     def _costs(self) -> Floats:
-        values = self._objectives
-        positive = ~(values <= 0.0).any(axis=0)
-        logarithms = np.log(np.where(positive, values, 1.0))
-        return np.where(positive, logarithms, values) * self.space.objectives.signs
+        values, feasible = self._objectives, self._objectives[self._violation == 0.0]
+        graded = ~(values <= 0.0).any(axis=0)
+        if len(feasible):
+            graded &= feasible.min(axis=0) > _LEAST_SHARE * feasible.max(axis=0)
+        logarithms = np.log(np.where(graded, values, 1.0))
+        return np.where(graded, logarithms, values) * self.space.objectives.signs
 
 
 def shortfall(points: Floats, front: Floats) -> Floats:
