@@ -55,7 +55,8 @@ def single_contact_factors(
 ) -> tuple[Numbers, Numbers]:
     """Z_B and Z_D: contact stress at the inner point of single pair contact over that at the pitch point.
 
-    ISO 6336-2, clause 6.3; not below 1. For an internal mesh z2 counts as negative and Z_D is 1.
+    ISO 6336-2, clause 6.3; not below 1. For an internal mesh z2 counts as negative and Z_D is 1. At contact ratios
+    above 2, the same point, one base pitch before the end of contact, is the inner point of two pair contact.
     """
     angle_1, angle_2 = 2.0 * np.pi / pinion.teeth, 2.0 * np.pi / wheel.teeth
     internal = isinstance(wheel, InternalGear)
@@ -89,7 +90,8 @@ def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> Too
 
     The critical section lies where the fillet's tangent makes 30 degrees with the tooth's centre line, 60 degrees in an
     internal gear. An internal gear counts as one with a negative number of teeth. Its fillet is that of the basic rack:
-    the ring is cut by wire or with a large cutter. Lengths in modules.
+    the ring is cut by wire or with a large cutter. Lengths in modules. At contact ratios above 2, the point of loading,
+    one base pitch after the beginning of contact, is the inner point of triple pair contact, as the standard asks.
 
     Args:
         gear: sun, planet or ring.

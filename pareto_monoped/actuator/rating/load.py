@@ -161,7 +161,10 @@ def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Nu
 def transverse_load_factors(
     load_n_per_mm: Numbers, stiffness: Numbers, deviation_um: Numbers, contact_ratio: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """K_Halpha and K_Falpha by method B for contact ratios up to 2, within their bounds (ISO 6336-1, clause 8.3).
+    """K_Halpha and K_Falpha by method B, within their bounds (ISO 6336-1, clause 8.3.2).
+
+    Where two or three pairs share the load instead of one or two, at contact ratios above 2, pitch deviations weigh
+    sqrt(2 (epsilon - 1) / epsilon) instead of epsilon / 2 times as much; both are 1 at 2.
 
     Args:
         load_n_per_mm: F_tH / b, with K_A, K_V, K_Hbeta and the load sharing.
@@ -169,6 +172,8 @@ def transverse_load_factors(
         deviation_um: f_pb - y_alpha.
         contact_ratio: epsilon_alpha.
     """
-    free = 0.5 * contact_ratio * (0.9 + 0.4 * stiffness * deviation_um / load_n_per_mm)
+    uneven = 0.4 * stiffness * deviation_um / load_n_per_mm
+    several = 0.9 + uneven * np.sqrt(2.0 * np.maximum(contact_ratio - 1.0, 0.0) / contact_ratio)
+    free = np.where(contact_ratio <= 2.0, 0.5 * contact_ratio * (0.9 + uneven), several)[()]
     flank = np.clip(free, 1.0, 1.0 / np.square(contact_ratio_factor(contact_ratio)))
     return flank, np.clip(free, 1.0, 1.0 / root_contact_ratio_factor(contact_ratio))

@@ -17,7 +17,8 @@ _TEST_NOTCH = 2.5
 def bending_stress_mpa(load_n_per_mm: Numbers, module_mm: Numbers, form: ToothForm, rim_factor: Numbers) -> Numbers:
     """sigma_F = F_t K / (b m) Y_F Y_S Y_B (ISO 6336-3, clause 5.2, method B).
 
-    Y_beta is 1 for spur gears, and Y_DT for contact ratios below 2. ``load_n_per_mm`` has all load factors in it.
+    Y_beta is 1 for spur gears. So is Y_DT, at contact ratios above 2 too: ISO 6336-3, clause 9, takes less only for
+    teeth of class 4 or better beyond 2.05. ``load_n_per_mm`` has all load factors in it.
     """
     return load_n_per_mm / module_mm * form.form_factor * form.stress_correction * rim_factor
 

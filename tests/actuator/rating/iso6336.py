@@ -350,7 +350,11 @@ def mesh_loads(sets, data, width, meshes, over=False):
         )
         pitch = grade * (0.001 * sets["module"] * mesh["z2"] + 0.4 * sets["module"] + 5.0) * cos(ALPHA)
         over = one["mean"] * one["K_Hb"]
-        share = one["eps"] / 2.0 * (0.9 + 0.4 * one["stiff"] * (1.0 - run_in / 2.0) * pitch / over)
+        uneven = one["stiff"] * (1.0 - run_in / 2.0) * pitch / over
+        if one["eps"] > 2.0:
+            share = 0.9 + 0.4 * sqrt(2.0 - 2.0 / one["eps"]) * uneven
+        else:
+            share = one["eps"] / 2.0 * (0.9 + 0.4 * uneven)
         one["K_Ha"] = min(max(share, 1.0), 3.0 / (4.0 - one["eps"]))
         one["K_Fa"] = min(max(share, 1.0), 1.0 / (0.25 + 0.75 / one["eps"]))
     return found

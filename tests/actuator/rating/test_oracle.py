@@ -10,6 +10,7 @@ from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.flank import contact_stress_mpa
 from pareto_monoped.actuator.rating.geometry import tooth_form
+from pareto_monoped.actuator.rating.load import transverse_load_factors
 from pareto_monoped.actuator.rating.sheet import rate
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm
@@ -92,6 +93,31 @@ def test_gear_sets_are_rated_as_by_the_slow_rating(k):
             # One percent is asked for; what is left is the finite difference of the fillet's curvature.
             assert got == pytest.approx(expected[gear.gear, name], rel=1e-4)
     assert len(expected) == 4
+
+
+@pytest.mark.parametrize("sun_shift", [0.0, 0.4])
+def test_rings_that_two_or_three_teeth_of_a_planet_touch_are_rated_as_by_the_slow_rating(sun_shift):
+    """A third of the maps' winners have a contact ratio above 2 in the ring; here narrow faces under a high load."""
+    settings, motor = SETTINGS, load_motor("U12")
+    wide = 0
+    for sun, planet, module, planets in ((18, 36, 0.7, 3), (18, 30, 0.75, 3), (17, 40, 0.6, 4), (22, 65, 0.5, 3)):
+        one = gears(sun, planet, module, planets, 0.0, sun_shift)
+        expected, loads = iso6336.rate(one, motor, 9.0, settings, ring_wall=3.5 * module, sun_bore=None)
+        found = rate(build_stage(one, motor, "ESSPG", settings), 9.0)
+        mesh = found.ring_mesh
+        wide += contact_ratios(one)[1] > 2.0
+        got = (mesh.transverse_load_factor, mesh.root_transverse_load_factor)
+        assert got == pytest.approx((loads[1]["K_Ha"], loads[1]["K_Fa"]), rel=1e-5)
+        for gear in (mesh.pinion, mesh.wheel):
+            safeties = (gear.flank_safety, gear.root_safety, gear.overload_flank_safety, gear.overload_root_safety)
+            assert safeties == pytest.approx(expected[gear.gear, "ring mesh"], rel=1e-4)
+    assert wide == (4 if sun_shift else 0)
+
+
+def test_load_factors_have_no_step_at_a_contact_ratio_of_two():
+    below, above = (transverse_load_factors(150.0, 18.0, 9.0, ratio) for ratio in (2.0, np.nextafter(2.0, 3.0)))
+    assert above == pytest.approx(below, rel=1e-12)
+    assert below[0] > 1.0
 
 
 def test_many_at_once_are_rated_as_one_by_one():
