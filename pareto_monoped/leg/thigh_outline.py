@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from pareto_monoped.errors import DesignError, complaint
 from pareto_monoped.geometry.shapes import Numbers, Path
 from pareto_monoped.leg.belt import Pulley, belt, mirrored
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -68,8 +69,22 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
 
 
 def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
-    """The fillet between an ear's edge and the round end at the hip, which it almost touches."""
+    """The fillet between an ear's edge and the round end at the hip, which it almost touches.
+
+    Raises:
+        DesignError: the ear stands beside the round end.
+    """
     x = float(face.x_mm) - WING + _FILLET
+    least = x - _FILLET
+    if top_radius_mm < least:
+        raise DesignError(
+            complaint(
+                "the thigh's radius in mm at the hip, around the motor,",
+                round(top_radius_mm, 2),
+                f"at least {least:.4g}, so that the ears of the hip's stop are joined to it",
+                f"choose a motor that is at least {2.0 * (least - top_radius_mm):.4g} mm wider",
+            )
+        )
     return Pulley(
         x_mm=x,
         y_mm=-_FILLET_GAP - float(np.sqrt((top_radius_mm + _FILLET) ** 2 - x**2)),

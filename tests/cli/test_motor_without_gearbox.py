@@ -90,6 +90,19 @@ def test_commands_that_are_given_a_stored_study(capsys, folder, words):
     ]
 
 
+@pytest.mark.parametrize("words", [("simulate", "--motor", "narrow.toml"), ("run", "narrow_study.toml")])
+def test_a_motor_with_gearboxes_that_the_leg_is_too_wide_for(capsys, folder, words):
+    """55 mm across: seven gearboxes, and a thigh whose hip would end beside the ears of its stop."""
+    Path("narrow.toml").write_text(TINY.replace("35.0", "55.0"))
+    Path("narrow_study.toml").write_text('name = "s"\nmotor = "narrow.toml"\nevaluations = 40\n')
+    assert "ESSPG" in cli_run(capsys, "actuators", "--motor", "narrow.toml").out
+    _, line = refused(capsys, *words)
+    assert line == (
+        "error: the thigh's radius in mm at the hip, around the motor, = 38.0: must be at least 43, so that the ears of "
+        "the hip's stop are joined to it; choose a motor that is at least 10 mm wider\n"
+    )
+
+
 def test_the_main_job(folder):
     """It runs the other commands as processes of their own."""
     done = subprocess.run(
