@@ -20,7 +20,8 @@ from pareto_monoped.design import PAPER_CASES, RULE_SETS
 from pareto_monoped.errors import DesignError, MotorError
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.robot.build import build_robot
-from tests.actuator.loop import allowed_by_iso6336
+from tests.actuator import bearing_rules
+from tests.actuator.loop import allowed_by_iso6336, main_bearing
 from tests.actuator.rating import iso6336
 
 SETTINGS = ActuatorSettings(rules="iso6336")
@@ -61,12 +62,17 @@ def test_every_winner_keeps_every_limit(name):
         assert actuator.mass_kg == pytest.approx(sum(actuator.mass_breakdown_kg().values()))
 
 
-def least_width(gears, motor):
-    """By the slow rating, from the least width allowed upwards; None if no width up to the limits is enough."""
+def least_width(gears, motor, settings=SETTINGS):
+    """By the slow rating, from the least width allowed upwards; None if no width up to the limits is enough.
+
+    The planets' needles must hold as well.
+    """
     data = SETTINGS.parts.gears
     least = (DATA.flank_safety, DATA.root_safety, DATA.overload_flank_safety, DATA.overload_root_safety)
     high = min(1.5 * gears.module_mm * gears.sun_teeth, 40.0 * gears.module_mm)
     for steps in range(60, int(np.floor(10.0 * high + 1e-6)) + 1):
+        if not bearing_rules.needles_hold(motor, gears, steps / 10.0, settings):
+            continue
         safety, _ = iso6336.rate(
             gears, motor, steps / 10.0, SETTINGS, ring_wall=data.ring_rim_modules * gears.module_mm, sun_bore=None
         )
@@ -96,27 +102,61 @@ def sets_in(tenths):
                         )
 
 
-@pytest.mark.parametrize(("family", "tenths"), [("ISSPG", 40), ("ESSPG", 54), ("ESSPG", 60), ("ESSPG", 79)])
-def test_search_finds_what_a_slow_loop_with_the_slow_rating_finds(vt8020, family, tenths):
+def slow_best(motor, family, tenths, settings=SETTINGS):
+    """The lightest set of an interval that keeps every rule, bearings included: mass, gears, face width."""
     best = None
     for gears in sets_in(tenths):
-        if not allowed_by_iso6336(vt8020, family, gears, 6.0):
+        if not allowed_by_iso6336(motor, family, gears, 6.0):
+            continue
+        main = main_bearing(max(2 * float(gears.carrier_radius_mm) + 10.0, 35.0))
+        if not bearing_rules.output_holds(motor, gears, main, settings):
             continue
         # No face is narrower than this one, and none that is wider is lighter.
-        if best and build_actuator(vt8020, family, gears, SETTINGS, max(6.0, 6.0 * gears.module_mm)).mass_kg > best[0]:
+        if best and build_actuator(motor, family, gears, settings, max(6.0, 6.0 * gears.module_mm)).mass_kg > best[0]:
             continue
-        width = least_width(gears, vt8020)
-        if width is None or not allowed_by_iso6336(vt8020, family, gears, width):
+        width = least_width(gears, motor, settings)
+        if width is None or not allowed_by_iso6336(motor, family, gears, width):
             continue
-        mass = build_actuator(vt8020, family, gears, SETTINGS).mass_kg
+        mass = build_actuator(motor, family, gears, settings).mass_kg
         if best is None or mass < best[0]:
             best = (mass, gears, width)
-    got = map_for("VT8020", "iso6336").entries[tenths - 40].families[family].best
+    return best
+
+
+def agree(got, best):
+    """Whether search and slow loop found the same."""
     if best is None:
         assert got is None
         return
     assert (got.gears, got.face_width_mm) == best[1:]
     assert got.mass_kg == pytest.approx(best[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "family", "tenths"),
+    [
+        ("VT8020", "ISSPG", 40),
+        ("VT8020", "ESSPG", 54),
+        ("VT8020", "ESSPG", 60),
+        ("VT8020", "ESSPG", 79),
+        ("U8", "ISSPG", 45),
+    ],
+)
+def test_search_finds_what_a_slow_loop_with_the_slow_rating_finds(name, family, tenths):
+    got = map_for(name, "iso6336").entries[tenths - 40].families[family].best
+    agree(got, slow_best(load_motor(name), family, tenths))
+
+
+@pytest.mark.parametrize("service", [{"overload_static_safety_min": 5.0}, {"bearing_tilt_limit_rad": 5e-4}])
+def test_search_and_slow_loop_agree_where_bearings_decide(service):
+    """More is asked of the bearings than usual: needles want a wider face, or no tilt is small enough."""
+    motor, family, tenths = load_motor("U8"), "ISSPG", 45
+    settings = replace(SETTINGS, service=replace(SETTINGS.service, **service))
+    got = build_map(motor, settings).entries[tenths - 40].families[family].best
+    usual = map_for("U8", "iso6336").entries[tenths - 40].families[family].best
+    assert usual is not None
+    assert got is None or (got.gears != usual.gears and got.face_width_mm > usual.face_width_mm)
+    agree(got, slow_best(motor, family, tenths, settings))
 
 
 @pytest.mark.parametrize(("name", "family"), [("VT8020", "ISSPG"), ("U12", "ESSPG")])

@@ -98,8 +98,8 @@ def test_a_motor_with_gearboxes_that_the_leg_is_too_wide_for(capsys, folder, wor
     assert "ESSPG" in cli_run(capsys, "actuators", "--motor", "narrow.toml").out
     _, line = refused(capsys, *words)
     assert line == (
-        "error: the thigh's radius in mm at the hip, around the motor, = 38.0: must be at least 43, so that the ears of "
-        "the hip's stop are joined to it; choose a motor that is at least 10 mm wider\n"
+        "error: the thigh's radius in mm at the hip, around the motor, = 38.0: must be at least 43, so that the ears "
+        "of the hip's stop are joined to it; choose a motor that is at least 10 mm wider\n"
     )
 
 

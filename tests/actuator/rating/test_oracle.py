@@ -97,7 +97,7 @@ def test_gear_sets_are_rated_as_by_the_slow_rating(k):
 
 @pytest.mark.parametrize("sun_shift", [0.0, 0.4])
 def test_rings_that_two_or_three_teeth_of_a_planet_touch_are_rated_as_by_the_slow_rating(sun_shift):
-    """A third of the maps' winners have a contact ratio above 2 in the ring; here narrow faces under a high load."""
+    """Half of the maps' winners have a contact ratio above 2 in the ring; here narrow faces under a high load."""
     settings, motor = SETTINGS, load_motor("U12")
     wide = 0
     for sun, planet, module, planets in ((18, 36, 0.7, 3), (18, 30, 0.75, 3), (17, 40, 0.6, 4), (22, 65, 0.5, 3)):
