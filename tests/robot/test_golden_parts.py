@@ -32,12 +32,12 @@ PARTS = {
     "hip_seat_screw": (3.384, 0.0, 77.206, -17.892, 26.126),
     "hip_driver_plate": (10.53, 0.0, 88.745, -24.51, 24.312),
     "hip_standoff_screw": (1.784, 0.0, 89.206, -25.364, 30.869),
-    "hip_standoff": (1.635, 0.0, 89.206, -29.5, 30.938),
+    "hip_standoff": (1.846, 0.0, 89.206, -29.5, 30.945),
     "hip_driver": (32.0, 0.0, 89.206, -41.668, 19.471),
     "hip_driver_screw": (3.117, 0.0, 89.206, -35.531, 30.891),
     "knee_driver_plate": (10.53, 0.0, 88.745, 124.11, 24.312),
     "knee_standoff_screw": (1.784, 0.0, 89.206, 124.964, 30.869),
-    "knee_standoff": (1.635, 0.0, 89.206, 129.1, 30.938),
+    "knee_standoff": (1.846, 0.0, 89.206, 129.1, 30.945),
     "knee_driver": (32.0, 0.0, 89.206, 141.268, 19.471),
     "knee_driver_screw": (3.117, 0.0, 89.206, 135.131, 30.891),
     "thigh_plate_inner": (140.922, 0.738, -182.966, -13.247, 162.354),
@@ -84,7 +84,7 @@ PARTS = {
     "knee_axle_dowel_near": (3.946, 0.0, 0.0, -14.5, 7.522),
     "knee_axle_dowel_far": (3.946, 0.0, 0.0, 14.5, 7.522),
     "knee_spacer": (3.007, 0.0, 0.0, 0.0, 18.01),
-    "knee_bolt": (25.249, 0.0, 0.0, 0.174, 17.107),
+    "knee_bolt": (25.238, 0.0, 0.0, 0.165, 17.104),
     "foot_block": (59.877, 0.0, -365.861, 0.0, 17.48),
     "foot_bolt": (12.492, 0.0, -363.2, -0.837, 16.071),
     "knee_striker": (44.247, 27.507, -63.641, 0.0, 33.825),
@@ -115,12 +115,12 @@ def test_units_of_another_motor_are_what_they_were(design):
     masses = {u.name: float(u.mass_properties().mass_kg) for u in build_robot(design, map_for("U12")).units}
     assert masses == pytest.approx(
         {
-            "base_frame": 0.738483,
+            "base_frame": 0.738906,
             "hip_actuator": 1.215838,
             "thigh": 1.084400,
             "knee_actuator": 1.773578,
             "journal": 0.042084,
-            "shank": 0.557991,
+            "shank": 0.557980,
             "foot": 0.152349,
         },
         abs=1e-6,
@@ -132,9 +132,7 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
     for name, note in {
         "base_near_cheek": "6 mm sheet",
         "knee_bumper_flexion": "FKM 75 Shore A, round bar 28 mm, cut to 28 mm",
-        "knee_striker_bolt": (
-            "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together"
-        ),
+        "knee_striker_bolt": "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together",
         "base_far_cheek": "8 mm plate",
         "base_bearing": "6804, 20 x 32 x 7 mm (ISO 15)",
         "base_rod": "10 mm tube; the test stand's carriage clamps to the rods",
@@ -145,6 +143,6 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
         "drive_sprocket": "084, 14 teeth (ISO 606)",
         "knee_bearing": "6804, 20 x 32 x 7 mm (ISO 15)",
         "journal_screw": "M5 x 12 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
-        "knee_bolt": "M4 x 45 cap screw (ISO 4762) 12.9 with nut (ISO 4032), clamps the whole knee",
+        "knee_bolt": "M4 x 45 cap screw (ISO 4762) 8.8 with nut (ISO 4032) 8, clamps the whole knee",
     }.items():
         assert notes[name] == note, name
