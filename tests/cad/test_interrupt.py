@@ -1,15 +1,17 @@
 """Ctrl-C during an export, with real processes and signals: it ends at once and leaves nothing behind."""
 
+import itertools
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cad.write.folder import move_in
+from pareto_monoped.cad.write.folder import move_in, write
 from pareto_monoped.cad.write.unbroken import noted, unbroken, without_unfinished
 
 EXPORT = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "-o"]
@@ -131,6 +133,31 @@ def test_an_interrupt_waits_until_an_export_has_taken_its_place(tmp_path, monkey
     finally:
         signal.signal(signal.SIGINT, before)
     assert {path.name: path.read_text() for path in old.iterdir()} == dict.fromkeys(["a", "b", "design.json"], "new")
+
+
+def test_a_folder_to_which_a_thread_still_writes_is_deleted_and_stays_away(tmp_path):
+    """An export that was interrupted while it wrote left its temporary folder behind, once in a while."""
+    folder = tmp_path / "half"
+    folder.mkdir()
+    began, refused = threading.Event(), threading.Event()
+
+    def write_on():
+        for k in itertools.count():
+            try:
+                write(folder, f"sub_{k % 7}/{k}.txt", "x")
+            except FileNotFoundError:
+                if not folder.exists():
+                    refused.set()
+                    return
+            began.set()
+
+    with noted(folder):
+        writer = threading.Thread(target=write_on, daemon=True)
+        writer.start()
+        assert began.wait(PATIENCE_S)
+        with without_unfinished():
+            assert refused.wait(PATIENCE_S)
+            assert list(tmp_path.iterdir()) == []
 
 
 def test_unfinished_folders_can_be_deleted_from_outside_but_not_while_one_is_moved(tmp_path):

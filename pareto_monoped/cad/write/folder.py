@@ -95,8 +95,10 @@ def _move(folder: Path, out_dir: Path) -> None:
 
 
 def _path(folder: Path, name: str) -> Path:
+    # The folder itself is not made: once it has been deleted, a thread that still writes must not bring it back.
     path = folder / name
-    path.parent.mkdir(parents=True, exist_ok=True)
+    for parent in reversed(path.relative_to(folder).parents[:-1]):
+        (folder / parent).mkdir(exist_ok=True)
     return path
 
 

@@ -10,6 +10,8 @@ from types import FrameType
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 """Ctrl-C, and what ends the worker processes of a batch."""
+_TRIES = 100
+"""To delete a folder. Once it is gone, nothing can be written to it; every try deletes what came since the last."""
 _moving = threading.Lock()
 _unfinished: set[Path] = set()
 
@@ -44,7 +46,7 @@ def noted(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        _delete(folder)
         _unfinished.discard(folder)
 
 
@@ -53,5 +55,13 @@ def without_unfinished() -> Iterator[None]:
     """Delete all temporary folders; nothing takes its place while the block runs."""
     with _moving:
         for folder in tuple(_unfinished):
-            shutil.rmtree(folder, ignore_errors=True)
+            _delete(folder)
         yield
+
+
+def _delete(folder: Path) -> None:
+    """Delete a folder, to which another thread may still write."""
+    for _ in range(_TRIES):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not folder.exists():
+            return
