@@ -11,7 +11,8 @@ from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.strength.joint import LegJoint, Structure
 
 _PRESSURE_MPA, _SPEED_M_PER_S, _HOURS = 31.0, 0.1, 15000.0
-"""Pressure allowed at a chain speed, and for how long (DIN 8195 and makers' tables: 30 to 31 MPa up to 0.2 m/s)."""
+"""Pressure allowed at a chain speed, and for how long. Our own choice, of the size that makers' tables after DIN 8195
+have for slow chains; not checked against the standard's text. The paper's designs stay 26 times below it."""
 _TEETH, _LINKS = 19, 100
 """Of both sprockets and of the chain to which that refers; ISO 10823 rates sprockets of 19 teeth."""
 _BENDS_PER_LOOP, _BENDS_PER_JUMP = 4, 2
@@ -54,7 +55,7 @@ JOINTS = (
         name="chain_wear",
         group="chain",
         formula="p A s / (s_duty F), with s the sliding path of a pin",
-        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure of DIN 8195, chains of ISO 606",
+        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: our own choice after DIN 8195; chains of ISO 606",
         required=1.0,
         required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles",
         loads=("peak_chain_tension_n",),
