@@ -12,12 +12,16 @@ from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 _TOUCH_MM = 1e-9
 
+_LEAST_WALL_MM = 1.0
+"""Of a ring that fills a hole. Our own choice: three times the chamfers of 0.3 mm on the edges of bores."""
+
 
 def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
     """The same body from other prisms: slices of one outline that stand on each other become one tall prism.
 
     Slices of a gear would have to be united along all their flanks. Where each slice has one central hole, the tall
-    prism gets the widest of these holes, and rings fill it where the hole is narrower.
+    prism gets the widest of these holes, and rings fill it where the hole is narrower. Slices whose holes are nearly
+    equal stay as they are: a chamfer does not fit on a ring that is thinner than itself.
     """
     result = []
     for stack in _stacks(prisms):
@@ -26,6 +30,10 @@ def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
             result += stack
             continue
         widest = max(bores, key=lambda bore: float(bore.radius_mm))
+        walls = [float(widest.radius_mm) - float(bore.radius_mm) for bore in bores]
+        if any(0.0 < wall < _LEAST_WALL_MM for wall in walls):
+            result += stack
+            continue
         result.append(Prism(outline=stack[0].outline, z0_mm=stack[0].z0_mm, z1_mm=stack[-1].z1_mm, holes=(widest,)))
         result += [
             Prism(outline=widest, z0_mm=prism.z0_mm, z1_mm=prism.z1_mm, holes=(bore,))

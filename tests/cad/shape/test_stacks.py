@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.kernel.process import solid_facts
 from pareto_monoped.cad.shape.stacks import stands_on, without_teeth
 from pareto_monoped.geometry.features import bored, turned
@@ -64,3 +66,31 @@ def test_a_cone_stands_on_the_edge_that_it_names_only():
     assert not stands_on(turned(4.0, 0.0, -1.0).bevels[0], PLANET)  # a shaft's, not a hole's
     thin = Prism(outline=RIM, z0_mm=-0.2, z1_mm=0.0, holes=(BORE,))
     assert not stands_on(high, thin)  # 0.3 mm deep
+
+
+@pytest.mark.parametrize("step", [0.0825, 0.25, 1.5])
+def test_a_chamfer_fits_on_a_bore_beside_one_that_is_little_wider(step):
+    """The ring's seat of a knee whose main bearing sits 0.0825 mm wider could not be made, so no export of it could."""
+    rim, seat = Circle(radius_mm=40.4), Circle(radius_mm=38.4)
+    prisms = (
+        Prism(outline=rim, z0_mm=-29.4, z1_mm=-17.3, holes=(seat,)),
+        Prism(outline=rim, z0_mm=-17.3, z1_mm=-17.0, holes=(Circle(radius_mm=37.4),)),
+        Prism(outline=rim, z0_mm=-17.0, z1_mm=-3.0, holes=(Circle(radius_mm=38.4 + step),)),
+    )
+    entered = bored(seat, -29.4, -17.3, enters="low", pressed=True)
+    part = Part(
+        name="housing", role=Role.HOUSING, material=STEEL, prisms=prisms, process="machined", features=(entered,)
+    )
+    (facts,) = solid_facts([part])
+    assert facts.valid
+    assert facts.volume_mm3 == pytest.approx(float(part.volume_mm3()), rel=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", motor_names())
+def test_every_winner_is_made_of_valid_solids(name):
+    """With chamfers, the exports of a front stop at the first gearbox that cannot be made."""
+    for entry in map_for(name, "iso6336").entries:
+        if entry.actuator is not None:
+            facts = solid_facts(list(entry.actuator.parts))
+            assert all(fact.valid for fact in facts), entry.actuator.gears
