@@ -12,7 +12,7 @@ JOBS ?= 2
 
 help:
 	@echo "make pareto     set up, then: actuator map, two fronts, report, knee design, its CAD"
-	@echo "make test       set up, then the tests (about five minutes)"
+	@echo "make test       set up, then the tests (about fifteen minutes)"
 	@echo "make test-long  the tests that take longer, too"
 	@echo "make lint       ruff and mypy"
 	@echo "make bench      the benchmarks in benchmarks/"
