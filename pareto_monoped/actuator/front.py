@@ -177,12 +177,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     z_diaphragm = -carrier.thread_depth_mm
     z_pins = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
     pins = Pattern(radius_mm=0.5 * carrier.pin_diameter_mm, pitch_radius_mm=at.r_pins, count=at.gears.planets)
-    screws = Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=at.gears.planets)
     seat = 0.5 * at.end_bearing.outer_diameter_mm
     z_ring = at.z_bearing_front + RETAINING_RING_MM
-    z_split = at.z_secondary_front - carrier.pin_depth_mm
     r_groove = at.r_bore - RING_GROOVE_MM
-    web_holes = _web_holes(at, WEB_SCREW.hole)
     body = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
@@ -216,28 +213,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 *_web_threads(at),
             ),
         ),
-        Part(
-            name="secondary_carrier",
-            role=Role.CARRIER,
-            visibility=Visibility.INSIDE,
-            material=materials.aluminium,
-            prisms=(
-                *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins, *web_holes),
-                *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws, *web_holes),
-            ),
-            process="machined",
-            group=Group.OUTPUT,
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
-            features=(
-                clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
-                bored(pins, z_split, at.z_secondary_front, enters="high", pressed=True),
-                *(
-                    clearance(WEB_SCREW, (hole,), at.z_secondary_back, at.z_secondary_front, countersunk="low")
-                    for hole in web_holes
-                ),
-            ),
-        ),
+        _secondary_carrier(at, settings, pins),
         Part(
             name="retaining_ring",
             role=Role.RETAINING_RING,
@@ -260,6 +236,36 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             "carries the sun's end in the carrier",
         ),
         *_web_screws(at, settings),
+    )
+
+
+def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) -> Part:
+    """The ring that holds the far ends of the planets' pins, screwed to these and to the webs."""
+    carrier, materials = settings.parts.carrier, settings.materials
+    screws = Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=at.gears.planets)
+    web_holes = _web_holes(at, WEB_SCREW.hole)
+    z_split = at.z_secondary_front - carrier.pin_depth_mm
+    return Part(
+        name="secondary_carrier",
+        role=Role.CARRIER,
+        visibility=Visibility.INSIDE,
+        material=materials.aluminium,
+        prisms=(
+            *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins, *web_holes),
+            *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws, *web_holes),
+        ),
+        process="machined",
+        group=Group.OUTPUT,
+        grade=ALLOYS["aw_7075_t6"],
+        fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
+        features=(
+            clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
+            bored(pins, z_split, at.z_secondary_front, enters="high", pressed=True),
+            *(
+                clearance(WEB_SCREW, (hole,), at.z_secondary_back, at.z_secondary_front, countersunk="low")
+                for hole in web_holes
+            ),
+        ),
     )
 
 
