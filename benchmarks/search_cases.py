@@ -56,7 +56,7 @@ def main() -> None:
                 "iterations": max(1, evaluations // (8 * len(WEIGHTS))),
             }
             weighted = front(Path(name), case.name, sweep, evaluations)
-            ours = front(Path(name), case.name, {"name": "nsga2"}, evaluations)
+            ours = front(Path(name), case.name, {"name": "surrogate"}, evaluations)
             here = float(simulated.height_m[i])
             cells = [
                 case.name,

@@ -17,7 +17,7 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 class EvolutionSettings:
     """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
 
-    The default population was chosen by measurement on Case C (benchmarks/search_algorithms.md).
+    The default population was chosen by measurement on Case C.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -127,6 +127,5 @@ ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
 """Name of an algorithm in a study file -> its settings."""
 
 
-def default_algorithm(objectives: int) -> AlgorithmSettings:
-    """The search of a study that names none, by its number of objectives."""
-    return EvolutionSettings(name="nsga2" if objectives == 2 else "sms_emoa")
+DEFAULT_ALGORITHM = SurrogateSettings(name="surrogate")
+"""The search of a study that names none. Studies stored by earlier versions name theirs."""

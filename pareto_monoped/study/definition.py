@@ -17,9 +17,9 @@ from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.study.algorithm_settings import (
     ALGORITHMS,
+    DEFAULT_ALGORITHM,
     AlgorithmSettings,
     WeightedSettings,
-    default_algorithm,
 )
 from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
 
@@ -229,7 +229,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
 
 def _algorithm(table: Mapping[str, Any], corner: ReferencePoint, source: str) -> AlgorithmSettings:
     if not table:
-        return default_algorithm(len(corner.values))
+        return DEFAULT_ALGORITHM
     name = table.get("name")
     kind = ALGORITHMS.get(name) if isinstance(name, str) else None
     if kind is None:

@@ -21,7 +21,7 @@ from pareto_monoped.study.simulator import load_simulator
 from tests.study.support import MINIMAL, made_study
 
 MOTORS = ("VT8020", "U8", "U10", "U12", "MN8014", "MAD_M6C12")
-ALGORITHMS = ("nsga2", "sms_emoa", "optuna_nsga2", "optuna_tpe", "weighted_cmaes", "random")
+ALGORITHMS = ("surrogate", "nsga2", "sms_emoa", "optuna_nsga2", "optuna_tpe", "weighted_cmaes", "random")
 KNEE, HIP = NAMES.index("knee_ratio"), NAMES.index("hip_ratio")
 
 
@@ -113,7 +113,7 @@ def test_every_algorithm_chooses_from_the_list(actuator_map, name):
         assert len(set(column)) > 3
 
 
-@pytest.mark.parametrize("name", ["nsga2", "sms_emoa", "optuna_nsga2", "optuna_tpe", "random"])
+@pytest.mark.parametrize("name", ["surrogate", "nsga2", "sms_emoa", "optuna_nsga2", "optuna_tpe", "random"])
 def test_no_design_is_asked_for_twice_and_the_search_ends_when_there_is_no_other(actuator_map, name):
     """With nothing free but two short lists of gearboxes, all of them are tried once."""
     variables = dict.fromkeys(NAMES[:2], 0.4) | {"knee_ratio": {"lower": 4.0, "upper": 5.0}}

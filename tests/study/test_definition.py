@@ -21,7 +21,7 @@ def test_the_defaults_are_case_c_with_the_papers_bounds():
     assert np.array_equal(study.lower[: len(LOWER)], LOWER)
     assert np.array_equal(study.upper[: len(UPPER)], UPPER)
     assert study.constraints.value("min_height_m") == 0.55
-    assert study.algorithm.name == "nsga2"
+    assert study.algorithm.name == "surrogate"
     assert (study.motor, study.calibration) == ("VT8020", "reference")
     assert study.reference_point.as_dict() == {"height_m": 0.55, "energy_j": 100.0}
     assert (study.stop.wall_time_s, study.stop.plateau_evaluations, study.stop.plateau_growth) == (None, None, 0.001)

@@ -84,9 +84,9 @@ def test_every_measure_can_be_limited_on_either_side():
         assert mine == [("max", 0.7), ("min", 0.6)]
 
 
-def test_the_default_search_depends_on_the_number_of_objectives():
-    assert made(objectives=BATTERY).algorithm.name == "nsga2"
-    assert made(objectives=THREE).algorithm.name == "sms_emoa"
+def test_the_default_search_is_the_same_for_two_and_three_objectives():
+    assert made(objectives=BATTERY).algorithm.name == "surrogate"
+    assert made(objectives=THREE).algorithm.name == "surrogate"
     assert made(objectives=THREE, algorithm={"name": "nsga2"}).algorithm.name == "nsga2"
 
 

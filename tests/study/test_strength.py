@@ -34,7 +34,7 @@ knee_ratio = {lower = 6.0, upper = 8.4}
 stiffness_n_per_m = {lower = 5.0, upper = 200.0}
 knee_release_rad = {lower = 0.0, upper = 0.3}
 """
-ALGORITHMS = ("nsga2", "sms_emoa", "optuna_nsga2", "weighted_cmaes", "random")
+ALGORITHMS = ("surrogate", "nsga2", "sms_emoa", "optuna_nsga2", "weighted_cmaes", "random")
 
 
 def written(tmp_path, strength="true", more=""):
