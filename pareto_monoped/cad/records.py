@@ -1,7 +1,7 @@
 """An export again, from its ``design.json``; a record that contradicts itself is refused."""
 
 import json
-import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -49,19 +49,20 @@ def record_job(
     """
     source = f"design record {str(path)!r}"
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-        design = _design(record["searched"])
-        angles = {name: _finite(record["pose"][name]) for name in ("hip_rad", "knee_rad")}
-        motor, calibration = dict(record["motor_data"]), dict(record["calibration_data"])
-        origin = dict(record["source"])
-        wanted = [str(name) for name in record["formats"]]
+        record = _parsed(path)
+        design = _design(_object(record, "searched"))
+        pose = _object(record, "pose")
+        angles = {name: _finite(pose, name) for name in ("hip_rad", "knee_rad")}
+        motor, calibration = dict(_object(record, "motor_data")), dict(_object(record, "calibration_data"))
+        origin = dict(_object(record, "source"))
+        wanted = _names(record, "formats")
         maker = str(record["made_by"])
         rules = _rules(record.get("rules", "paper"))
         strength = record.get("strength", False) is True
     except OSError as problem:
         raise InputError(f"{source}: cannot be read ({problem.strerror}); give the design.json of an export") from None
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
-        why = f"no {problem}" if isinstance(problem, KeyError) else str(problem).splitlines()[0]
+    except (KeyError, ValueError) as problem:
+        why = f"no {problem}" if isinstance(problem, KeyError) else str(problem)
         raise InputError(f"{source}: is not the record of an export ({why}); give the design.json of one") from None
     job = Job(
         design=design,
@@ -121,10 +122,30 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+def _parsed(path: Path) -> Mapping[str, Any]:
+    """The content of a record.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no JSON object; the message says where the text breaks off.
+    """
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except json.JSONDecodeError as problem:
+        raise ValueError(f"no JSON text: line {problem.lineno}, column {problem.colno}") from None
+    except UnicodeDecodeError:
+        raise ValueError("no text in UTF-8") from None
+    except (RecursionError, ValueError):  # a number of too many digits
+        raise ValueError("nested or numbered beyond reason") from None
+    if not isinstance(found, dict):
+        raise ValueError("no JSON object")
+    return found
+
+
 def _design(searched: Mapping[str, Any]) -> Design:
     """The design of a record; optional variables that it does not name have their defaults."""
     values = DEFAULTS | dict(searched)
-    return Design.from_array([_finite(values[name]) for name in NAMES])
+    return Design.from_array([_finite(values, name) for name in NAMES])
 
 
 def _rules(name: Any) -> RuleSet:
@@ -135,8 +156,23 @@ def _rules(name: Any) -> RuleSet:
     raise ValueError(f"rules {name!r} are none of {', '.join(RULE_SETS)}")
 
 
-def _finite(value: Any) -> float:
-    number = float(value)
-    if not math.isfinite(number):
-        raise ValueError(f"{number} is not a number")
-    return number
+def _object(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """A field of a record that holds fields of its own."""
+    if not isinstance(record[name], dict):
+        raise ValueError(f"{name} has no fields")
+    return dict(record[name])
+
+
+def _names(record: Mapping[str, Any], name: str) -> list[str]:
+    """A field of a record that is a list of names."""
+    if not isinstance(record[name], list):
+        raise ValueError(f"{name} = {_short(record[name])} is no list")
+    return [str(one) for one in record[name]]
+
+
+def _finite(record: Mapping[str, Any], name: str) -> float:
+    """A field of a record that is a number."""
+    value = record[name]
+    if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
+        raise ValueError(f"{name} = {_short(value)} is not a number")
+    return float(value)

@@ -149,13 +149,17 @@ def between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -
     return Prism(outline=outline, z0_mm=low, z1_mm=high, holes=holes)
 
 
-def hexagon(flats_mm: float) -> Path:
+def hexagon(flats_mm: float, turn_rad: float = 0.0) -> Path:
     """A hexagon around the origin, drawn sharp, with two of its flats across the x axis.
 
     Of a circle of screws, flats therefore face the circle's axis.
+
+    Args:
+        flats_mm: width across flats.
+        turn_rad: angle by which it is turned from there.
     """
     corner = flats_mm / np.sqrt(3.0)
-    angles = np.pi / 6.0 + np.pi / 3.0 * np.arange(6)
+    angles = turn_rad + np.pi / 6.0 + np.pi / 3.0 * np.arange(6)
     return polygon([(float(corner * np.cos(angle)), float(corner * np.sin(angle))) for angle in angles])
 
 

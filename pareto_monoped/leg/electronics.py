@@ -4,6 +4,8 @@ Each driver stands on the side of its motor. The knee motor's cables come throug
 the thigh's swing only twists them. Cable ties hold them to the driver's plate and to the rods.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part
@@ -21,6 +23,9 @@ DRIVER_PLATE_MM = 2.0
 _STANDOFF = 8.0  # length, as sold; above the 4 mm high heads of the rods' screws
 _STANDOFF_FLATS = HEXAGON_FLATS_MM[3.0]  # as sold for M2.5 and M3
 _THREAD = 4.0  # of either screw in a standoff
+# Torque of its screws in N m, by thread diameter. M3: makers of spacers for boards allow 0.5 (data sheets of Wuerth
+# WA-SMSR and WA-SMSE). M2.5: the same stress in the thread, hence in proportion to the diameter's cube.
+_STANDOFF_N_M = {3.0: 0.5, 2.5: 0.5 * (2.5 / 3.0) ** 3}
 _BOARD = 1.6  # thickness of a circuit board
 _ABOVE_ROD = 6.0  # from the lower rods to the board's lower holes: the board then stays out of the foot's reach
 _RIM = 5.0  # of the plate around holes
@@ -62,17 +67,19 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             ),
             note=f"{DRIVER_PLATE_MM:g} mm sheet; cable ties through the upper holes",
         ),
-        screw_part(
-            f"{motor}_standoff_screw",
-            driver.screw,
-            head="countersunk",
-            seat_mm=face_mm,
-            grip_mm=DRIVER_PLATE_MM,
-            room_mm=_THREAD,
-            direction=direction,
-            material=MATERIALS.steel,
-            places_mm=holes,
-            note="flush, into the standoff",
+        _gently_tightened(
+            screw_part(
+                f"{motor}_standoff_screw",
+                driver.screw,
+                head="countersunk",
+                seat_mm=face_mm,
+                grip_mm=DRIVER_PLATE_MM,
+                room_mm=_THREAD,
+                direction=direction,
+                material=MATERIALS.steel,
+                places_mm=holes,
+                note="flush, into the standoff",
+            )
         ),
         Part(
             name=f"{motor}_standoff",
@@ -85,19 +92,30 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
         ),
         _board(motor, under, over, direction, d),
-        screw_part(
-            f"{motor}_driver_screw",
-            driver.screw,
-            head="cap",
-            seat_mm=over,
-            grip_mm=_BOARD,
-            room_mm=_THREAD,
-            direction=-direction,
-            material=MATERIALS.steel,
-            places_mm=holes,
-            note="through the board into the standoff",
+        _gently_tightened(
+            screw_part(
+                f"{motor}_driver_screw",
+                driver.screw,
+                head="cap",
+                seat_mm=over,
+                grip_mm=_BOARD,
+                room_mm=_THREAD,
+                direction=-direction,
+                material=MATERIALS.steel,
+                places_mm=holes,
+                note="through the board into the standoff",
+            )
         ),
     )
+
+
+def _gently_tightened(screw: Part) -> Part:
+    """A screw in a standoff, whose thread and board bear less than the screw."""
+    full = screw.fastening
+    assert full is not None
+    share = _STANDOFF_N_M[full.thread.diameter_mm] / full.torque_n_m
+    # The torque is proportional to the preload.
+    return replace(screw, fastening=replace(full, most_preload_n=share * full.preload_n))
 
 
 def _lower_row_mm(d: LegDimensions) -> float:

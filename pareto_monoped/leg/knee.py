@@ -36,6 +36,7 @@ DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
 # The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
 # Heads and nuts press the plates less than ``strength.bolted`` allows.
 _NUT_HEIGHT = 3.2
+_NUT_TURN = np.pi / 12.0  # of its hexagon: each nut turns a flat to one neighbour and a corner to the other
 _NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread
 
 
@@ -227,7 +228,7 @@ def _axle_bolt(d: LegDimensions) -> Part:
         prisms=(
             cylinder(M4.head, -face - M4.head_height, -face),
             cylinder(M4.shank, -face, face),
-            between(hexagon(HEXAGON_FLATS_MM[2.0 * M4.shank]), face, face + _NUT_HEIGHT),
+            between(hexagon(HEXAGON_FLATS_MM[2.0 * M4.shank], _NUT_TURN), face, face + _NUT_HEIGHT),
             cylinder(M4.core, face + _NUT_HEIGHT, length - face),
         ),
         count=_BOLTS,

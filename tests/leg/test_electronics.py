@@ -60,6 +60,21 @@ def test_a_board_that_limits_its_motor_says_so_in_the_parts_list():
 
 
 @pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
+def test_screws_in_standoffs_are_tightened_as_spacers_for_boards_allow(leg, driver):
+    """0.5 N m for M3 (Wuerth's data sheets), 0.3 N m for M2.5 (tables after DIN 267-25)."""
+    screws = [
+        part
+        for part in base_parts(0.09, dataclasses.replace(leg, driver=driver))
+        if part.name.endswith(("standoff_screw", "driver_screw"))
+    ]
+    assert len(screws) == 4
+    allowed_n_m = {3.0: 0.5, 2.5: 0.3}
+    for screw in screws:
+        diameter = screw.fastening.thread.diameter_mm
+        assert 0.95 * allowed_n_m[diameter] < screw.fastening.torque_n_m <= allowed_n_m[diameter] + 1e-9
+
+
+@pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
 def test_each_joint_s_board_stands_outside_its_cheek(leg, driver):
     parts = base_parts(0.09, dataclasses.replace(leg, driver=driver))
     cheeks = {part.name: part.prisms for part in parts if part.name.endswith("_cheek")}

@@ -1,7 +1,10 @@
 """Bolts of the links: what their nuts, their seats and the printed core bear when they are tightened."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
+from shapely import affinity
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.roles import Role
@@ -49,6 +52,13 @@ def test_the_knee_s_nuts_and_heads_stand_on_the_plates_which_bear_them():
     # ISO 4032: the nut bears on a ring of 5.9 mm at least. 1.5 times the yield stress is what the metal around allows.
     ring = 0.25 * np.pi * (5.9**2 - 4.3**2)
     assert bolt.fastening.preload_n / ring < 1.5 * ALLOYS["aw_6082_t6"].yield_mpa
+    # Drawn with sharp corners, 8.08 mm over them, nuts clear each other as they are turned.
+    drawn = polygon(nut.outline)
+    turned = [
+        affinity.rotate(affinity.translate(drawn, float(bolt.pitch_radius_mm), 0.0), 90.0 * k, origin=(0.0, 0.0))
+        for k in range(4)
+    ]
+    assert min(one.distance(other) for one, other in combinations(turned, 2)) > 0.2
     # Nuts of neighbouring bolts clear each other however they are turned.
     apart = 2.0 * float(bolt.pitch_radius_mm) * np.sin(np.pi / float(bolt.count))
     assert apart > 7.66  # over the corners, ISO 4032

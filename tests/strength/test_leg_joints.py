@@ -231,6 +231,18 @@ def test_the_chain_wears_by_pressure_times_path():
     assert chain.wear_n(drive, 2.0 * jumps) == pytest.approx(0.5 * pull)
 
 
+def test_the_chain_s_pressure_is_below_that_of_the_power_that_its_standard_rates():
+    """ASME B29.1 at low speed: 0.004 N^1.08 n^0.9 P^(3 - 0.07 P) hp for chain 40, whose joints have 3.98 x 11.17 mm."""
+    speed_m_per_s, teeth, pitch_in = 0.1, 19, 0.5
+    turns_per_min = 60.0 * speed_m_per_s / (teeth * 0.0254 * pitch_in)
+    rated_w = 745.7 * 0.004 * teeth**1.08 * turns_per_min**0.9 * pitch_in ** (3.0 - 0.07 * pitch_in)
+    rated_mpa = rated_w / speed_m_per_s / (3.98 * 11.17)
+    assert rated_mpa == pytest.approx(37.2, abs=0.2)
+    ours_mpa = 31.0
+    assert chain._PRESSURE_MPA == ours_mpa
+    assert ours_mpa / rated_mpa == pytest.approx(1.0 - 0.17, abs=0.005)
+
+
 def test_the_knee_s_bearings_live_for_the_jumps_of_the_duty():
     """ISO 281 turn by turn: the bearings carry the sum of forces on two rows, in every swing there and back."""
     row, stop = ROWS["knee_bearing_life"], knee_stop(D)
