@@ -1,8 +1,8 @@
 """The chain: its breaking load against the largest pull of a jump, and the wear of its joints over the duty.
 
 Pins and bushes wear by pressure times sliding path (Archard, J. Appl. Phys. 24, 1953). A chain that runs at the
-power that its standard rates may grow by 3 percent in 15,000 hours. A joint here slides far less: once onto its sprocket
-and once off it per jump, so that it bears the pressure in proportion more.
+power that its standard rates may grow by 3 percent in 15,000 hours. A joint here slides far less: once onto its
+sprocket and once off it per jump, so that it bears the pressure in proportion more.
 """
 
 import numpy as np
@@ -57,7 +57,7 @@ JOINTS = (
         name="chain_wear",
         group="chain",
         formula="p A s / (s_duty F), with s the sliding path of a pin",
-        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of power ratings of ASME B29.1",
+        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of ASME B29.1",
         required=1.0,
         required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles",
         loads=("peak_chain_tension_n",),

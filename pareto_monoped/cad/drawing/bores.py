@@ -91,13 +91,29 @@ class Bore:
         return f"Ø{number(2.0 * self.radius)}{zone}{depth or ' through'}"
 
     def details(self, *, from_above: bool) -> Iterator[str]:
-        """Countersinks, by the side that they are on."""
-        for mouth, above in zip(self.mouths, (False, True), strict=True):
-            if mouth is None or mouth.kind is not Cone.COUNTERSINK:
-                continue
-            side = "" if above == from_above else ", far side"
-            angle = 2.0 * np.degrees(np.arctan2(float(mouth.radius_mm) - self.radius, float(mouth.depth_mm)))
-            yield f"countersink Ø{number(2.0 * float(mouth.radius_mm))} {TIMES} {number(angle)}°{side}"
+        """Countersinks, chamfers and lead-ins, by the side that they are on; a note gives those of threads."""
+        threaded = self.feature is not None and self.feature.thread is not None
+        said = [
+            (self._countersink(mouth) if mouth.kind is Cone.COUNTERSINK else self._chamfer(mouth), above == from_above)
+            for mouth, above in zip(self.mouths, (False, True), strict=True)
+            if mouth is not None and (mouth.kind is Cone.COUNTERSINK or (not threaded and self._ends_at_mouth(above)))
+        ]
+        for text in dict.fromkeys(text for text, _ in said):
+            sides = {near for other, near in said if other == text}
+            yield f"{text}{', both sides' if len(sides) == 2 else '' if True in sides else ', far side'}"
+
+    def _ends_at_mouth(self, above: bool) -> bool:
+        """Whether these holes end where the feature does: a narrower step of the same feature has no cone."""
+        assert self.feature is not None
+        end = float(self.feature.high_mm) - self.high if above else float(self.feature.low_mm) - self.low
+        return abs(end) < _SAME_MM
+
+    def _countersink(self, mouth: Mouth) -> str:
+        angle = 2.0 * np.degrees(np.arctan2(float(mouth.radius_mm) - self.radius, float(mouth.depth_mm)))
+        return f"countersink Ø{number(2.0 * float(mouth.radius_mm))} {TIMES} {number(angle)}°"
+
+    def _chamfer(self, mouth: Mouth) -> str:
+        return f"chamfer {chamfer_text(float(mouth.depth_mm), float(mouth.radius_mm) - self.radius)}"
 
 
 def bores(part: Part, *, on_axis: bool = False) -> tuple[Bore, ...]:
@@ -129,6 +145,11 @@ def _bore(part: Part, shape: Circle | Pattern, low: float, high: float) -> Bore:
         feature=feature,
         fit=next(iter(fits), None),
     )
+
+
+def chamfer_text(along: float, across_mm: float) -> str:
+    """Such as ``0.5 x 45°``; the angle is measured from the axis."""
+    return f"{number(along)} {TIMES} {number(round(float(np.degrees(np.arctan2(across_mm, along))), 1))}°"
 
 
 def number(value: float) -> str:

@@ -22,6 +22,8 @@ FIRST_MM, PITCH_MM = 9.0, 7.0
 """From the outline to the first dimension line, and from line to line (ISO 129-1: not less than about 10 and 7)."""
 SLOT_MM = 4.2
 """Least distance of parallel texts of 2.5 mm."""
+_BESIDE_MM = 1.2
+"""From an upright dimension line to its text, which stands clear of the arrows."""
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
@@ -133,7 +135,7 @@ def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> No
         paper.arrow(x, y, (0.0, sign if inside else -sign))
         if not inside:
             paper.line([(x, y), (x, y + sign * 2.0 * ARROW_MM)])
-    paper.text(text, x - 0.8, 0.0, align="centre", upward=True)
+    paper.text(text, x - _BESIDE_MM, 0.0, align="centre", upward=True)
 
 
 def callout(

@@ -36,7 +36,7 @@ def part_sheet(part: Part) -> Sheet:
         return placed(bare, readable, lambda scale: round_views(drawn, scale), tables, notes)
     plan = plan_of(part)
     x0, y0, x1, y1 = plan.bounds
-    tables, tags = plan_tables(plan)
+    tables, tags = plan_tables(plan, part)
     readable = min(_PLAN_MM / max(x1 - x0, y1 - y0), 2.0)
     notes = [*plan_notes(plan, part), *notes]
     return placed((x1 - x0, y1 - y0), readable, lambda scale: plan_views(plan, scale, tags), tables, notes)

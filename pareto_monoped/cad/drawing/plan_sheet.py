@@ -5,28 +5,41 @@ from string import ascii_uppercase
 
 import numpy as np
 
-from pareto_monoped.cad.drawing.bores import Bore, number
+from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
 from pareto_monoped.cad.drawing.lettering import TIMES
 from pareto_monoped.cad.drawing.paper import Paper
+from pareto_monoped.cad.drawing.placing import Tag, place_tags
 from pareto_monoped.cad.drawing.plan import Layer, Plan, is_square, nodes, repeats, rounded_rectangle
-from pareto_monoped.cad.drawing.plan_view import Tag, hole_tag, node_tag, plan_view, section_at, section_marks
+from pareto_monoped.cad.drawing.plan_view import (
+    axis_tags,
+    hole_tag,
+    node_tag,
+    plan_view,
+    section_at,
+    section_marks,
+    shape_tag,
+)
 from pareto_monoped.cad.drawing.sheet import table
-from pareto_monoped.cad.drawing.tolerances import fit_table
+from pareto_monoped.cad.drawing.tolerances import DATUM, datum_fit, fit_table
 from pareto_monoped.cad.shape.curves import Contour
+from pareto_monoped.geometry.features import ShaftEnd
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Pattern
 
+_SAME_MM = 1e-6
 _ROWS = 34
 """Rows of a table before it goes on beside itself."""
 
 
 def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
     """The view from above, and a section where the part has more than one thickness."""
-    above = plan_view(plan, scale, tags)
-    if not _has_section(plan):
-        return [above]
-    section_marks(above, plan, scale)
-    return [above, section_at(plan, scale)]
+    above = plan_view(plan, scale)
+    cut = _has_section(plan)
+    if cut:
+        section_marks(above, plan, scale)
+    place_tags(above, [*axis_tags(scale), *tags], scale)
+    return [above, section_at(plan, scale)] if cut else [above]
 
 
 def _has_section(plan: Plan) -> bool:
@@ -35,13 +48,16 @@ def _has_section(plan: Plan) -> bool:
     return not (plan.is_flat and flush)
 
 
-def plan_tables(plan: Plan) -> tuple[list[Paper], list[Tag]]:
-    """Tables of holes, windows and contours, and the names that stand on the view."""
-    hole_rows, tags = _hole_rows(plan)
-    contour_rows, window_rows, node_tags = _contour_rows(plan)
+def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
+    """Tables of fits, holes, windows and contours, and the names that stand on the view."""
+    around = [2.0 * radius for radius in _around(plan)]
+    alone = [any(fit.holds(diameter) for diameter in around) for fit in part.fits]
+    first = datum_fit(part.fits)
+    axis = first is not None and alone[part.fits.index(first)]
+    hole_rows, tags = _hole_rows(plan, DATUM if axis else None)
+    contour_rows, window_rows, node_tags = _contour_rows(plan, part)
     tables = []
-    fits = [bore.fit for bore in plan.bores if bore.fit is not None]
-    table_of_fits = fit_table(fits, [bore.count == 1 for bore in plan.bores if bore.fit is not None])
+    table_of_fits = fit_table(part.fits, alone)
     if table_of_fits is not None:
         tables.append(table_of_fits)
     if hole_rows or window_rows:
@@ -54,6 +70,14 @@ def plan_tables(plan: Plan) -> tuple[list[Paper], list[Tag]]:
         head = ("Node", "X", "Y", "To the next", "Centre X", "Centre Y")
         tables += _tables("Contours, from the origin X Y", head, contour_rows)
     return tables, [*tags, *node_tags]
+
+
+def _around(plan: Plan) -> Iterator[float]:
+    """Radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
+    for layer in plan.layers:
+        if layer.outline.circle is not None:
+            yield float(layer.outline.circle.radius_mm)
+    yield from (bore.radius for bore in plan.bores if bore.count == 1)
 
 
 def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
@@ -70,6 +94,8 @@ def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
     elif not _has_section(plan):
         yield f"Thickness t = {number(plan.high - plan.low)}."
     yield f"Blank {number(x1 - x0)} {TIMES} {number(y1 - y0)} {TIMES} {number(plan.high - plan.low)}."
+    if any(bore.feature is not None and bore.feature.thread is not None for bore in plan.bores):
+        yield "Tapped holes are chamfered at 90° to the diameter of their thread."
     if part.process == "laser cut" and plan.is_flat:
         yield "Cut by the file of the same name in laser/, which has the contours above without kerf."
 
@@ -80,8 +106,8 @@ def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> l
     return [table(name, head, part) for name, part in zip(names, parts, strict=True)]
 
 
-def _hole_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[Tag]]:
-    """A row for each hole or pattern: holes of one kind share a letter."""
+def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
+    """A row for each hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
@@ -91,7 +117,8 @@ def _hole_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[Tag]]:
         for k, bore in enumerate(members, 1):
             name = f"{letter}{k}" if len(members) > 1 else letter
             x, y = float(bore.shape.x_mm), float(bore.shape.y_mm)
-            place = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
+            zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
+            place = f"{zone} {datum}" if zone and datum else zone
             rows.append((name, kind, number(x), number(y), place))
             tags.append(hole_tag(name, bore, _rightmost(bore)))
     return rows, tags
@@ -112,7 +139,7 @@ def _kind(bore: Bore) -> str:
     return ", ".join([text, *bore.details(from_above=True)])
 
 
-def _contour_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:
+def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:
     """Rows of nodes, rows of windows and bosses, and the names of both."""
     rows: list[tuple[str, ...]] = []
     shapes: list[tuple[str, ...]] = []
@@ -121,14 +148,29 @@ def _contour_rows(plan: Plan) -> tuple[list[tuple[str, ...]], list[tuple[str, ..
     for layer in plan.layers:
         span = f"z {number(layer.low - plan.low)} to {number(layer.high - plan.low)}" if several else ""
         for contour in (layer.outline, *layer.holes):
-            _add_contour(contour, layer, span, rows, shapes, tags)
+            ends = ", ".join(filter(None, (span, *_end_chamfers(contour, layer, plan, part))))
+            _add_contour(contour, layer, ends, part.fits, rows, shapes, tags)
     return rows, shapes, tags
+
+
+def _end_chamfers(contour: Contour, layer: Layer, plan: Plan, part: Part) -> Iterator[str]:
+    """Chamfers at the ends of a boss."""
+    if contour.circle is None:
+        return
+    for end in part.features:
+        if not isinstance(end, ShaftEnd) or abs(float(end.at.radius_mm) - float(contour.circle.radius_mm)) > _SAME_MM:
+            continue
+        face = float(end.face_mm)
+        if layer.low - _SAME_MM < face < layer.high + _SAME_MM:
+            size = chamfer_text(float(end.depth_mm), float(end.width_mm))
+            yield f"chamfer {size} at z {number(face - plan.low)}"
 
 
 def _add_contour(
     contour: Contour,
     layer: Layer,
     span: str,
+    fits: Sequence[Fit],
     rows: list[tuple[str, ...]],
     shapes: list[tuple[str, ...]],
     tags: list[Tag],
@@ -139,8 +181,9 @@ def _add_contour(
     if contour.circle is not None:
         name = f"R{1 + sum(row[0].startswith('R') for row in shapes)}"
         x, y, radius = (float(v) for v in (contour.circle.x_mm, contour.circle.y_mm, contour.circle.radius_mm))
-        shapes.append((name, f"boss Ø{number(2.0 * radius)} {span}".strip(), number(x), number(y), ""))
-        tags.append((name, x, y, radius, 2.5))
+        zone = next((f" {fit.zone}" for fit in fits if fit.holds(2.0 * radius)), "")
+        shapes.append((name, f"boss Ø{number(2.0 * radius)}{zone} {span}".strip(), number(x), number(y), ""))
+        tags.append(shape_tag(name, x, y, radius))
     elif rectangle is not None:
         width, height, radius, x, y = rectangle
         name = f"W{1 + sum(row[0].startswith('W') for row in shapes)}"
@@ -148,7 +191,7 @@ def _add_contour(
         shapes.append(
             (name, f"{number(width)} {TIMES} {number(height)}{corner} {span}".strip(), number(x), number(y), "")
         )
-        tags.append((name, x, y, 0.0, 2.5))
+        tags.append(shape_tag(name, x, y))
     elif not ladders:
         _add_nodes(contour, span, rows, tags)
 

@@ -10,7 +10,8 @@ from shapely.geometry.base import BaseGeometry
 from pareto_monoped.cad.drawing.bores import Bore, number
 from pareto_monoped.cad.drawing.dimension import Mark, ladder
 from pareto_monoped.cad.drawing.end_view import draw_bore
-from pareto_monoped.cad.drawing.paper import DASHED, LETTER_MM, NARROW_MM, WIDE_MM, Label, Paper
+from pareto_monoped.cad.drawing.paper import DASHED, LETTER_MM, NARROW_MM, WIDE_MM, Paper
+from pareto_monoped.cad.drawing.placing import Tag
 from pareto_monoped.cad.drawing.plan import Plan, cut_along, is_square, nodes
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
@@ -22,21 +23,17 @@ _LADDER_MM = 6.0
 _DEPTH_MM = 18.0
 """How far a ladder of lengths may reach below where it begins: ten digits."""
 _LETTER = "A"
-_REACHES_MM = (1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0, 15.0)
-_ANGLES = np.radians([45.0, 135.0, 225.0, 315.0, 0.0, 90.0, 180.0, 270.0])
+_AXIS_MM = 9.0
+"""Length of the arrows of the origin's axes."""
 _SAME_MM = 1e-6
 
-Tag = tuple[str, float, float, float, float]
-"""Text, x and y of what it names on the plan, radius of that, height of the text on paper."""
 
-
-def plan_view(plan: Plan, scale: float, tags: Sequence[Tag]) -> Paper:
-    """The view from above; the plan's origin stands at (0, 0).
+def plan_view(plan: Plan, scale: float) -> Paper:
+    """The view from above without names; the plan's origin stands at (0, 0).
 
     Args:
         plan: to draw.
         scale: paper over part.
-        tags: names of holes and numbers of nodes.
     """
     paper = Paper()
     above: BaseGeometry = shapely.Polygon()
@@ -52,9 +49,18 @@ def plan_view(plan: Plan, scale: float, tags: Sequence[Tag]) -> Paper:
         xs, ys = _square_values(plan)
         ladder(paper, _marks(xs, y0, scale), "below", y0 - _LADDER_MM, origin=0.0)
         ladder(paper, _marks(ys, x0, scale), "left", x0 - _LADDER_MM, origin=0.0)
-    _origin(paper, scale)
-    _tagged(paper, tags, scale)
+    for way in ((_AXIS_MM, 0.0), (0.0, _AXIS_MM)):
+        paper.line([(0.0, 0.0), way], width_mm=0.35)
+        paper.arrow(*way, way)
     return paper
+
+
+def axis_tags(scale: float) -> list[Tag]:
+    """The names of the axes of the tables' coordinates, at the tips of their arrows."""
+    tip = _AXIS_MM / scale
+    return [
+        Tag(text=name, x=x, y=y, radius=0.0, height_mm=LETTER_MM) for name, x, y in (("X", tip, 0.0), ("Y", 0.0, tip))
+    ]
 
 
 def section_place(plan: Plan) -> float:
@@ -160,79 +166,17 @@ def _seen(plan: Plan, bore: Bore) -> bool:
     return not covering or wider
 
 
-def _origin(paper: Paper, scale: float) -> None:
-    """The axes of the tables' coordinates, with their names."""
-    reach = 9.0
-    for dx, dy, name in ((reach, 0.0, "X"), (0.0, reach, "Y")):
-        paper.line([(0.0, 0.0), (dx, dy)], width_mm=0.35)
-        paper.arrow(dx, dy, (dx, dy))
-        paper.text(name, dx + (1.0 if dx else 0.8), dy + (1.0 if dy else 0.8))
-
-
-def _tagged(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
-    """Names beside what they name, where they meet neither lines nor other texts."""
-    lines = [shapely.linestrings(s.points) for s in paper.strokes if len(s.points) > 1 and not s.dashes]
-    tree = shapely.STRtree(lines)
-    boxes = [label.box() for label in paper.labels]
-    for text, x, y, radius, height in tags:
-        at = np.array([x, y]) * scale
-        label, leader = _best(text, at, radius * scale, height, tree, boxes)
-        boxes.append(label.box())
-        paper.labels.append(label)
-        if leader:
-            left, low, right, high = label.box()
-            end = np.clip(at, [left, low], [right, high])
-            away = (end - at) / max(np.hypot(*(end - at)), 1e-9)
-            paper.line([tuple(at + away * radius * scale), tuple(end - 0.3 * away)])
-
-
-def _best(
-    text: str,
-    at: np.ndarray,
-    radius: float,
-    height: float,
-    tree: shapely.STRtree,
-    boxes: Sequence[tuple[float, float, float, float]],
-) -> tuple[Label, bool]:
-    """The nearest free place for a name, and whether it is so far off that it needs a leader."""
-    taken = np.array(boxes) if boxes else np.empty((0, 4))
-    last: Label | None = None
-    for reach in _REACHES_MM:
-        for angle in _ANGLES:
-            way = np.array([np.cos(angle), np.sin(angle)])
-            point = at + (radius + reach) * way
-            align = "left" if way[0] > 0.3 else "right" if way[0] < -0.3 else "centre"
-            label = Label(
-                text=text,
-                x=float(point[0]),
-                y=float(point[1] - height * (0.5 - 0.5 * way[1])),
-                height_mm=height,
-                align=align,  # type: ignore[arg-type]
-            )
-            x0, y0, x1, y1 = label.box()
-            clash = np.any(
-                (taken[:, 0] < x1 + 0.4)
-                & (taken[:, 2] > x0 - 0.4)
-                & (taken[:, 1] < y1 + 0.4)
-                & (taken[:, 3] > y0 - 0.4)
-            )
-            if clash:
-                continue
-            if last is None:
-                last = label
-            if not len(tree.query(box(x0 - 0.2, y0 - 0.2, x1 + 0.2, y1 + 0.2), predicate="intersects")):
-                return label, reach > 4.0
-    if last is None:
-        raise ValueError(f"no free place for the name {text!r} on a drawing")
-    return last, False
-
-
 def node_tag(text: str, point: np.ndarray) -> Tag:
     """The number of a node."""
-    return (text, float(point[0]), float(point[1]), 0.0, _NODE_MM)
+    return Tag(text=text, x=float(point[0]), y=float(point[1]), radius=0.0, height_mm=_NODE_MM)
 
 
 def hole_tag(text: str, bore: Bore, index: int) -> Tag:
     """The name of a hole."""
     x, y = bore.centres[index]
-    return (text, x, y, bore.radius, LETTER_MM)
+    return Tag(text=text, x=x, y=y, radius=bore.radius, height_mm=LETTER_MM)
+
+
+def shape_tag(text: str, x: float, y: float, radius: float = 0.0) -> Tag:
+    """The name of a window, or of a boss of some radius."""
+    return Tag(text=text, x=x, y=y, radius=radius, height_mm=LETTER_MM)

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from pareto_monoped.cad.drawing.bores import bores, number
+from pareto_monoped.cad.drawing.bores import bores, chamfer_text, number
 from pareto_monoped.cad.drawing.end_view import end_view, sees_more_from_above
 from pareto_monoped.cad.drawing.gear_data import gear_rows
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.profile import Teeth, cylinders, half_section, teeth_of
-from pareto_monoped.cad.drawing.section import RoundPart, chamfer_text, common_chamfer, section_view
+from pareto_monoped.cad.drawing.section import RoundPart, common_chamfer, section_view
 from pareto_monoped.cad.drawing.sheet import table
 from pareto_monoped.cad.drawing.tolerances import DATUM, datum_fit, fit_table
 from pareto_monoped.geometry.parts import Part

@@ -10,9 +10,8 @@ from shapely import affinity
 from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from pareto_monoped.cad.drawing.bores import Bore, number
+from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
 from pareto_monoped.cad.drawing.dimension import FIRST_MM, PITCH_MM, Mark, across, fits_between, ladder
-from pareto_monoped.cad.drawing.lettering import TIMES
 from pareto_monoped.cad.drawing.paper import CHAIN, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.profile import (
     Cylinder,
@@ -107,11 +106,6 @@ def common_chamfer(body: BaseGeometry) -> tuple[float, float] | None:
     """Depth and width of the chamfer that a part has most often, which a note gives instead of dimensions."""
     sizes = Counter((round(t.along, 3), round(t.across, 3)) for t in tapers(body) if abs(t.along - t.across) < 1e-3)
     return sizes.most_common(1)[0][0] if sizes else None
-
-
-def chamfer_text(along: float, across_mm: float) -> str:
-    """Such as ``0.5 x 45°``; the angle is measured from the axis."""
-    return f"{number(along)} {TIMES} {number(round(float(np.degrees(np.arctan2(across_mm, along))), 1))}°"
 
 
 def _holed(part: RoundPart) -> tuple[BaseGeometry, BaseGeometry]:

@@ -8,6 +8,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.bores import bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
+from pareto_monoped.cad.drawing.lettering import TIMES
 from pareto_monoped.cad.drawing.paper import Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet
 from pareto_monoped.cad.drawing.plan import plan_of
@@ -17,7 +18,9 @@ from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, TITLE_MM, Title, titled
 from pareto_monoped.cad.shape.curves import polygon
 from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
 from pareto_monoped.robot.build import build_robot
+from tests.cad.drawing.crossings import crossed
 
 ROBOTS = [("A", "VT8020", "iso6336"), ("C", "VT8020", "paper"), ("B", "U12", "iso6336"), ("A", "U8", "iso6336")]
 
@@ -59,6 +62,49 @@ def test_no_text_stands_on_another_nor_leaves_the_frame(sheets):
             x0, y0, x1, y1 = label.box()
             inside = x0 > 20.0 and y0 > MARGIN_MM and x1 < size.width_mm - MARGIN_MM and y1 < size.height_mm - MARGIN_MM
             assert inside, (part.name, label.text)
+
+
+def test_no_line_runs_through_a_text(sheets):
+    for part, paper, size, scale in sheets:
+        whole = Paper()
+        whole.lay(paper)
+        titled(whole, size, scale, TITLE)
+        assert crossed(whole) == [], part.name
+
+
+def test_every_chamfer_of_a_part_with_layers_is_said(sheets):
+    """By its size in the row of its hole or boss; chamfers of threads by a note."""
+    chamfers = 0
+    for part, paper, _, _ in sheets:
+        said = [label.text for label in paper.labels]
+        for feature in part.features if not is_round(part) else ():
+            if isinstance(feature, Hole) and feature.thread is not None:
+                assert any("chamfered at 90°" in text for text in said), part.name
+                continue
+            mouths = [feature.low, feature.high] if isinstance(feature, Hole) else []
+            sizes = [(m.depth_mm, m.radius_mm - feature.shapes[0].radius_mm) for m in mouths if m is not None]
+            sizes += [(feature.depth_mm, feature.width_mm)] if isinstance(feature, ShaftEnd) else []
+            if any(m is not None and m.kind is Cone.COUNTERSINK for m in mouths):
+                continue
+            for along, across in sizes:
+                chamfers += 1
+                angle = round(float(np.degrees(np.arctan2(across, along))), 1)
+                assert any(f"chamfer {along:g} {TIMES} {angle:g}°" in text for text in said), part.name
+    assert chamfers >= 3
+
+
+def test_positions_refer_to_the_axis_that_the_fits_name(sheets):
+    """A sheet with a datum in its fits gives no position without it."""
+    with_datum = 0
+    for part, paper, _, _ in sheets:
+        said = [label.text for label in paper.labels]
+        if is_round(part) or "A" not in said or not part.fits or "shoulders" not in said:
+            continue
+        with_datum += 1
+        positions = [text for text in said if text in ("Ø0.02", "Ø0.1") or text.startswith(("Ø0.02 ", "Ø0.1 "))]
+        frames = sum(text == "Ø0.02" for text in said)
+        assert sum(text.endswith(" A") for text in positions) + frames == len(positions), part.name
+    assert with_datum >= 2
 
 
 def test_no_line_crosses_the_title_block_or_the_frame(sheets):
@@ -132,9 +178,7 @@ def test_gears_have_their_data_and_fits_their_limits(sheets):
     gears = 0
     for part, paper, _, _ in sheets:
         said = [label.text for label in paper.labels]
-        if not is_round(part):
-            continue
-        for teeth in teeth_of(part):
+        for teeth in teeth_of(part) if is_round(part) else ():
             gears += 1
             assert f"{int(teeth.gear.teeth)}" in said
             assert any(text.startswith(("Base tangent length W over", "Between pins")) for text in said)
