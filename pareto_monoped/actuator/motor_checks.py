@@ -6,7 +6,7 @@ A motor that is read from a file is checked; one that a study stores is not, bec
 import math
 from collections.abc import Callable
 
-from pareto_monoped.actuator.motor import MOUNT_BORE_MM, OUTPUT_BORE_MM, HolePattern, Motor
+from pareto_monoped.actuator.motor import MOUNT_BORE_MM, OUTPUT_BORE_MM, FramedMotor, HolePattern, Motor
 from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE, PER_PHASE_RMS, torque_constant_n_m_per_a
 
 KV_TOLERANCE = 0.10
@@ -35,6 +35,19 @@ HOLE_WALL_MM = 1.0
 """Least metal around a motor's holes; our own choice."""
 DIAMETER_LEAST_MM = MOUNT_BORE_MM + 2.0 * (4.0 + HOLE_WALL_MM)
 """Of a motor: the base's bore, an M4 hole on either side, and metal outside them."""
+
+DENSITY_KG_PER_M3 = (800.0, 8000.0)
+"""Least and greatest mass over volume of a motor's body: half of the lightest motor here (U8, 1530), and solid metal
+(laminations 7800, magnets 7500, copper 8960). The framed motors here have 1530 to 2340, the frameless ones, without the
+stator's bore, 2380 to 4970."""
+
+POWER_OVER_INPUT = (0.1, 3.0)
+"""Limits of rated power over rated voltage and continuous current. Makers of propeller motors give the power at
+another voltage: 0.97 to 2.0 here (U10). Drives of joints, rated by their shaft power, have less."""
+
+INERTIA_OVER_MASS = (0.005, 1.0)
+"""Least and greatest rotor inertia over the motor's mass and squared outer radius: a tenth of a solid rotor of half
+the radius and 0.4 of the mass, and a thin ring that has the whole mass. The motors here have 0.13 to 0.29."""
 
 
 def contradiction(motor: Motor) -> str | None:
@@ -158,6 +171,50 @@ def _circle(key: str, holes: HolePattern, motor: Motor, bore_mm: float, what: st
     return None
 
 
+def _mass(motor: Motor) -> str | None:
+    """Refuse bodies that are lighter than any motor, or heavier than solid metal."""
+    low, high = DENSITY_KG_PER_M3
+    for key, body in (("framed", motor.framed), ("frameless", motor.frameless)):
+        if body is None:
+            continue
+        bore = 0.0 if isinstance(body, FramedMotor) else body.stator_inner_diameter_mm
+        volume_m3 = 0.25e-9 * math.pi * (body.outer_diameter_mm**2 - bore**2) * body.length_mm
+        density = body.mass_kg / volume_m3
+        if not low <= density <= high:
+            return (
+                f"{key}.mass_kg = {body.mass_kg:g}: {density:.4g} kg/m3 over the motor's size, must be from {low:g} to "
+                f"{high:g} kg/m3, or {low * volume_m3:.3g} to {high * volume_m3:.3g} kg; correct it or the motor's size"
+            )
+    return None
+
+
+def _power(motor: Motor) -> str | None:
+    if motor.rated_power_w is None:
+        return None
+    fed = motor.rated_voltage_v * motor.max_continuous_current_a
+    low, high = (share * fed for share in POWER_OVER_INPUT)
+    if low <= motor.rated_power_w <= high:
+        return None
+    return (
+        f"rated_power_w = {motor.rated_power_w:g}: must be from {low:.4g} to {high:.4g} W, {POWER_OVER_INPUT[0]:g} to "
+        f"{POWER_OVER_INPUT[1]:g} times rated_voltage_v times max_continuous_current_a; correct one of them or leave "
+        "it out"
+    )
+
+
+def _inertia(motor: Motor) -> str | None:
+    body = motor.framed or motor.frameless
+    assert body is not None
+    most = body.mass_kg * (0.5e-3 * body.outer_diameter_mm) ** 2
+    low, high = (share * most for share in INERTIA_OVER_MASS)
+    if low <= motor.rotor_inertia_kg_m2 <= high:
+        return None
+    return (
+        f"rotor_inertia_kg_m2 = {motor.rotor_inertia_kg_m2:.4g}: must be from {low:.3g} to {high:.3g} kg m2 for one "
+        f"of {body.mass_kg:g} kg and {body.outer_diameter_mm:g} mm; correct it, the motor's mass or its size"
+    )
+
+
 def _thermal(motor: Motor) -> str | None:
     try:
         _ = motor.peak_torque_time_s
@@ -176,5 +233,8 @@ _CHECKS: tuple[Callable[[Motor], str | None], ...] = (
     _output_holes,
     _peak_current,
     _shear,
+    _mass,
+    _power,
+    _inertia,
     _thermal,
 )

@@ -124,6 +124,34 @@ BAD = {
         "thermal.winding_to_housing_k_per_w = 2.0: must be less than 0.696 K/W, all that the continuous current "
         "allows; correct it or give housing_to_ambient_k_per_w",
     ),
+    "a motor of one gram": (
+        {"framed": "{ mass_kg = 0.001, outer_diameter_mm = 89.0, length_mm = 50.0 }"},
+        "framed.mass_kg = 0.001: 3.215 kg/m3 over the motor's size, must be from 800 to 8000 kg/m3, or 0.249 to 2.49 "
+        "kg; correct it or the motor's size",
+    ),
+    "a motor heavier than copper": (
+        {"framed": "{ mass_kg = 7.1, outer_diameter_mm = 89.0, length_mm = 50.0 }"},
+        "framed.mass_kg = 7.1: 2.283e+04 kg/m3",
+    ),
+    "a light frameless motor": (
+        {
+            "frameless": "{ mass_kg = 0.02, outer_diameter_mm = 89.0, length_mm = 31.5, stator_inner_diameter_mm = "
+            "58.0, stator_outer_diameter_mm = 77.0 }"
+        },
+        "frameless.mass_kg = 0.02: 177.4 kg/m3",
+    ),
+    "19 MW": (
+        {"rated_power_w": "19e6"},
+        "rated_power_w = 1.9e+07: must be from 192 to 5760 W, 0.1 to 3 times rated_voltage_v times "
+        "max_continuous_current_a; correct one of them or leave it out",
+    ),
+    "kilowatts for watts": ({"rated_power_w": "1.9"}, "rated_power_w = 1.9: must be from 192"),
+    "inertia in g cm2": (
+        {"rotor_inertia_kg_m2": "4.0"},
+        "rotor_inertia_kg_m2 = 4: must be from 7.03e-06 to 0.00141 kg m2 for one of 0.71 kg and 89 mm; correct it, "
+        "the motor's mass or its size",
+    ),
+    "inertia a thousand times too small": ({"rotor_inertia_kg_m2": "4e-7"}, "rotor_inertia_kg_m2 = 4e-07: must be"),
     "a resistance of another kind": (
         {"winding_resistance_kind": '"delta"'},
         "winding_resistance_kind = 'delta': input should be 'line_to_line' or 'phase'; correct it",

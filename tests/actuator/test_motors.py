@@ -105,7 +105,8 @@ def test_bolt_circles_that_are_not_given_are_the_vt8020s_scaled_to_the_diameter(
 
 
 def test_circles_that_are_not_given_leave_room_for_what_lies_within(tmp_path):
-    motor = load_motor(written(tmp_path, GOOD.replace("90.0, length", "40.0, length").partition("[frameless]")[0]))
+    small = GOOD.replace("0.5, outer_diameter_mm = 90.0, length", "0.15, outer_diameter_mm = 40.0, length")
+    motor = load_motor(written(tmp_path, small.partition("[frameless]")[0]))
     assert motor.mount_holes.pitch_circle_mm == 29.0  # rather than 22.9
     assert motor.output_holes.pitch_circle_mm == pytest.approx(71.5 * 40.0 / 89.0)
 
