@@ -78,7 +78,8 @@ class Archive:
             posts = _posts(scaled)
             points = (np.where(jumped[:, None], costs, low) - low) / extent
             behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
-        order = np.argsort(behind, kind="stable")
+        # Of equals the newest first: a long front is known best where the search is now.
+        order = np.lexsort((-np.arange(len(behind)), behind))
         return Standing(
             costs=costs, front=front, posts=posts, behind=behind, order=order[jumped[order]], low=low, extent=extent
         )
@@ -105,6 +106,8 @@ def shortfall(points: Floats, front: Floats) -> Floats:
     Returns:
         Shape (n,).
     """
+    if front.shape[1] == 2:
+        return _shortfall_of_two(points, front)
     result = np.empty(len(points))
     for first in range(0, len(points), _CHUNK):
         rows = slice(first, first + _CHUNK)
@@ -114,6 +117,18 @@ def shortfall(points: Floats, front: Floats) -> Floats:
             np.minimum(least, points[rows, k : k + 1] - front[:, k], out=least)
         result[rows] = least.max(axis=1)
     return result
+
+
+def _shortfall_of_two(points: Floats, front: Floats) -> Floats:
+    """``shortfall`` of two objectives.
+
+    Along a front, a point falls ever less short in the first objective and ever more in the second. The lesser of both
+    is therefore greatest where they cross.
+    """
+    front = front[np.lexsort((-front[:, 1], front[:, 0]))]
+    after = np.searchsorted(front[:, 0] - front[:, 1], points[:, 0] - points[:, 1])
+    sides = (np.maximum(after - 1, 0), np.minimum(after, len(front) - 1))
+    return np.maximum(*((points - front[side]).min(axis=1) for side in sides))
 
 
 def _posts(front: Floats) -> NDArray[np.intp]:

@@ -33,10 +33,13 @@ class Features:
     extent: Floats
     factors: NDArray[np.intp]
 
+    def scaled(self, values: Floats) -> Floats:
+        """Features of n points from -1 to 1, shape (n, d) -> (n, f)."""
+        return 2.0 * (_raw(self.space, values) - self.lower) / self.extent - 1.0
+
     def terms(self, values: Floats) -> Floats:
         """Terms of n points, shape (n, d) -> (n, t)."""
-        scaled = 2.0 * (_raw(self.space, values) - self.lower) / self.extent - 1.0
-        columns = np.concatenate((np.ones((1, len(scaled))), scaled.T))
+        columns = np.concatenate((np.ones((1, len(values))), self.scaled(values).T))
         first, second, third = self.factors.T
         return np.ascontiguousarray((columns[first] * columns[second] * columns[third]).T)
 

@@ -6,34 +6,41 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
-from pareto_monoped.study.archive import Archive, Standing, shortfall
+from pareto_monoped.study.archive import Archive, Standing
+from pareto_monoped.study.prediction import Prediction
+from pareto_monoped.study.promise import ranked, unlike
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
-from pareto_monoped.study.response_surface import Features, features_of, fitted
+from pareto_monoped.study.response_surface import Features, features_of
 from pareto_monoped.study.seen import Seen, drawn
-from pareto_monoped.study.variation import offspring, spread
+from pareto_monoped.study.variation import offspring, small_steps, spread
 
-_TRAINING = 1700
-"""Points that the model is fitted to, eight per term of nine features. Our own choice; more takes longer and was no
-better."""
-_NEARNESS = 0.15
-"""Distance behind the front, as a share of its extent, at which a point's weight in the fit has fallen to 1/e."""
-_LEAST_WEIGHT = 1e-3
-"""Weight of points far from the front, which keep the polynomial from swinging where there are no others."""
-_WORST_SHARE = 1.0
-"""Constraints count up to this share of their limit, so that safety factors of 1,000 do not rule the fit."""
+_REFINED = 5
+"""Offspring per simulated design that are refined by small steps. Our own choice."""
+_STEPS = 4
+"""Small steps that are tried from each of them. Our own choice."""
 
-_PENALTY = 10.0
-"""Gain that a predicted violation costs: a limit missed by a percent outweighs a gain of a tenth of the front."""
+_ON_BOUND = 0.25
+"""Share of a variable's values on either bound in half of the first designs and in explorers: many of the best designs
+have variables on their bounds, and polynomials are determined best by points there. Our own choice."""
+_ANYWHERE = 1000
+"""Designs anywhere in the space from which explorers are chosen. Our own choice."""
+_EXPLORING = 0.1
+"""Share of a generation that explores. Our own choice: without it, some searches miss a part of the front that lies
+far from the rest in the space."""
 
 
 class SurrogateSearch:
     """Evolution that simulates the most promising of many offspring.
 
-    The first generations are spread over the space. Later, each generation varies the designs on the front so far,
-    predicts objectives and constraints of the offspring by a polynomial that is fitted to the simulated designs near
-    the front, and asks for those that gain most over the front, the best of each part of it first: the ends of the
-    front are parts, too. Every generation has its own random generator, whose seed follows from the study's. The
-    simulated designs are therefore the whole state, and a search rebuilt from them continues bit for bit.
+    The first generations are spread over the space, half of them over its bounds, too. Later, each generation varies
+    the designs on the front so far and predicts objectives and constraints of the offspring (``Prediction``). The most
+    promising are varied again, in steps from fine to coarse. Of all these, the search asks for those that gain most
+    over the front, the best of each part of it first: the ends of the front are parts, too. A tenth of each generation
+    explores: it is far from all simulated designs, and still promising.
+
+    Every generation refines, so a search that gets a larger budget goes on as if it had had it from the beginning.
+    Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
+    therefore the whole state, and a search rebuilt from them continues bit for bit.
     """
 
     def __init__(self, space: Space, settings: SurrogateSettings, seed: int) -> None:
@@ -52,12 +59,13 @@ class SurrogateSearch:
         size = self._settings.population
         standing = self._archive.standing()
         if self._generation < self._settings.drawn_generations or len(standing.order) == 0:
-            chosen = spread(self._space, size, generator)
+            inside = spread(self._space, size // 2, generator)
+            chosen = np.vstack((inside, spread(self._space, size - size // 2, generator, _ON_BOUND)))
         else:
             chosen = offspring(self._archive, standing, self._settings, generator)
         chosen = chosen[self._seen.new(chosen)]
         if len(chosen) > size:
-            chosen = chosen[self._most_promising(chosen, standing)[:size]]
+            chosen = self._most_promising(chosen, standing, generator)
         if len(chosen) == 0:
             chosen = drawn(self._space, self._seen, generator, size)
         self._asked = chosen
@@ -82,33 +90,24 @@ class SurrogateSearch:
         self._seen.add(values)
         self._archive.add(values, scores)
 
-    def _most_promising(self, values: Floats, standing: Standing) -> list[int]:
-        """Rows of ``values``, shape (n, d), in the order in which they are worth simulating."""
-        costs, violation = self._predicted(values, standing)
-        if len(standing.front) == 0:
-            return np.argsort(violation, kind="stable").tolist()
-        front = standing.scaled(standing.costs[standing.front])
-        points = standing.scaled(costs)
-        gain = -shortfall(points, front) - _PENALTY * violation
-        parts = front[standing.posts]
-        part = np.stack([np.square(points - post).sum(axis=1) for post in parts]).argmin(axis=0)
-        order = np.argsort(-gain, kind="stable")
-        place = np.empty(len(values), dtype=np.intp)
-        for k in range(len(parts)):
-            members = order[part[order] == k]
-            place[members] = np.arange(len(members))
-        return np.lexsort((-gain, place)).tolist()
+    def _most_promising(self, values: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
+        """As many designs as a generation has, from offspring, shape (n, d), small steps around the best, and afar."""
+        size = self._settings.population
+        prediction = Prediction(self._archive, standing, self._features)
+        best = values[ranked(*prediction.rough(values), standing)[: _REFINED * size]]
+        values = np.vstack((best, small_steps(self._space, best, _STEPS, generator)))
+        values = values[self._seen.new(values)]
+        explorers = self._explorers(prediction, standing, generator)
+        chosen = values[ranked(*prediction.fine(values), standing)[: size - len(explorers)]]
+        chosen = np.vstack((chosen, explorers))
+        return chosen[self._seen.new(chosen)]
 
-    def _predicted(self, values: Floats, standing: Standing) -> tuple[Floats, Floats]:
-        """Predicted costs, shape (n, m), as ``Standing`` has them, and sum of missed constraints, shape (n,)."""
-        weights = np.exp(-standing.behind / _NEARNESS) + _LEAST_WEIGHT
-        # In the order of the trials, whatever the weights: a sum in another order has other last digits.
-        rows = np.sort(standing.order[:_TRAINING])
-        costs, missed = standing.costs[rows], self._archive.constraints[rows]
-        missed = np.clip(missed[:, (missed > 0.0).any(axis=0)], -_WORST_SHARE, _WORST_SHARE)
-        targets = np.hstack((costs, missed))
-        mean = targets.mean(axis=0)
-        coefficients = fitted(self._features.terms(self._archive.values[rows]), targets - mean, weights[rows])
-        predicted = self._features.terms(values) @ coefficients + mean
-        objectives = costs.shape[1]
-        return predicted[:, :objectives], np.maximum(predicted[:, objectives:], 0.0).sum(axis=1)
+    def _explorers(self, prediction: Prediction, standing: Standing, generator: np.random.Generator) -> Floats:
+        """Promising designs far from all simulated ones, a tenth of a generation; none without a front."""
+        count = round(_EXPLORING * self._settings.population)
+        if count == 0 or len(standing.front) == 0:
+            return self._archive.values[:0]
+        anywhere = spread(self._space, _ANYWHERE, generator, _ON_BOUND)
+        anywhere = anywhere[self._seen.new(anywhere)]
+        points, known = self._features.scaled(anywhere), self._features.scaled(self._archive.values)
+        return anywhere[unlike(*prediction.rough(anywhere), standing, points, known, count)]

@@ -12,16 +12,26 @@ _PARENTS = 100
 """Fewest parents. A small front is filled up with the designs nearest to it. Our own choice: 2.5 populations."""
 _NEIGHBOURS = 3
 """How many places on the front lie between two parents at most where neighbours are crossed. Our own choice."""
+_STEP = (1e-3, 0.1)
+"""Least and greatest length of a small step, as a share of a variable's range. Our own choice."""
 _EXCHANGED = 0.5
 """Probability that a variable is crossed, and that it changes sides; pymoo's own numbers."""
 
 
-def spread(space: Space, count: int, generator: np.random.Generator) -> Floats:
-    """Designs spread over the space, shape (n, d): a Latin hypercube (McKay, Beckman, Conover 1979)."""
+def spread(space: Space, count: int, generator: np.random.Generator, on_bound: float = 0.0) -> Floats:
+    """Designs spread over the space, shape (n, d): a Latin hypercube (McKay, Beckman, Conover 1979).
+
+    Args:
+        space: the space.
+        count: n.
+        generator: source of all choices.
+        on_bound: share of each variable's values that are on its lower bound; as many are on its upper bound.
+    """
     lower, upper = space.edges
     strata = np.argsort(generator.random((count, len(lower))), axis=0)
-    unit = (strata + generator.random(strata.shape)) / count
-    return space.snap(lower + unit * (upper - lower))
+    place = (strata + generator.random(strata.shape)) / count
+    inside = space.snap(lower + np.clip((place - on_bound) / (1.0 - 2.0 * on_bound), 0.0, 1.0) * (upper - lower))
+    return np.where(place < on_bound, space.lower, np.where(place > 1.0 - on_bound, space.upper, inside))
 
 
 def offspring(
@@ -66,3 +76,28 @@ def offspring(
         random_state=generator,
     )
     return archive.space.snap(mutated)
+
+
+def small_steps(space: Space, values: Floats, count: int, generator: np.random.Generator) -> Floats:
+    """``count`` designs near each of n, shape (n, d) -> (n * count, d).
+
+    Each step has a length of its own, from fine to coarse, and moves about half of the variables. One of d steps takes
+    another gearbox of a list: half of these the next one, half any. Steps beyond a bound end on it: many of the best
+    designs have variables on their bounds.
+    """
+    lower, upper = space.lower, space.upper
+    start = np.repeat(values, count, axis=0)
+    least, greatest = _STEP
+    length = least * (greatest / least) ** generator.random((len(start), 1))
+    steps = length * generator.standard_normal(start.shape) * (upper - lower)
+    steps[generator.random(start.shape) < _EXCHANGED] = 0.0
+    if space.whole.any():
+        steps = np.where(space.whole, _other_gears(start, lower, upper, generator), steps)
+    return np.asarray(np.clip(start + steps, lower, upper))
+
+
+def _other_gears(start: Floats, lower: Floats, upper: Floats, generator: np.random.Generator) -> Floats:
+    """Steps to other whole numbers, 0 for most, shape (n, d)."""
+    chance = generator.random(start.shape) * len(lower)
+    any_one = np.floor(lower + generator.random(start.shape) * (upper - lower + 1.0)) - start
+    return np.select([chance < 0.25, chance < 0.5, chance < 1.0], [-1.0, 1.0, any_one], 0.0)

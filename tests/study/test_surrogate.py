@@ -8,10 +8,12 @@ import pytest
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, shortfall
+from pareto_monoped.study.prediction import Prediction
+from pareto_monoped.study.promise import unlike
 from pareto_monoped.study.protocol import Gear, Scores, Space
 from pareto_monoped.study.response_surface import features_of, fitted
 from pareto_monoped.study.surrogate import SurrogateSearch
-from pareto_monoped.study.variation import offspring, spread
+from pareto_monoped.study.variation import offspring, small_steps, spread
 
 GEARS = tuple(Gear(ratio=4.0 + 0.3 * k, mass_kg=0.5 + 0.02 * (k - 4) ** 2) for k in range(12))
 SPACE = Space(
@@ -42,7 +44,7 @@ def scored(values, *, limit=-1.0):
 
 def archive_of(count=200, seed=1, **more):
     archive = Archive(SPACE)
-    values = spread(SPACE, count, np.random.default_rng(seed))
+    values = np.unique(spread(SPACE, count, np.random.default_rng(seed)), axis=0)
     archive.add(values, scored(values, **more))
     return archive
 
@@ -90,6 +92,8 @@ def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
     generator = np.random.default_rng(4)
     for objectives in (2, 3):
         points, front = generator.random((300, objectives)), generator.random((40, objectives))
+        front = np.array([p for p in front if not any((q <= p).all() and (q < p).any() for q in front)])
+        front = np.vstack((front, front[:1]))
         plain = [max(min(p[k] - f[k] for k in range(objectives)) for f in front) for p in points]
         assert shortfall(points, front) == pytest.approx(plain, rel=1e-14)
 
@@ -122,7 +126,7 @@ def test_jumps_that_failed_are_neither_parents_nor_fitted():
             objectives=HEIGHT_AND_ENERGY, values=lost, violation=np.full(30, 100.0), constraints=np.full((30, 1), 100.0)
         ),
     )
-    assert set(archive.standing().order.tolist()) == set(range(200))
+    assert set(archive.standing().order.tolist()) == set(range(len(archive.values) - 30))
 
 
 def test_offspring_keep_to_the_space_and_half_of_them_stay_near_the_front():
@@ -141,6 +145,120 @@ def test_offspring_keep_to_the_space_and_half_of_them_stay_near_the_front():
 def test_a_spread_has_one_design_in_each_stratum():
     values = spread(SPACE, 40, np.random.default_rng(6))
     assert np.array_equal(np.sort(np.floor((values[:, 0] - 0.3) / 0.2 * 40)), np.arange(40.0))
+
+
+def test_a_spread_over_the_bounds_has_its_share_on_either_and_strata_between():
+    link, gear, gain = spread(SPACE, 40, np.random.default_rng(6), 0.25).T
+    assert np.array_equal(np.sort(np.floor(np.clip((link - 0.3) / 0.2 * 20, 0.0, 19.5)))[10:-10], np.arange(20.0))
+    for column, lower, upper in ((link, 0.3, 0.5), (gain, 5.0, 200.0)):
+        assert ((column == lower).sum(), (column == upper).sum()) == (10, 10)
+    assert min((gear == 0.0).sum(), (gear == 11.0).sum()) >= 10
+    assert set(gear) == set(range(12))
+
+
+def test_small_steps_stay_near_within_the_space_and_reach_its_bounds():
+    start = np.array([[0.4, 5.0, 50.0], [0.302, 0.0, 199.0]])
+    steps = small_steps(SPACE, start, 2000, np.random.default_rng(8))
+    assert steps.shape == (4000, 3)
+    assert (steps >= SPACE.lower).all()
+    assert (steps <= SPACE.upper).all()
+    moved = steps - np.repeat(start, 2000, axis=0)
+    assert set(steps[:2000, 1]) == set(range(12))
+    assert (moved[:2000, 1] != 0.0).mean() == pytest.approx(1.0 / 3.0 - 0.5 / 3.0 / 12.0, abs=0.04)
+    assert (np.abs(moved[:2000, 1]) == 1.0).mean() == pytest.approx(0.5 / 3.0 + 1.0 / 3.0 / 12.0, abs=0.04)
+    assert (moved[:, 0] != 0.0).mean() == pytest.approx(0.5, abs=0.05)
+    shares = np.abs(moved[:2000, 0][moved[:2000, 0] != 0.0]) / 0.2
+    assert np.percentile(shares, 5) < 1e-3 < 0.02 < np.percentile(shares, 95) < 0.3
+    # A design near a bound ends on it about as often as steps beyond it are: never a hair away instead.
+    assert (steps[2000:, 0] == 0.3).mean() > 0.1
+    assert (steps[2000:, 2] == 200.0).mean() > 0.1
+
+
+def test_errors_of_the_cubic_are_interpolated_by_kriging():
+    """The fine prediction is the rough one plus simple kriging of its errors, written out point by point."""
+    archive = archive_of(80)
+    standing, features = archive.standing(), features_of(SPACE)
+    prediction = Prediction(archive, standing, features)
+    new = spread(SPACE, 10, np.random.default_rng(10))
+    points, wanted = features.scaled(archive.values), features.scaled(new)
+
+    def alike(a, b):
+        r = np.sqrt(3.0 * sum((x - y) ** 2 for x, y in zip(a, b, strict=True)))
+        return (1.0 + r) * np.exp(-r)
+
+    matrix = [[alike(a, b) + (1e-4 if i == j else 0.0) for j, b in enumerate(points)] for i, a in enumerate(points)]
+    errors = standing.costs - prediction.rough(archive.values)[0]
+    shares = np.linalg.inv(np.array(matrix)) @ errors
+    expected = prediction.rough(new)[0] + np.array([[alike(a, b) for b in points] for a in wanted]) @ shares
+    assert prediction.fine(new)[0] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def test_near_simulated_designs_the_prediction_is_many_times_as_good_as_the_cubic():
+    archive = archive_of(600, limit=5.5)
+    standing = archive.standing()
+    prediction = Prediction(archive, standing, features_of(SPACE))
+    near = small_steps(SPACE, archive.values[standing.front], 5, np.random.default_rng(11))
+    scores = scored(near, limit=5.5)
+    costs = np.column_stack((-np.log(scores.values[:, 0]), np.log(scores.values[:, 1])))
+    rough, fine = (np.abs(predict(near)[0] - costs).mean() for predict in (prediction.rough, prediction.fine))
+    assert fine < 0.3 * rough
+    missed = (prediction.fine(near)[1] > 1e-3) == (scores.violation > 1e-3)
+    assert missed.mean() > 0.95
+
+
+def test_explorers_are_far_from_what_is_known_and_from_each_other():
+    archive = archive_of(200)
+    standing, features = archive.standing(), features_of(SPACE)
+    # Designs of equal promise: half lie on known ones, the others in two clusters.
+    new = spread(SPACE, 2, np.random.default_rng(12))
+    values = np.vstack((archive.values[:20], np.repeat(new, 10, axis=0)))
+    costs, violation = np.tile(standing.costs[standing.front[0]], (40, 1)), np.zeros(40)
+    points, known = features.scaled(values), features.scaled(archive.values)
+    chosen = unlike(costs, violation, standing, points, known, 2)
+    assert sorted(row // 10 for row in chosen) == [2, 3]
+    # A gain of a tenth of the front is worth any distance.
+    costs[7] -= 0.11 * standing.extent
+    assert unlike(costs, violation, standing, points, known, 1) == [7]
+
+
+def test_a_tenth_of_each_generation_explores():
+    """After 15 generations, offspring are near simulated designs, and explorers are not."""
+    algorithm, known = SurrogateSearch(SPACE, replace(SETTINGS, population=40), 1), np.zeros((0, 3))
+    for _ in range(15):
+        values = algorithm.ask().values
+        algorithm.tell(scored(values))
+        known = np.vstack((known, values))
+    scaled, asked = features_of(SPACE).scaled(known), features_of(SPACE).scaled(algorithm.ask().values)
+    away = np.array([np.sqrt(np.square(scaled - one).sum(axis=1)).min() for one in asked])
+    assert len(asked) == 40
+    assert away[-4:].min() > 5.0 * np.median(away[:-4])
+
+
+def test_a_part_of_the_front_far_from_the_rest_in_the_space_is_found():
+    """Height of link alone, but for a niche with thin links, the last gearboxes and the stiffest springs."""
+    hidden = Space(
+        names=("thigh_length_m", "knee_ratio", "stiffness_n_per_m", "shank_length_m", "damping_n_s_per_m"),
+        lower=np.array([0.3, 0.0, 5.0, 0.3, 0.0]),
+        upper=np.array([0.5, 11.0, 200.0, 0.5, 10.0]),
+        gears={"knee_ratio": GEARS},
+    )
+
+    def jump(values):
+        x = (values - hidden.lower) / (hidden.upper - hidden.lower)
+        niche = np.exp(-(6.0 * np.square(x - [0.0, 1.0, 1.0, 1.0, 0.0]).sum(axis=1)))
+        others = 0.3 * np.square(x[:, 1:] - [0.0, 0.0, 0.0, 1.0]).sum(axis=1)
+        height, energy = 0.6 + 0.4 * x[:, 0] + 0.9 * niche, 10.0 * np.exp(x[:, 0] + np.minimum(others, 0.3))
+        zeros = np.zeros(len(x))
+        points = np.column_stack((height, energy))
+        return Scores(objectives=HEIGHT_AND_ENERGY, values=points, violation=zeros, constraints=zeros[:, None])
+
+    for seed in range(1, 6):
+        algorithm, best = SurrogateSearch(hidden, SurrogateSettings(name="surrogate"), seed), 0.0
+        for _ in range(15):
+            scores = jump(algorithm.ask().values)
+            algorithm.tell(scores)
+            best = max(best, scores.values[:, 0].max())
+        assert best > 1.45
 
 
 @pytest.mark.parametrize("limit", [-1.0, 5.5])

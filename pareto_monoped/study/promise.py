@@ -1,0 +1,85 @@
+"""Which of many designs are worth simulating, by what a model expects of them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.study.archive import Standing, shortfall
+from pareto_monoped.study.protocol import Floats
+
+_PENALTY = 10.0
+"""Gain that an expected violation costs: a limit missed by a percent outweighs a gain of a tenth of the front."""
+_LENIENT_PENALTY = 1.0
+"""The same far from all simulated designs, where the model knows little of constraints. Our own choice."""
+_LOOKED_AT = 25
+"""Designs whose distance to the known ones is measured, the most promising, for each that is chosen."""
+_CURIOSITY = 0.1
+"""Gain that a distance of 1, in features from -1 to 1, is worth: errors of the model at that distance have this order.
+"""
+
+
+def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.intp]:
+    """Rows of n designs in the order in which they are worth simulating.
+
+    The best gain over the front in each of its parts comes first, then the second best, and so on. Without a front,
+    the least violation comes first.
+
+    Args:
+        costs: expected costs, as ``Standing`` has them, shape (n, m).
+        violation: expected sum of missed constraints, shape (n,).
+        standing: of the simulated designs.
+    """
+    if len(standing.front) == 0:
+        return np.argsort(violation, kind="stable")
+    gain = _gain(costs, violation, standing, _PENALTY)
+    posts = standing.scaled(standing.costs[standing.front[standing.posts]])
+    points = standing.scaled(costs)
+    part = np.stack([np.square(points - post).sum(axis=1) for post in posts]).argmin(axis=0)
+    order = np.argsort(-gain, kind="stable")
+    place = np.empty(len(costs), dtype=np.intp)
+    for k in range(len(posts)):
+        members = order[part[order] == k]
+        place[members] = np.arange(len(members))
+    return np.lexsort((-gain, place))
+
+
+def unlike(
+    costs: Floats, violation: Floats, standing: Standing, points: Floats, known: Floats, count: int
+) -> list[int]:
+    """Rows of ``count`` of n designs that promise much and are far from what is known, and from each other.
+
+    Args:
+        costs: expected costs, as ``Standing`` has them, shape (n, m).
+        violation: expected sum of missed constraints, shape (n,).
+        standing: of the simulated designs; it has a front.
+        points: the designs' features, shape (n, f).
+        known: features of the simulated designs, shape (k, f).
+        count: how many.
+    """
+    gain = _gain(costs, violation, standing, _LENIENT_PENALTY)
+    looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
+    points, gain = points[looked_at], gain[looked_at]
+    away = _nearest(points, known)
+    chosen: list[int] = []
+    for _ in range(min(count, len(points))):
+        worth = gain + _CURIOSITY * np.minimum(away, 1.0)
+        worth[chosen] = -np.inf
+        chosen.append(int(worth.argmax()))
+        away = np.minimum(away, _nearest(points, points[chosen[-1:]]))
+    return looked_at[chosen].tolist()
+
+
+def _gain(costs: Floats, violation: Floats, standing: Standing, penalty: float) -> Floats:
+    """How far designs are ahead of the front, as a share of its extent, less what violations cost, shape (n,)."""
+    front = standing.scaled(standing.costs[standing.front])
+    return -shortfall(standing.scaled(costs), front) - penalty * violation
+
+
+def _nearest(points: Floats, others: Floats) -> Floats:
+    """Distance of each of n points to the nearest of k others, shape (n, f) and (k, f) -> (n,)."""
+    return np.asarray(np.sqrt(squared_distances(points, others).min(axis=1)))
+
+
+def squared_distances(points: Floats, others: Floats) -> Floats:
+    """Squares of the distances between n points and k others, shape (n, f) and (k, f) -> (n, k)."""
+    squares = np.square(points).sum(axis=1)[:, None] + np.square(others).sum(axis=1) - 2.0 * points @ others.T
+    return np.maximum(squares, 0.0)
