@@ -204,7 +204,7 @@ def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iter
     for part in parts:
         if part.role is Role.MOTOR_ROTOR or part.group is Group.HOUSING:
             continue
-        about_axis = float(part.mass_properties().inertia_kg_m2[2, 2])
+        about_axis = float(part.mass_properties().inertia_about_z_kg_m2)
         if part.group is Group.ROTOR:
             yield ((about_axis, ratio),)
         elif part.group is Group.PLANET:

@@ -175,6 +175,14 @@ def _regression() -> NDArray[np.float64]:
     return np.polyfit(table[:, 0], table[:, 3], 2)
 
 
+@lru_cache(maxsize=1)
+def _lightest_from() -> NDArray[np.intp]:
+    """For each row of the catalogue, that of the lightest bearing from there on; 0 beyond the last."""
+    mass = catalogue()[:, 3]
+    # Of equals, argmin takes the first, the smallest.
+    return np.array([start + int(np.argmin(mass[start:])) for start in range(len(mass))] + [0], dtype=np.intp)
+
+
 def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "catalogue") -> Bearing:
     """The lightest catalogue bearing with at least this bore; NaN beyond the catalogue.
 
@@ -184,11 +192,8 @@ def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "
             "regression-based function ... using the bearing's internal diameter").
     """
     table = catalogue()
-    bores = table[:, 0]
-    # For each catalogue index, the lightest bearing from there on. Of equals, argmin takes the first, the smallest.
-    lightest = np.array([start + int(np.argmin(table[start:, 3])) for start in range(len(table))] + [0])
-    start = np.searchsorted(bores, np.asarray(bore_mm) - 1e-9, side="left")
-    row = np.where((start < len(table))[..., None], table[lightest[start]], np.nan)
+    start = np.searchsorted(table[:, 0], np.asarray(bore_mm) - 1e-9, side="left")
+    row = np.where((start < len(table))[..., None], table[_lightest_from()[start]], np.nan)
     inner, outer, width, mass = (row[..., column] for column in range(4))
     if model == "regression":
         mass = np.polyval(_regression(), inner)

@@ -1,13 +1,12 @@
 """The face width of a gear set under either set of rules."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating.build import build_stage
-from pareto_monoped.actuator.rating.width import least_width_mm, strength_margins
+from pareto_monoped.actuator.rating.width import least_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.strength import face_width_mm as lewis_width_mm
 from pareto_monoped.geometry.shapes import Numbers
@@ -21,12 +20,3 @@ def face_width_mm(gears: GearSet, motor: Motor, family: Family, settings: Actuat
     if settings.rules == "paper":
         return lewis_width_mm(gears, motor, settings)
     return np.asarray(least_width_mm(build_stage(gears, motor, family, settings), settings.constraints_off))[()]
-
-
-def rated_width_mm(
-    gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings
-) -> tuple[NDArray[np.float64], dict[str, Numbers]]:
-    """The face widths under ``iso6336``, and the margins of strength at them (``rating.width.strength_margins``)."""
-    stage = build_stage(gears, motor, family, settings)
-    width = least_width_mm(stage, settings.constraints_off)
-    return width, strength_margins(stage.safeties(width), stage)

@@ -12,18 +12,27 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg
 from pareto_monoped.actuator.candidates import interval_tenths
-from pareto_monoped.actuator.face import face_width_mm, rated_width_mm
+from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family, Layout, layout
 from pareto_monoped.actuator.motors import Motor
-from pareto_monoped.actuator.rating.width import LOAD_RULES, STRENGTH_RULES
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.stage import Stage
+from pareto_monoped.actuator.rating.width import (
+    LOAD_RULES,
+    STRENGTH_RULES,
+    WidthBounds,
+    least_width_mm,
+    strength_margins,
+    width_bounds,
+)
 from pareto_monoped.actuator.ratiomap import RATIO_HIGH
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, active_rules, violations
 from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
 from pareto_monoped.geometry.shapes import Numbers
 
-_FIRST = 8
-"""How many sets of every interval are rated first, the lightest at the least face width."""
+_FIRST = 4
+"""How many sets of every interval are rated first, the lightest at a width that they cannot go below."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,37 +94,14 @@ class Judge:
 
         To rate a gear set costs more than all other rules together. Sets that break more than one of the others at the
         least face width are neither solutions nor kept out by a single rule, and are not rated. Nor are sets that are
-        too heavy at the least face width already: first, the lightest of every interval there are rated, then all that
-        may still be lighter than the second of them. Sets that break one rule come last, where a lighter set has been
-        kept out or no other set is near.
+        too heavy at a width that they cannot go below: no set is lighter with a wider face.
         """
-        gears, width, tenths, broken = screen.gears, screen.width_mm, screen.tenths, screen.broken
-        count = broken.sum(axis=0)
-        mass, rated = np.full(len(width), np.inf), np.zeros(len(width), dtype=bool)
-
-        def rate(todo: NDArray[np.intp]) -> None:
-            chosen = gears.where(todo)
-            width[todo], strength = rated_width_mm(chosen, self.motor, self.family, self.settings)
-            at = self.layout(chosen, width[todo])
-            broken[:, todo] = violations(self.sets(chosen, width[todo], at, strength))[1]
-            mass[todo] = self._mass_kg(at)
-            rated[todo] = True
-
-        def bound(place: int) -> NDArray[np.float64]:
-            return _lightest(tenths, np.where(rated & ~broken.any(axis=0), mass, np.inf), place)
-
-        # No set is lighter with a wider face.
-        fitting, kept_out = np.flatnonzero(count == 0), np.flatnonzero(count == 1)
-        least = self.mass_kg(gears.where(fitting), width[fitting])
-        rate(fitting[_rank(tenths[fitting], least) < _FIRST])
-        rate(fitting[~rated[fitting] & (least <= bound(1)[tenths[fitting]])])
-        # What a rule keeps out matters where it is the lightest, and where nothing else comes near.
-        lightest = bound(0)[tenths[kept_out]]
-        rivals = kept_out[np.isfinite(lightest)]
-        least = self.mass_kg(gears.where(rivals), width[rivals])
-        alone = kept_out[np.isinf(lightest) & ~np.isin(tenths[kept_out], tenths[fitting])]
-        rate(np.sort(np.concatenate([rivals[least <= bound(0)[tenths[rivals]]], alone])))
-        return screen.judged(mass, rated)
+        rating = _Rating(screen)
+        count = screen.broken.sum(axis=0)
+        fitting = np.flatnonzero(count == 0)
+        rating.rate_fitting(fitting)
+        rating.rate_kept_out(np.flatnonzero(count == 1), screen.tenths[fitting])
+        return screen.judged(rating.mass_kg, rating.rated)
 
     def layout(self, gears: GearSet, width_mm: NDArray[np.float64]) -> Layout:
         """What lies around gear sets of these widths."""
@@ -123,9 +109,7 @@ class Judge:
 
     def mass_kg(self, gears: GearSet, width_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mass of the actuators; infinite where the catalogue has no main bearing."""
-        return self._mass_kg(self.layout(gears, width_mm))
-
-    def _mass_kg(self, at: Layout) -> NDArray[np.float64]:
+        at = self.layout(gears, width_mm)
         mass = np.asarray(actuator_mass_kg(at, self.motor, self.family, self.settings))
         return np.where(np.isnan(mass), np.inf, mass)
 
@@ -193,6 +177,104 @@ class _Screen:
         np.minimum.at(nearest, self.tenths[self.known], found.nearness[self.known])
         self._lay_out(np.flatnonzero(left & (self.broken.sum(axis=0) <= nearest[self.tenths])))
         return found
+
+
+class _Rating:
+    """Face width, strength and mass under ``iso6336`` of those gear sets that may matter.
+
+    Attributes:
+        screen: all sets; ``rate`` writes width and broken rules there.
+        mass_kg: infinite for sets that are not rated.
+        rated: which sets are.
+    """
+
+    def __init__(self, screen: "_Screen") -> None:
+        self.screen, self.judge = screen, screen.judge
+        self.mass_kg = np.full(len(screen.width_mm), np.inf)
+        self.rated = np.zeros(len(screen.width_mm), dtype=bool)
+
+    def rate(self, some: "_Bounded") -> None:
+        """Find width, broken rules and mass of some sets."""
+        rows, stage = some.rows, some.stage
+        if not len(rows):
+            return
+        screen, judge = self.screen, self.judge
+        width = least_width_mm(stage, judge.settings.constraints_off, some.bounds)
+        strength = strength_margins(stage.safeties(width), stage)
+        screen.width_mm[rows] = width
+        asked = np.array([CONSTRAINTS[name].of_width for name in screen.names])
+        names = tuple(name for name, ask in zip(screen.names, asked, strict=True) if ask)
+        broken = violations(judge.sets(stage.gears, width, None, strength), names)[1]
+        screen.broken[np.ix_(np.flatnonzero(asked), rows)] = broken
+        self.mass_kg[rows] = judge.mass_kg(stage.gears, width)
+        self.rated[rows] = True
+
+    def lightest(self, place: int) -> NDArray[np.float64]:
+        """Mass of the solution of an interval that has this place among those rated, by the interval's tenths."""
+        solved = self.rated & ~self.screen.broken.any(axis=0)
+        return _lightest(self.screen.tenths, np.where(solved, self.mass_kg, np.inf), place)
+
+    def rate_fitting(self, rows: NDArray[np.intp]) -> None:
+        """Rate sets that break no other rule: a few of each interval, then all that may be lighter than the second.
+
+        A set that no width makes strong enough may be lighter too: then its strength alone keeps it out.
+        """
+        tenths, bounded = self.screen.tenths[rows], self._bounded(rows)
+        least = bounded.least_mass_kg(self.judge)
+        hopeless = bounded.bounds.hopeless
+        first = ~hopeless & (_rank(tenths, np.where(hopeless, np.inf, least)) < _FIRST)
+        self.rate(bounded.where(first))
+        self.rate(bounded.where(~first & (least <= self.lightest(1)[tenths])))
+
+    def rate_kept_out(self, rows: NDArray[np.intp], fitting_tenths: NDArray[np.int64]) -> None:
+        """Rate sets that break one other rule, where that matters.
+
+        It does if they are lighter than the solution of their interval, or if the interval has neither a solution nor a
+        set that fits. Next to a solution, a set that no width makes strong enough breaks a second rule and does not
+        matter.
+
+        Args:
+            rows: the sets.
+            fitting_tenths: the intervals that have sets that break no other rule.
+        """
+        screen, tenths = self.screen, self.screen.tenths[rows]
+        lightest = self.lightest(0)[tenths]
+        rivals = np.isfinite(lightest)
+        least = np.full(len(rows), np.inf)
+        least[rivals] = self.judge.mass_kg(screen.gears.where(rows[rivals]), screen.width_mm[rows[rivals]])
+        chosen = (least <= lightest) & (rivals | ~np.isin(tenths, fitting_tenths))
+        bounded = self._bounded(rows[chosen])
+        hopeful = ~(rivals[chosen] & bounded.bounds.hopeless)
+        bounded = bounded.where(hopeful)
+        self.rate(bounded.where(bounded.least_mass_kg(self.judge) <= lightest[chosen][hopeful]))
+
+    def _bounded(self, rows: NDArray[np.intp]) -> "_Bounded":
+        judge = self.judge
+        stage = build_stage(self.screen.gears.where(rows), judge.motor, judge.family, judge.settings)
+        return _Bounded(rows=rows, stage=stage, bounds=width_bounds(stage, judge.settings.constraints_off))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Bounded:
+    """Some of the gear sets of a screen.
+
+    Attributes:
+        rows: which.
+        stage: they, to be rated.
+        bounds: of their widths.
+    """
+
+    rows: NDArray[np.intp]
+    stage: Stage
+    bounds: WidthBounds
+
+    def where(self, mask: NDArray[np.bool_]) -> "_Bounded":
+        """Some of them."""
+        return _Bounded(rows=self.rows[mask], stage=self.stage.rows(mask), bounds=self.bounds.where(mask))
+
+    def least_mass_kg(self, judge: Judge) -> NDArray[np.float64]:
+        """Masses that the sets do not go below."""
+        return judge.mass_kg(self.stage.gears, self.bounds.floor_mm)
 
 
 def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -57,6 +57,7 @@ class Constraint:
         cures: what would help where it forbids every gearbox.
         rule_sets: the sets of rules that it belongs to.
         laid_out: whether it looks at the layout, which costs more to work out than all other rules together.
+        of_width: whether it looks at the face width.
     """
 
     says: str
@@ -65,6 +66,7 @@ class Constraint:
     cures: tuple[str, ...]
     rule_sets: tuple[RuleSet, ...] = RULE_SETS
     laid_out: bool = False
+    of_width: bool = False
 
 
 def _meshing(sets: CandidateSets) -> Numbers:
@@ -281,6 +283,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         source="paper, section II-A: the ISSPG is integrated within the stator",
         margin=_within_stator,
         cures=("a longer stator", "a stronger steel", "more planets"),
+        of_width=True,
     ),
     "bearing": Constraint(
         says="the catalogue has a main bearing of the bore needed",
@@ -302,6 +305,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_face_width,
         cures=("a larger sun", "a larger face_over_sun_max"),
         rule_sets=("iso6336",),
+        of_width=True,
     ),
     "flank_strength": Constraint(
         says="S_H of every flank at least flank_safety within the face width allowed",
@@ -309,6 +313,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_strength("flank_strength"),
         cures=("a larger sun", "a harder steel", "more planets"),
         rule_sets=("iso6336",),
+        of_width=True,
     ),
     "root_strength": Constraint(
         says="S_F of every root at least root_safety within the face width allowed",
@@ -316,6 +321,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_strength("root_strength"),
         cures=("a larger module in a thicker ring", "a stronger steel", "more planets"),
         rule_sets=("iso6336",),
+        of_width=True,
     ),
     "overload_strength": Constraint(
         says="S_H and S_F at least those required against static failure under one overload",
@@ -323,6 +329,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_strength("overload_strength"),
         cures=("a softer end stop", "a stronger steel"),
         rule_sets=("iso6336",),
+        of_width=True,
     ),
     "output_bearing": Constraint(
         says="L10, s0 and tilt of both bearings of the knee's output keep their limits",
@@ -338,6 +345,7 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
         margin=_planet_bearing,
         cures=("more planets", "a wider face", "thicker pins"),
         rule_sets=("iso6336",),
+        of_width=True,
     ),
 }
 """Name -> rule. Three of the paper's constraints are not here: I (ratio) selects the interval, II (Nr = Ns + 2 Np) and

@@ -1,6 +1,7 @@
 """Tightening of metric screws after VDI 2230-1 in its short form: preload, tightening torque, thread locking."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -64,6 +65,7 @@ class ThreadSize:
         return 0.25 * np.pi * self.core_diameter_mm**2
 
 
+@lru_cache(maxsize=64)
 def thread_size(diameter_mm: float) -> ThreadSize:
     """The coarse thread of a diameter; between the standard ones, which only a user's motor has, interpolated."""
     sizes = sorted(COARSE_PITCHES_MM)

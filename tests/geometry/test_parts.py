@@ -112,6 +112,17 @@ def test_a_population_weighs_what_its_members_do():
         assert properties.second_kg_m2[index] == pytest.approx(one.mass_properties().second_kg_m2, rel=1e-12)
 
 
+def test_the_inertia_about_z_is_the_last_of_the_tensor_to_the_last_bit():
+    rng = np.random.default_rng(4)
+    for shape in ((), (7,), (3, 4)):
+        body = MassProperties(
+            mass_kg=rng.uniform(0.1, 2.0, shape),
+            first_kg_m=rng.normal(size=(*shape, 3)),
+            second_kg_m2=rng.normal(size=(*shape, 3, 3)) * rng.choice([1e-6, 1.0, 1e3], (*shape, 3, 3)),
+        )
+        assert np.array_equal(body.inertia_about_z_kg_m2, body.inertia_kg_m2[..., 2, 2])
+
+
 def test_nothing_is_the_neutral_element():
     body = part(Prism(outline=Circle(radius_mm=3.0), z0_mm=0.0, z1_mm=1.0)).mass_properties()
     assert (MassProperties.zero() + body).second_kg_m2 == pytest.approx(body.second_kg_m2)

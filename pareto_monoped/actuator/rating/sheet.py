@@ -123,7 +123,7 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
 
     def one(place: int) -> Rating:
         def number(value: Numbers) -> float:
-            return float(np.ravel(value)[place if np.size(value) > 1 else 0])
+            return float(value[place] if isinstance(value, np.ndarray) and value.ndim else value)
 
         return Rating(
             sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number), ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number)

@@ -1,6 +1,7 @@
 """The least face width at which a stage keeps all its safety factors, for thousands of gear sets at once."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
@@ -11,6 +12,12 @@ from pareto_monoped.geometry.shapes import Numbers
 
 _SCAN = 12
 """Face widths that are tried first, evenly spread between the limits."""
+
+_FLOOR_STEPS = 2
+"""How often the floor of ``WidthBounds`` is raised: once leaves twice as many sets to rate, thrice saves no time."""
+
+_LOAD_EXPONENTS = Safeties(2.0, 1.0, 2.0, 1.0)
+"""The load that a flank carries falls with the square of its safety factor, that of a root with the factor itself."""
 
 STRENGTH_RULES = {
     "flank_strength": ("flank",),
@@ -33,49 +40,120 @@ def strength_margins(safeties: Safeties, stage: Stage) -> dict[str, Numbers]:
     }
 
 
-def least_width_mm(stage: Stage, off: Collection[str] = ()) -> NDArray[np.float64]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WidthBounds:
+    """What a few evaluations say of the least width of each set.
+
+    All load factors grow with the width, because the load per width falls while deviations and deflections do not. A
+    set of width b whose safety factor is short by a share therefore needs at least so much more width: that share for
+    a root, its square for a flank. Between the limits of the face width, safety grows with width until the
+    misalignment, which grows too, eats the gain.
+
+    Attributes:
+        floor_mm: a width that ``least_width_mm`` does not go below; where ``hopeless``, the one that it returns.
+        enough: sets for which the largest width is enough; so is every width between the least one and that.
+        hopeless: sets for which it is not enough, although safety still grows there, so that no width is.
+    """
+
+    floor_mm: NDArray[np.float64]
+    enough: NDArray[np.bool_]
+    hopeless: NDArray[np.bool_]
+
+    def where(self, mask: NDArray[np.bool_]) -> "WidthBounds":
+        """Those of some of the sets."""
+        return WidthBounds(floor_mm=self.floor_mm[mask], enough=self.enough[mask], hopeless=self.hopeless[mask])
+
+
+def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
+    """The bounds of arrays of gear sets; arguments as of ``least_width_mm``."""
+    low, high = _limits(stage)
+    most = _margin(stage, high, off)
+    enough = most >= 0.0
+    hopeless = ~enough & (_margin(stage, _tried(low, high)[-2], off) < most)
+    floor = low
+    for _ in range(_FLOOR_STEPS):
+        floor = np.clip(np.ceil(np.round(floor * _shortage(stage, floor, off), 6)), floor, high)
+    # Otherwise a width between the limits may be enough, and if none is, any may be the best.
+    floor = np.where(enough, floor, low)
+    return WidthBounds(floor_mm=_in_mm(np.where(hopeless, high, floor), stage), enough=enough, hopeless=hopeless)
+
+
+def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> NDArray[np.float64]:
     """The least multiple of the step at which all safety factors are kept.
 
-    Between the limits of the face width, safety grows with width until the misalignment, which grows too, eats the
-    gain. The widths tried first find the part where it grows; bisection then finds the first width that is enough.
+    Where the largest width is not enough, but safety no longer grows there, a few widths are tried first, to find the
+    part where it grows. Bisection then finds the first width that is enough.
 
     Args:
         stage: one gear set, or arrays of them.
         off: names of rules that need not be kept.
+        bounds: ``width_bounds``, if they are known already.
 
     Returns:
         The shape of the gear sets. Where no width is enough, the best of those tried.
     """
-    step = stage.settings.parts.rating.face_step_mm
     shape = np.shape(stage.width_low_mm)
-    low = np.atleast_1d(np.ceil(np.round(stage.width_low_mm / step, 6)))
-    high = np.maximum(low, np.atleast_1d(np.floor(np.round(stage.width_high_mm / step, 6))))
-
-    def margin(some: Stage, steps: NDArray[np.float64]) -> NDArray[np.float64]:
-        margins = strength_margins(some.safeties(steps * step), some)
-        kept = [value for rule, value in margins.items() if rule not in off]
-        return np.asarray(reduce(np.minimum, kept)) if kept else np.full(steps.shape, np.inf)
-
-    good, bad, best = _scanned(stage, low, high, margin)
+    low, high = _limits(stage)
+    bounds = bounds or width_bounds(stage, off)
+    floor = np.round(bounds.floor_mm / stage.settings.parts.rating.face_step_mm)
+    good, bad, best = np.where(bounds.enough, high, np.nan), floor - 1.0, floor
+    between = np.flatnonzero(~bounds.enough & ~bounds.hopeless)
+    if len(between):
+        found = _scanned(stage.rows(between), low[between], high[between], off)
+        good[between], bad[between], best[between] = found
     # Invariant: enough at good, not enough at bad (or below the limit). Sets without any good width stay out.
     left = np.flatnonzero(good - bad > 1.0)
     part = stage.rows(left)
     while len(left):
         middle = np.floor(0.5 * (good[left] + bad[left]))
-        fits = (margin(part, middle) >= 0.0) & (middle >= low[left])
+        fits = (_margin(part, middle, off) >= 0.0) & (middle >= low[left])
         good[left], bad[left] = np.where(fits, middle, good[left]), np.where(fits, bad[left], middle)
         wide = good[left] - bad[left] > 1.0
         left, part = left[wide], part if wide.all() else part.rows(wide)
-    found = np.where(np.isfinite(good), good, best)
+    return _in_mm(np.where(np.isfinite(good), good, best), stage).reshape(shape)
+
+
+def _margin(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
+    """The least margin of strength at widths in steps."""
+    margins = strength_margins(stage.safeties(steps * stage.settings.parts.rating.face_step_mm), stage)
+    kept = [value for rule, value in margins.items() if rule not in off]
+    return np.asarray(reduce(np.minimum, kept)) if kept else np.full(steps.shape, np.inf)
+
+
+def _shortage(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
+    """The load at a width over the one that is carried with the safety factors required; of the worst flank or root."""
+    found = stage.safeties(steps * stage.settings.parts.rating.face_step_mm)
+    least = required(stage.settings)
+    shares = [
+        (getattr(least, name) / getattr(found, name)) ** getattr(_LOAD_EXPONENTS, name)
+        for rule, names in STRENGTH_RULES.items()
+        if rule not in off
+        for name in names
+    ]
+    return reduce(np.maximum, shares, np.zeros(steps.shape))
+
+
+def _limits(stage: Stage) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and largest width allowed, in steps; whole numbers."""
+    step = stage.settings.parts.rating.face_step_mm
+    low = np.atleast_1d(np.ceil(np.round(stage.width_low_mm / step, 6)))
+    return low, np.maximum(low, np.atleast_1d(np.floor(np.round(stage.width_high_mm / step, 6))))
+
+
+def _in_mm(steps: NDArray[np.float64], stage: Stage) -> NDArray[np.float64]:
+    """Widths in steps, in mm."""
+    step = stage.settings.parts.rating.face_step_mm
     # Divided by a whole number where there is one: 123 steps of 0.1 mm are then 12.3 mm to the last bit.
-    return (found / round(1.0 / step) if round(1.0 / step) * step == 1.0 else found * step).reshape(shape)
+    return steps / round(1.0 / step) if round(1.0 / step) * step == 1.0 else steps * step
+
+
+def _tried(low: NDArray[np.float64], high: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """The widths tried first, from the least to the largest, in steps."""
+    return [np.round(low + share * (high - low)) for share in np.linspace(0.0, 1.0, _SCAN)]
 
 
 def _scanned(
-    stage: Stage,
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    margin: Callable[[Stage, NDArray[np.float64]], NDArray[np.float64]],
+    stage: Stage, low: NDArray[np.float64], high: NDArray[np.float64], off: Collection[str]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The widths tried first, from ``low`` to ``high``; a set is left alone once a width is enough.
 
@@ -84,9 +162,9 @@ def _scanned(
     """
     good, bad, best, most = np.full(low.shape, np.nan), low - 1.0, low.copy(), np.full(low.shape, -np.inf)
     left, part = np.arange(len(low)), stage
-    for share in np.linspace(0.0, 1.0, _SCAN):
-        tried = np.round(low[left] + share * (high[left] - low[left]))
-        found = margin(part, tried)
+    for widths in _tried(low, high):
+        tried = widths[left]
+        found = _margin(part, tried, off)
         enough = found >= 0.0
         good[left[enough]] = tried[enough]
         if enough.any():

@@ -26,25 +26,32 @@ def planet_turns(gears: GearSet) -> Numbers:
 
 def needle_life_h(gears: GearSet, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
     """L10 of a planet's needles under the duty; ``force_n`` is that at the peak torque."""
+    return _life_h(planet_turns(gears), force_n, dynamic_rating_n, settings)
+
+
+def _life_h(turns: Numbers, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
     duty = settings.parts.duty
-    turns = life_turns([share * force_n for share in duty.torque_shares], dynamic_rating_n, LIFE_EXPONENT, duty)
-    return turns / (output_turns_per_hour(duty, settings.service) * planet_turns(gears))
+    life = life_turns([share * force_n for share in duty.torque_shares], dynamic_rating_n, LIFE_EXPONENT, duty)
+    return life / (output_turns_per_hour(duty, settings.service) * turns)
 
 
 def planet_margin(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorSettings) -> Numbers:
     """Least of life, static safeties or pv over what the settings ask for, less 1; negative where one is too little."""
-    force = planet_force_n(gears, gears.ratio * motor.peak_torque_n_m, settings)
-    service = settings.service
     if settings.planet_bearing == "needles":
-        rows = needle_rows(width_mm, settings)
-        overload = settings.parts.rating.overload_factor
-        shares = (
-            needle_life_h(gears, force, rows.dynamic_rating_n, settings) / service.bearing_life_min_h,
-            rows.static_rating_n / (service.static_safety_min * force),
-            rows.static_rating_n / (service.overload_static_safety_min * overload * force),
-        )
-        return np.nan_to_num(reduce(np.minimum, shares), nan=0.0) - 1.0
+        force = planet_force_n(gears, gears.ratio * motor.peak_torque_n_m, settings)
+        return _needle_margin(planet_turns(gears), force, width_mm, settings)
     return bush_pv_limit(settings) / bush_pv(gears, width_mm, motor, settings) - 1.0
+
+
+def _needle_margin(turns: Numbers, force_n: Numbers, width_mm: Numbers, settings: ActuatorSettings) -> Numbers:
+    """``planet_margin`` of needles."""
+    rows, service, overload = needle_rows(width_mm, settings), settings.service, settings.parts.rating.overload_factor
+    shares = (
+        _life_h(turns, force_n, rows.dynamic_rating_n, settings) / service.bearing_life_min_h,
+        rows.static_rating_n / (service.static_safety_min * force_n),
+        rows.static_rating_n / (service.overload_static_safety_min * overload * force_n),
+    )
+    return np.nan_to_num(reduce(np.minimum, shares), nan=0.0) - 1.0
 
 
 def bush_pv(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorSettings) -> Numbers:
@@ -66,8 +73,13 @@ def planet_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) ->
         return np.zeros(np.shape(gears.sun_teeth))[()]
     if settings.planet_bearing == "bushes":
         return bush_pv(gears, 1.0, motor, settings) / bush_pv_limit(settings)
-    widths = choices_mm(settings)[::-1]  # each narrower one that holds replaces the wider ones
-    needed = np.zeros(np.shape(gears.sun_teeth))
-    for width in widths:
-        needed = np.where(planet_margin(gears, width, motor, settings) >= 0.0, width, needed)
-    return needed[()]
+    turns = np.atleast_1d(planet_turns(gears))
+    force = np.atleast_1d(planet_force_n(gears, gears.ratio * motor.peak_torque_n_m, settings))
+    needed, left = np.zeros(turns.shape), np.arange(len(turns))
+    for width in choices_mm(settings):
+        holds = np.asarray(_needle_margin(turns[left], force[left], width, settings)) >= 0.0
+        needed[left[holds]] = width
+        left = left[~holds]
+        if not len(left):
+            break
+    return needed.reshape(np.shape(gears.sun_teeth))[()]

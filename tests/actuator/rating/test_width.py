@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.rating import width as width_module
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.stage import required
-from pareto_monoped.actuator.rating.width import least_width_mm, strength_margins
+from pareto_monoped.actuator.rating.width import least_width_mm, strength_margins, width_bounds
 from pareto_monoped.actuator.settings import ActuatorSettings
 
 SETTINGS = ActuatorSettings(rules="iso6336")
@@ -86,6 +87,64 @@ def test_a_set_that_no_width_suits_gets_the_safest_of_those_tried():
         margins.append(reduce(np.minimum, strength_margins(stage.safeties(width), stage).values()))
     got = reduce(np.minimum, strength_margins(stage.safeties(found), stage).values())
     assert got[hopeless] == pytest.approx(np.max(margins, axis=0)[hopeless], rel=1e-9)
+
+
+WIDE = replace(
+    SETTINGS,
+    parts=replace(SETTINGS.parts, rating=replace(SETTINGS.parts.rating, face_over_sun_max=6.0, face_modules_max=200.0)),
+)
+"""Faces so wide that misalignment eats what width gains."""
+
+
+@pytest.mark.parametrize("limits", [SETTINGS, WIDE], ids=["default", "wide"])
+@pytest.mark.parametrize("motor", ["U8", "VT8020", "U12"])
+def test_no_set_goes_below_its_bound(motor, limits):
+    """All widths tried, one after the other: the bounds assume that load factors grow with the width."""
+    stage = build_stage(drawn(300, 7), load_motor(motor), "ESSPG", limits)
+    bounds, found = width_bounds(stage), least_width_mm(stage)
+    first = np.full(300, np.nan)
+    for steps in range(int(np.max(stage.width_high_mm) / 0.1) + 1, 59, -1):
+        width = np.full(300, steps / 10.0)
+        inside = (width >= stage.width_low_mm - 1e-9) & (width <= stage.width_high_mm + 1e-9)
+        first = np.where(inside & keeps(stage, width), width, first)
+    possible = np.isfinite(first)
+    assert found[possible].tolist() == first[possible].tolist()
+    assert (bounds.floor_mm <= found).all()
+    assert possible[bounds.enough].all()
+    assert not possible[bounds.hopeless].any()
+    assert bounds.floor_mm[bounds.hopeless].tolist() == found[bounds.hopeless].tolist()
+    # The bounds are of use: nearly all sets are told apart, and few lie far above.
+    assert (bounds.enough | bounds.hopeless).mean() > 0.95
+    assert np.median((found / bounds.floor_mm)[bounds.enough]) < 1.4
+
+
+def test_a_part_of_the_widths_may_be_enough(monkeypatch):
+    """A margin that is a parabola over the width instead of the rating's, which grows up to the limits of the tests."""
+    stage = build_stage(drawn(400, 8), MOTOR, "ESSPG", WIDE)
+    low, high = (np.round(limit / 0.1) for limit in (stage.width_low_mm, stage.width_high_mm))
+
+    def peak(some):
+        return 12.0 * some.gears.planet_teeth
+
+    def margin(some, steps, off):
+        return some.gears.planets - 3.5 - np.square((steps - peak(some)) / 200.0)
+
+    monkeypatch.setattr(width_module, "_margin", margin)
+    monkeypatch.setattr(width_module, "_shortage", lambda some, steps, off: np.ones(len(steps)))
+    bounds, found = width_bounds(stage), np.round(least_width_mm(stage) / 0.1)
+    reach = 200.0 * np.sqrt(np.maximum(stage.gears.planets - 3.5, 0.0))
+    first = np.maximum(np.ceil(peak(stage) - reach - 1e-9), low)
+    tops = stage.gears.planets > 3
+    good = tops & (first <= high) & (peak(stage) + reach >= low)
+    rising = ~good & (peak(stage) > high)
+    inside = good & (peak(stage) + reach < high)
+    for some in (good & bounds.enough, rising, inside, ~tops & (peak(stage) < high)):
+        assert some.sum() > 10
+    assert found[good].tolist() == first[good].tolist()
+    assert found[rising].tolist() == np.floor(np.round(stage.width_high_mm / 0.1, 6))[rising].tolist()
+    assert bounds.hopeless[rising].all()
+    assert not bounds.hopeless[good].any()
+    assert not bounds.enough[inside].any()
 
 
 def test_a_limit_that_is_off_does_not_widen_the_gears():
