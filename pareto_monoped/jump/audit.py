@@ -3,6 +3,9 @@
 A jump is well-conditioned if its height and energy are properties of the design and not accidents of the simulation:
 its energy balance closes, and neither a finer step nor a link longer by less than a micrometre changes it much.
 ``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict that studies, reports and commands use.
+
+A full audit also measures what no limit is about. A brief one leaves that out, and where the result is clear after a
+few perturbed copies, no more of them jump.
 """
 
 from collections.abc import Mapping
@@ -27,6 +30,12 @@ SPREAD_PERCENTILE = 90.0
 """Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
 PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
 """Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
+FIRST_COPIES = 2
+"""How many perturbed copies of a design jump first in a brief audit."""
+CLEAR_SPREAD, CLEAR_HALF_STEP = 0.01, 0.2
+"""Shares of their limits that the changes of these copies and those with the step halved may reach if no more copies
+are to jump. Our own choice, by measurement: any jump that is smooth in its design stays far below both, and one that is
+not shows in one or the other (``benchmarks/audit_time.py``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,14 +85,29 @@ def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Jumps:
+    """What an audit needs to know of the jumps of n designs; the fields are those of ``Evaluations``."""
+
+    status: NDArray[np.str_]
+    height_m: Floats
+    energy_j: Floats
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which jumps have a height and an energy, shape (n,)."""
+        return np.asarray(self.status == "ok")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Audits:
     """The audits of n designs; ``measures.AUDIT_MEASURES`` says what each measure means.
 
     Attributes:
         status: of the jump, as in ``Evaluations``, shape (n,).
         height_m, energy_j: as evaluated, shape (n,).
-        energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump;
-            infinity where a jump is lost by a finer step, a perturbation or a shorter control period.
+        energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump, and
+            where a brief audit leaves a measure out; infinity where a jump is lost by a finer step, a perturbation or a
+            shorter control period.
         reason: why the jump is not well-conditioned; empty where it is.
     """
 
@@ -158,6 +182,8 @@ def audit(
     workers: int = 1,
     perturbations: int = 10,
     seed: int = 0,
+    known: Jumps | None = None,
+    brief: bool = False,
 ) -> Audits:
     """Audit the jumps of designs.
 
@@ -168,39 +194,87 @@ def audit(
         workers: threads.
         perturbations: perturbed copies per design.
         seed: of the perturbations; the same seed gives the same audit.
+        known: the jumps, if they have been simulated already.
+        brief: measure only what a limit is about, and perturb less often where the result is clear.
     """
     values = np.atleast_2d(complete(designs))
-    n = len(values)
-    base = Evaluator(actuator_map, calibration, workers)(values)
+    base = known or _of(Evaluator(actuator_map, calibration, workers)(values))
     half = Evaluator(actuator_map, finer(calibration, 2), workers)(values)
-    quarter = Evaluator(actuator_map, finer(calibration, 4), workers)(values)
-    held, prompt = _with_two_periods(values, actuator_map, calibration, workers, quarter)
-    rng = np.random.default_rng(seed)
-    spread = Evaluator(actuator_map, calibration, workers)(perturbed(values, perturbations, rng))
-    height = np.abs(spread.height_m.reshape(n, perturbations) - base.height_m[:, None])
-    energy = np.abs(spread.energy_j.reshape(n, perturbations) / base.energy_j[:, None] - 1.0)
-    balance = np.full(n, np.nan)
+    halved = _changes("half_step", base, half)
+    jumps = Evaluator(actuator_map, calibration, workers)
+    copies = perturbed(values, perturbations, np.random.default_rng(seed))
+    copies = copies.reshape(len(values), perturbations, -1)
+    if brief:
+        spread = _brief_spread(copies, base, jumps, _within(CLEAR_HALF_STEP, halved))
+        rest = dict.fromkeys(ONLY_IN_FULL, np.full(len(values), np.nan))
+    else:
+        spread = _spread(copies, base, jumps)
+        quarter = Evaluator(actuator_map, finer(calibration, 4), workers)(values)
+        held, prompt = _with_two_periods(values, actuator_map, calibration, workers, quarter)
+        rest = {**_changes("quarter_step", base, quarter), **_changes("control_period", held, prompt)}
+    balance = np.full(len(values), np.nan)
     ok = np.flatnonzero(base.ok)
     if len(ok):
         robots = robot_arrays(values[ok], actuator_map, calibration.mass)
         balance[ok] = balance_errors(robots, columns(values[ok], CONTROL), calibration, workers)
     measured = {
         "energy_balance_error": balance,
-        **_changes("half_step", base, half),
-        **_changes("quarter_step", base, quarter),
-        "spread_height_m": _percentile(height, ok, SPREAD_PERCENTILE),
-        "spread_energy": _percentile(energy, ok, SPREAD_PERCENTILE),
-        "worst_height_m": _percentile(height, ok, 100.0),
-        "worst_energy": _percentile(energy, ok, 100.0),
-        **_changes("control_period", held, prompt),
+        **halved,
+        **spread,
+        **rest,
     }
     reasons = tuple(
         "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
         if base.ok[i]
         else f"no jump: {base.status[i]}"
-        for i in range(n)
+        for i in range(len(values))
     )
     return Audits(status=base.status, height_m=base.height_m, energy_j=base.energy_j, **measured, reason=reasons)
+
+
+ONLY_IN_FULL = ("quarter_step_height_m", "quarter_step_energy", "control_period_height_m", "control_period_energy")
+"""Measures of a full audit that no limit is about and that take jumps of their own."""
+
+
+def _of(evaluations: Evaluations) -> Jumps:
+    return Jumps(status=evaluations.status, height_m=evaluations.height_m, energy_j=evaluations.energy_j)
+
+
+def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
+    """The changes of height and energy under perturbations.
+
+    Args:
+        copies: of each design, shape (n, copies, number of variables).
+        base: the jumps of the designs.
+        jumps: designs to evaluations.
+    """
+    found = jumps(copies.reshape(-1, copies.shape[-1]))
+    height = np.abs(found.height_m.reshape(copies.shape[:2]) - base.height_m[:, None])
+    energy = np.abs(found.energy_j.reshape(copies.shape[:2]) / base.energy_j[:, None] - 1.0)
+    ok = np.flatnonzero(base.ok)
+    return {
+        "spread_height_m": _percentile(height, ok, SPREAD_PERCENTILE),
+        "spread_energy": _percentile(energy, ok, SPREAD_PERCENTILE),
+        "worst_height_m": _percentile(height, ok, 100.0),
+        "worst_energy": _percentile(energy, ok, 100.0),
+    }
+
+
+def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray[np.bool_]) -> dict[str, Floats]:
+    """``_spread`` of the first copies where these hardly change and the design is ``smooth``, else of all copies."""
+    found = _spread(copies[:, :FIRST_COPIES], base, jumps)
+    unclear = np.flatnonzero(~(smooth & _within(CLEAR_SPREAD, found)) & base.ok)
+    if len(unclear):
+        some = Jumps(status=base.status[unclear], height_m=base.height_m[unclear], energy_j=base.energy_j[unclear])
+        for name, values in _spread(copies[unclear], some, jumps).items():
+            found[name][unclear] = values
+    return found
+
+
+def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
+    """Where all changes that have a limit lie within a share of it; NaN does not."""
+    limited = [changes[limit.name] <= share * limit.most for limit in LIMITS if limit.name in changes]
+    return np.logical_and.reduce(limited)
 
 
 def _with_two_periods(
@@ -224,7 +298,7 @@ def _with_two_periods(
     return jumps(period_s), jumps(period_s / 4)
 
 
-def _changes(prefix: str, base: Evaluations, other: Evaluations) -> dict[str, Floats]:
+def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict[str, Floats]:
     """Absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
     lost = base.ok & ~other.ok
     height = np.where(lost, np.inf, np.abs(other.height_m - base.height_m))

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from pareto_monoped.design import NAMES
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.simulator import Simulator
@@ -16,9 +18,9 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
     """Audit every design on the front that has no audit yet, and store the audits.
 
     A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore
-    repeats until every design on the front has passed.
+    repeats until every design on the front has passed. It is a brief one: ``simulate --audit`` makes the full one.
     """
-    from pareto_monoped.jump.audit import audit
+    from pareto_monoped.jump.audit import ONLY_IN_FULL, Jumps, audit
 
     while True:
         data = read_study(db)
@@ -34,8 +36,16 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
                 simulator.evaluator.actuator_map,
                 simulator.calibration,
                 workers=simulator.evaluator.workers,
+                known=Jumps(
+                    status=rows["status"].to_numpy(dtype=np.str_),
+                    height_m=rows["height_m"].to_numpy(dtype=np.float64),
+                    energy_j=rows["energy_j"].to_numpy(dtype=np.float64),
+                ),
+                brief=True,
             )
-            columns = {name: values.tolist() for name, values in audits.as_columns().items()}
+            columns = {
+                name: values.tolist() for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL
+            }
             good = columns.pop("well_conditioned")
             store.set_audits(
                 [

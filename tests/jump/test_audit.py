@@ -7,12 +7,18 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import DEFAULTS, NAMES, PAPER_CASES, RATIOS, columns
 from pareto_monoped.jump.audit import (
+    CLEAR_HALF_STEP,
+    CLEAR_SPREAD,
     LIMITS,
+    ONLY_IN_FULL,
     PERTURBATION,
     PERTURBED,
     SPREAD_PERCENTILE,
+    Jumps,
+    _brief_spread,
     _changes,
     _percentile,
+    _within,
     audit,
     exceeded,
     finer,
@@ -95,6 +101,85 @@ def test_the_spread_is_the_second_largest_of_ten_changes():
     assert height[4] < height[7] < height[8] < height[9]
     assert (found.spread_height_m[0], found.worst_height_m[0]) == (height[8], height[9])
     assert (found.spread_energy[0], found.worst_energy[0]) == (energy[8], energy[9])
+
+
+@pytest.fixture(scope="module")
+def full_and_brief():
+    """Audits of random designs under the literal model, which spreads, and under the reference, which does not."""
+    designs = random_designs(12, seed=6)
+    return {
+        name: [audit(designs, MAP, load_calibration(name), brief=brief) for brief in (False, True)]
+        for name in ("paper", "reference")
+    }
+
+
+@pytest.mark.parametrize("name", ["paper", "reference"])
+def test_a_brief_audit_has_the_verdict_of_a_full_one(full_and_brief, name):
+    full, brief = full_and_brief[name]
+    assert brief.reason == full.reason
+    assert brief.well_conditioned.tolist() == full.well_conditioned.tolist()
+    if name == "paper":
+        assert not full.well_conditioned.all()
+    for measured in ("half_step_height_m", "half_step_energy", "energy_balance_error"):
+        np.testing.assert_array_equal(getattr(brief, measured), getattr(full, measured))
+    assert np.isnan([getattr(brief, measured) for measured in ONLY_IN_FULL]).all()
+
+
+def test_a_brief_audit_perturbs_a_design_as_often_as_a_full_one_unless_the_first_copies_hardly_change(full_and_brief):
+    full, brief = full_and_brief["paper"]
+    spread = full.spread_height_m > MOST["spread_height_m"]
+    assert 0 < spread.sum() < len(spread)
+    for measured in ("spread_height_m", "spread_energy", "worst_height_m", "worst_energy"):
+        np.testing.assert_array_equal(getattr(brief, measured)[spread], getattr(full, measured)[spread])
+    clear, also = full_and_brief["reference"]
+    jumped = clear.status == "ok"
+    assert (also.worst_height_m[jumped] <= clear.worst_height_m[jumped]).all()
+    assert (also.worst_height_m[jumped] < clear.worst_height_m[jumped]).any()
+
+
+def test_a_single_copy_that_changes_is_followed_up():
+    """Designs whose first copies change by just more and just less than the share; the last is not smooth."""
+    copies = np.zeros((3, 10, 1))
+    copies[:, 1, 0] = np.array([1.1, 0.9, 0.9]) * CLEAR_SPREAD
+    copies[:, 2:] = 2.0
+    base = Jumps(status=np.array(["ok"] * 3), height_m=np.ones(3), energy_j=np.ones(3))
+
+    def jumps(rows):
+        height = 1.0 + rows[:, 0] * MOST["spread_height_m"]
+        return SimpleNamespace(height_m=height, energy_j=np.ones(len(rows)))
+
+    found = _brief_spread(copies, base, jumps, np.array([True, True, False]))["spread_height_m"]
+    assert found / MOST["spread_height_m"] == pytest.approx([2.0, 0.9 * CLEAR_SPREAD, 2.0], rel=1e-9)
+
+
+def test_only_a_jump_that_half_a_step_hardly_changes_counts_as_smooth():
+    share = np.array([0.19, 0.21, 0.19, np.nan, np.inf])
+    other = np.array([0.19, 0.19, 0.21, 0.0, 0.0])
+    changes = {
+        "half_step_height_m": share * MOST["half_step_height_m"],
+        "half_step_energy": other * MOST["half_step_energy"],
+        "quarter_step_energy": np.full(5, 9.9),
+    }
+    assert _within(CLEAR_HALF_STEP, changes).tolist() == [True, False, False, False, False]
+
+
+def test_known_jumps_are_not_simulated_again(monkeypatch):
+    calibration, designs = load_calibration(), np.array([PAPER_CASES[case].design.as_array() for case in ("A", "C")])
+    base = Evaluator(MAP, calibration)(designs)
+    known = Jumps(status=base.status, height_m=base.height_m, energy_j=base.energy_j)
+    counted = []
+    plain = Evaluator.__call__
+
+    def counting(self, values):
+        counted.append((len(values), self.calibration.simulation.timestep_s))
+        return plain(self, values)
+
+    monkeypatch.setattr(Evaluator, "__call__", counting)
+    found = audit(designs, MAP, calibration, known=known, brief=True)
+    assert counted == [(2, 0.0005), (4, 0.001)]
+    expected = audit(designs, MAP, calibration, brief=True)
+    for name, values in expected.as_columns().items():
+        np.testing.assert_array_equal(found.as_columns()[name], values)
 
 
 def test_a_lost_jump_is_an_infinite_change():
