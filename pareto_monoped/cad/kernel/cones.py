@@ -76,7 +76,7 @@ def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Fa
         if curve.GetType() != GeomAbs_CurveType.GeomAbs_Circle:
             continue
         for face in borders.FindFromIndex(k):
-            if BRepAdaptor_Surface(TopoDS.Face(face)).GetType() == GeomAbs_SurfaceType.GeomAbs_Plane:
+            if BRepAdaptor_Surface(TopoDS.Face(face), False).GetType() == GeomAbs_SurfaceType.GeomAbs_Plane:
                 circle = curve.Circle()
                 centre = circle.Location()
                 edges.append(edge)

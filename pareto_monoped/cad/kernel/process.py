@@ -28,12 +28,24 @@ def solid_facts(parts: list[Part]) -> list[SolidFacts]:
 
 def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
     """The STEP file of the assembly, and those of its unique parts by name."""
-    # Parts of one geometry, such as both sprockets, share a solid in the cache; a document would take them for one.
-    solids = {name: BRepBuilderAPI_Copy(solid_of(part)).Shape() for name, part in assembly.parts.items()}
-    return (
-        step.assembly_step(assembly, solids),
-        {name: step.part_step(solid, name, assembly.parts[name].material.colour) for name, solid in solids.items()},
-    )
+    parts = {
+        name: _part_file(part.prisms, part.balls, part.bevels, name, part.material.colour)
+        for name, part in assembly.parts.items()
+    }
+    solids = {name: solid_of(part) for name, part in assembly.parts.items()}
+    # Parts of one geometry share a solid in the cache; a document would take them for one.
+    compounds = {
+        name: BRepBuilderAPI_Copy(solid).Shape() for name, solid in solids.items() if len(solids_in(solid)) > 1
+    }
+    return step.assembly_step(assembly, parts, compounds), parts
+
+
+# As many as ``solid_from`` keeps: 20 MB at most.
+@lru_cache(maxsize=256)
+def _part_file(
+    prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], name: str, colour: step.Colour
+) -> bytes:
+    return step.part_step(solid_from(prisms, balls, bevels), name, colour)
 
 
 # As many as ``solid_from`` keeps.

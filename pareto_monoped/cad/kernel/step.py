@@ -8,10 +8,12 @@ import re
 from collections.abc import Mapping, Sequence
 from datetime import datetime
 from io import BytesIO
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Trsf
 from OCP.Interface import Interface_Static
 from OCP.Message import Message, Message_Gravity
@@ -28,6 +30,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from OCP.XSControl import XSControl_WorkSession
 
 from pareto_monoped.cad.kernel.client import StepAssembly
+from pareto_monoped.cad.kernel.splice import Shape, shapes_in, spliced
 
 Colour = tuple[float, float, float]
 
@@ -37,11 +40,9 @@ _METRES = 1e-3  # the documents' unit: millimetres
 _USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
 
 
-_LINK = re.compile(
-    rb"#(\d+) = (SHAPE_DEFINITION_REPRESENTATION|PRODUCT_DEFINITION_SHAPE|PRODUCT_DEFINITION|"
-    rb"PRODUCT_DEFINITION_FORMATION|PRODUCT|ADVANCED_BREP_SHAPE_REPRESENTATION)\s*\(([^;]*)\);"
-)
-_REFERENCE = re.compile(rb"#(\d+)")
+_NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
+_TAIL = 2000
+"""The last entity of a file, which is a short one, begins within so many characters from its end."""
 _END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
@@ -71,7 +72,8 @@ class _Document:
             TDataStd_Name.Set_s(component, TCollection_ExtendedString(member))
         return label
 
-    def text(self, name: str, colours: Mapping[str, Colour]) -> bytes:
+    def text(self, name: str) -> bytes:
+        """The file without colours."""
         self.shapes.UpdateAssemblies()
         for printer in Message.DefaultMessenger_s().Printers():
             printer.SetTraceLevel(Message_Gravity.Message_Fail)
@@ -92,18 +94,34 @@ class _Document:
         writer.Transfer(self.document, STEPControl_StepModelType.STEPControl_AsIs)
         stream = BytesIO()
         writer.WriteStream(stream)
-        return _coloured(_renumbered(stream.getvalue()), colours)
+        return _renumbered(stream.getvalue())
 
 
 def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
     """One part, in millimetres."""
     document = _Document()
     document.part(solid, name)
-    return document.text(name, {name: colour})
+    text = document.text(name)
+    return _coloured(text, shapes_in(text), {name: colour})
 
 
-def assembly_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
-    """The assembly as a tree: the robot, its units, their parts. Each unique part is written once."""
+def assembly_step(
+    assembly: StepAssembly, parts: Mapping[str, bytes], compounds: Mapping[str, TopoDS_Shape] = MappingProxyType({})
+) -> bytes:
+    """The assembly as a tree: the robot, its units, their parts. Each unique part is written once.
+
+    Args:
+        assembly: its units, and where its parts stand.
+        parts: the file of each part, by name.
+        compounds: parts of several bodies, by name; the kernel writes them in another form, here once more.
+    """
+    stand_ins = {name: compounds.get(name) or BRepPrimAPI_MakeSphere(1.0).Shape() for name in assembly.parts}
+    text, shapes = spliced(tree_step(assembly, stand_ins), parts)
+    return _coloured(text, shapes, {name: part.material.colour for name, part in assembly.parts.items()})
+
+
+def tree_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
+    """The same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
     document = _Document()
     labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []
@@ -111,7 +129,7 @@ def assembly_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) ->
         members = [(placement.part, labels[placement.part], placement.matrix) for placement in placements]
         units.append((unit, document.assembly(unit, members), np.eye(4)))
     document.assembly(assembly.name, units)
-    return document.text(assembly.name, {name: part.material.colour for name, part in assembly.parts.items()})
+    return document.text(assembly.name)
 
 
 def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:
@@ -132,29 +150,17 @@ def _renumbered(text: bytes) -> bytes:
     return _USAGE.sub(usage, text)
 
 
-def _coloured(text: bytes, colours: Mapping[str, Colour]) -> bytes:
-    """Add a colour to the solid of each named product, as the kernel would: one style per solid."""
-    links: dict[bytes, bytes] = {}
-    shapes = []
-    for number, kind, arguments in _LINK.findall(text):
-        links[number] = arguments
-        if kind == b"SHAPE_DEFINITION_REPRESENTATION":
-            shapes.append(_REFERENCE.findall(arguments))
-    number = max(int(n) for n in re.findall(rb"^#(\d+) =", text, re.MULTILINE))
+def _coloured(text: bytes, shapes: Sequence[Shape], colours: Mapping[str, Colour]) -> bytes:
+    """Add a colour to the solid of each named shape, as the kernel would: one style per solid."""
+    number = int(_NUMBER.findall(text, max(len(text) - _TAIL, 0))[-1])
     lines = []
-    for definition, representation in shapes:
-        if representation not in links:
-            continue  # an assembly
-        for _ in range(3):  # shape -> definition -> formation -> product
-            definition = _REFERENCE.findall(links[definition])[0]
-        name = links[definition].split(b"'")[1].decode()
-        *items, context = _REFERENCE.findall(links[representation])
-        red, green, blue = colours[name]
+    for shape in shapes:
+        red, green, blue = colours[shape.name]
         a = [number + k for k in range(1, 10)]
         number += 9
         lines += [
-            f"#{a[0]} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{a[1]}),#{context.decode()});",
-            f"#{a[1]} = STYLED_ITEM('color',(#{a[2]}),#{items[-1].decode()});",
+            f"#{a[0]} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{a[1]}),#{shape.context});",
+            f"#{a[1]} = STYLED_ITEM('color',(#{a[2]}),#{shape.solid});",
             f"#{a[2]} = PRESENTATION_STYLE_ASSIGNMENT((#{a[3]}));",
             f"#{a[3]} = SURFACE_STYLE_USAGE(.BOTH.,#{a[4]});",
             f"#{a[4]} = SURFACE_SIDE_STYLE('',(#{a[5]}));",
