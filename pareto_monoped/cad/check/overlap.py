@@ -1,7 +1,9 @@
 """No two parts overlap in the pose of the export."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,11 +12,15 @@ from pareto_monoped.cad.check.contact import TOUCH_MM, Overlap, PlacedMesh, deep
 from pareto_monoped.cad.check.limits import OVERLAP
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.shape.meshes import TOLERANCE_MM
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
+
+_LEAST_MM2 = 1e-9
+"""Areas below this are rounding: over the height of any part they make less than the least volume of an overlap."""
 
 
 def check(product: Product) -> Check:
@@ -45,16 +51,18 @@ class _Stack:
         rows: per prism the least and greatest radius, the low and high end along the axis, in mm; shape (n, 4).
         bores: per round hole the number of its prism, x and y of its axis (in the assembly x and z) and its radius;
             shape (m, 4).
+        sections: per row the flat shape that its triangles are made from, or one around it.
     """
 
     axis: NDArray[np.float64]
     rows: NDArray[np.float64]
     bores: NDArray[np.float64]
+    sections: tuple[m3.CrossSection, ...]
 
 
 def _record(part: Part) -> _Stack | None:
     """The layers of a part in its own frame; None if it is not made of prisms only."""
-    rows, bores = [], []
+    rows, bores, sections = [], [], []
     for number, prism in enumerate(part.prisms):
         inner = [_bore_radius(hole) for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
         greatest = max(float(np.hypot(*points.T).max()) for points in all_polygons([prism.outline]))
@@ -63,14 +71,20 @@ def _record(part: Part) -> _Stack | None:
             if isinstance(hole, Circle | Pattern):
                 centres = hole.centres_mm() if isinstance(hole, Pattern) else [(float(hole.x_mm), float(hole.y_mm))]
                 bores += [(float(number), x, y, float(hole.radius_mm)) for x, y in centres]
+        sections.append(_section([prism.outline]) - _section(prism.holes) if prism.holes else _section([prism.outline]))
     # A head counts as a cylinder as wide as its face: the question is only whether the meshes need a look.
     for head in part.features:
         if isinstance(head, CountersunkHead):
             (bevel,) = head.bevels
             rows.append((0.0, float(head.radius_mm), float(bevel.face_mm), float(bevel.end_mm)))
+            sections.append(_section([Circle(radius_mm=head.radius_mm)]))
     if not rows or part.balls:
         return None
-    return _Stack(axis=np.zeros(2), rows=np.array(rows), bores=np.array(bores).reshape(-1, 4))
+    return _Stack(axis=np.zeros(2), rows=np.array(rows), bores=np.array(bores).reshape(-1, 4), sections=tuple(sections))
+
+
+def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
+    return m3.CrossSection(all_polygons(shapes, TOLERANCE_MM), m3.FillRule.NonZero)
 
 
 def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
@@ -81,7 +95,9 @@ def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
     rows, bores = record.rows.copy(), record.bores.copy()
     rows[:, 2:] = np.sort(world[1, 2] * rows[:, 2:] + world[1, 3], axis=1)
     bores[:, 1:3] = bores[:, 1:3] @ world[[0, 2], :2].T + world[[0, 2], 3]
-    return _Stack(axis=world[[0, 2], 3], rows=rows, bores=bores)
+    flat = world[[0, 2]][:, [0, 1, 3]]
+    sections = tuple(section.transform(flat) for section in record.sections)
+    return _Stack(axis=world[[0, 2], 3], rows=rows, bores=bores, sections=sections)
 
 
 def _bore_radius(hole: Circle | InternalGear) -> float:
@@ -96,7 +112,12 @@ def _apart(one: _Stack | None, other: _Stack | None) -> bool:
     if one is None or other is None:
         return False
     on_one_axis = float(np.abs(one.axis - other.axis).max()) <= TOUCH_MM
-    return (on_one_axis and _as_rings(one, other)) or _in_holes(one, other) or _in_holes(other, one)
+    return (
+        (on_one_axis and _as_rings(one, other))
+        or _in_holes(one, other)
+        or _in_holes(other, one)
+        or _in_layers(one, other)
+    )
 
 
 def _common(one: _Stack, other: _Stack) -> NDArray[np.bool_]:
@@ -119,3 +140,10 @@ def _in_holes(one: _Stack, other: _Stack) -> bool:
     widest = np.zeros(len(other.rows))
     np.maximum.at(widest, other.bores[:, 0].astype(np.intp), room)
     return bool(np.all(one.rows[:, 1, None] <= widest[None] + TOUCH_MM, where=beside))
+
+
+def _in_layers(one: _Stack, other: _Stack) -> bool:
+    """Whether the flat shapes of two layers with a common stretch of the axis never have an area in common."""
+    return all(
+        (one.sections[a] ^ other.sections[b]).area() <= _LEAST_MM2 for a, b in np.argwhere(_common(one, other)).tolist()
+    )
