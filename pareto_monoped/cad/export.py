@@ -15,6 +15,7 @@ from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.elsewhere import order
 from pareto_monoped.cad.kernel import client as kernel
+from pareto_monoped.cad.picture.drawing import prepare
 from pareto_monoped.cad.product import Product, build_product
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.checks_record import checks_record
@@ -93,7 +94,7 @@ def export_design(
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
-    with _second_process():
+    with _second_process(draws=bool({"assembly", "png"} & set(wanted))):
         built = built_of(design, actuator_map, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
         progress("building")
         product = build_product(built.robot, built.pose)
@@ -139,9 +140,15 @@ def export_design(
 
 
 @contextmanager
-def _second_process() -> Iterator[None]:
-    """Start the kernel's process; after an exception nobody waits for it."""
+def _second_process(*, draws: bool) -> Iterator[None]:
+    """Start the kernel's process; after an exception nobody waits for it.
+
+    Args:
+        draws: whether it will have to draw pictures, for which it can get ready at once.
+    """
     kernel.start()
+    if draws:
+        kernel.do(prepare)
     try:
         yield
     except BaseException:

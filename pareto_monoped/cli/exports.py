@@ -76,8 +76,12 @@ def export(
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
     from pareto_monoped.cad.interrupt import ending_at
+    from pareto_monoped.cad.kernel import client as kernel
 
     with ending_at(signal.SIGINT):
+        if not whole_front:
+            # It loads meanwhile; the exports of a front have kernels of their own.
+            kernel.start()
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
         from pareto_monoped.pareto.pick import pick

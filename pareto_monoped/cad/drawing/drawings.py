@@ -51,10 +51,16 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
     )
 
 
-def part_drawings(parts: Sequence[ListedPart], origin: Origin) -> dict[str, bytes]:
-    """The drawing of every part that is not bought, by the part's name."""
+def part_drawings(parts: Sequence[ListedPart], origin: Origin, first: int = 1) -> dict[str, bytes]:
+    """The drawing of every part that is not bought, by the part's name.
+
+    Args:
+        parts: some of the robot's.
+        origin: of the robot.
+        first: number of the first drawing.
+    """
     made = [unique for unique in parts if unique.part.process != "bought"]
-    return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, 1)}
+    return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, first)}
 
 
 def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:

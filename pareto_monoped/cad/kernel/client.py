@@ -4,7 +4,8 @@ The kernel holds Python's lock while it works, so that a thread would gain nothi
 and writes solids while this one simulates, makes meshes and draws. The process is started once and serves every later
 export. It ends with this one, or by ``give_up``: it keeps nothing, so that it is killed and nobody waits for it.
 
-An export so has two processes. Once the solids are made the second one also draws, see ``do``.
+An export so has two processes. Once the solids are made the second one also draws, see ``do``. What it has not begun
+when the first one has nothing else to do is done there, see ``help_out``, so that both end at about the same time.
 """
 
 import atexit
@@ -12,24 +13,27 @@ import os
 import pickle
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from queue import SimpleQueue
-from threading import Thread
-from typing import Any, TypeVar
+from threading import Condition, Thread
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.geometry.parts import Part
+if TYPE_CHECKING:
+    # Not at run time: the process is to start before anything else is imported.
+    from pareto_monoped.geometry.parts import Part
 
 Floats = NDArray[np.float64]
 Answer = TypeVar("Answer")
 Question = str | Callable[..., Any]
 """What is asked: the name of an answer that needs the CAD kernel, or a function of any module."""
+Asked = tuple["Future[Any]", Question, tuple[Any, ...]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +74,7 @@ class StepAssembly:
     """
 
     name: str
-    parts: Mapping[str, Part]
+    parts: "Mapping[str, Part]"
     units: Mapping[str, tuple[StepPlacement, ...]]
 
 
@@ -94,7 +98,7 @@ def kill() -> None:
         _process().process.kill()
 
 
-def solid_facts(parts: Sequence[Part]) -> "Future[list[SolidFacts]]":
+def solid_facts(parts: "Sequence[Part]") -> "Future[list[SolidFacts]]":
     """Facts of the solids of some parts, in their order."""
     return _process().ask("solid_facts", (list(parts),))
 
@@ -105,13 +109,29 @@ def step_files(assembly: StepAssembly) -> "Future[tuple[bytes, dict[str, bytes]]
 
 
 def do(function: Callable[..., Answer], *arguments: Any) -> "Future[Answer]":
-    """Call a function in the kernel's process, once it has answered all earlier questions.
+    """Call a function in the kernel's process, once it has answered all earlier questions, or here in ``help_out``.
 
     Args:
         function: of a module, as it is sent by its name.
         arguments: all that it needs; they are copied.
     """
     return _process().ask(function, arguments)
+
+
+def help_out() -> None:
+    """Answer here what the kernel has not begun, from what was asked last; what only the kernel can answer is left."""
+    if not _process.cache_info().currsize:
+        return
+    process = _process()
+    while (asked := process.taken_back()) is not None:
+        future, function, arguments = asked
+        assert callable(function)
+        try:
+            answer = function(*arguments)
+        except Exception as problem:
+            future.set_exception(problem)
+        else:
+            future.set_result(answer)
 
 
 class _Process:
@@ -128,8 +148,10 @@ class _Process:
             env=environment,
             process_group=0,
         )
-        self.questions: SimpleQueue[tuple[Future[Any], Question, tuple[Any, ...]] | None] = SimpleQueue()
-        self.last: Future[Any] | None = None
+        self.waiting: deque[Asked] = deque()
+        self.changed = Condition()
+        self.closed = False
+        self.asked: list[Future[Any]] = []
         # A daemon: the end of this process does not wait for an answer.
         self.line = Thread(target=self._serve, name="cad-kernel", daemon=True)
         self.line.start()
@@ -137,14 +159,30 @@ class _Process:
 
     def ask(self, question: Question, arguments: tuple[Any, ...]) -> "Future[Any]":
         future: Future[Any] = Future()
-        self.last = future
-        self.questions.put((future, question, arguments))
+        with self.changed:
+            self.asked = [earlier for earlier in self.asked if not earlier.done()] + [future]
+            self.waiting.append((future, question, arguments))
+            self.changed.notify()
         return future
 
+    def taken_back(self) -> Asked | None:
+        """The question asked last of those that are not begun and can be answered anywhere; it is not asked then."""
+        with self.changed:
+            for place in reversed(range(len(self.waiting))):
+                if callable(self.waiting[place][1]):
+                    asked = self.waiting[place]
+                    del self.waiting[place]
+                    return asked
+        return None
+
     def _serve(self) -> None:
-        """Ask one question after the other until None comes."""
-        while (asked := self.questions.get()) is not None:
-            future, question, arguments = asked
+        """Ask one question after the other until the process is closed; then those that are left fail."""
+        while True:
+            with self.changed:
+                self.changed.wait_for(lambda: self.closed or self.waiting)
+                if not self.waiting:
+                    return
+                future, question, arguments = self.waiting.popleft()
             try:
                 answer = self._talk(question, arguments)
             except Exception as problem:
@@ -174,14 +212,16 @@ class _Process:
 
     @property
     def owes(self) -> bool:
-        """Whether a question is unanswered; they are answered in their order."""
-        return self.last is not None and not self.last.done()
+        """Whether a question is unanswered."""
+        return any(not future.done() for future in self.asked)
 
     def close(self) -> None:
         """End the process, whatever it works at."""
         atexit.unregister(self.close)
         self.process.kill()
-        self.questions.put(None)
+        with self.changed:
+            self.closed = True
+            self.changed.notify()
         self.line.join()
         for stream in (self.process.stdin, self.process.stdout):
             if stream is not None and not stream.closed:

@@ -160,6 +160,12 @@ def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float
     )
 
 
+def prepare() -> None:
+    """Load what draws triangles, which takes longer than a picture."""
+    nowhere = Faces(box_mm=np.array([[0.0] * 3, [1.0] * 3]), corners_mm=np.zeros((0, 3, 3)), light=np.zeros(0))
+    draw_faces([Shown(faces=nowhere, colour=(0.0, 0.0, 0.0), number=0, move_mm=np.zeros(3))], width=1, height=1)
+
+
 def png(image: NDArray[np.uint8]) -> bytes:
     """The bytes of a PNG file (ISO 15948) of an RGB image, shape (height, width, 3)."""
     height, width, _ = image.shape

@@ -83,6 +83,11 @@ def test_drawings_are_the_same_bytes_each_time(product, origin):
     assert assembly_drawing(product, origin) == assembly_drawing(product, origin)
 
 
+def test_some_drawings_are_the_same_as_all_of_them_from_their_first_number(product, origin):
+    made = [unique for unique in product.unique if unique.part.process != "bought"][:5]
+    assert part_drawings(made[:2], origin) | part_drawings(made[2:], origin, 3) == part_drawings(made, origin)
+
+
 def test_the_date_is_the_design_s_and_nothing_else(product, origin):
     (content, *_) = part_drawings(product.unique[:3], origin).values()
     assert "2025-03-04" in texts(content)

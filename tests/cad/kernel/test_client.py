@@ -3,6 +3,7 @@
 import dataclasses
 import os
 import signal
+import time
 
 import numpy as np
 import pytest
@@ -78,6 +79,41 @@ def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting():
     with pytest.raises(RuntimeError, match="process ended"):
         owed.result()
     assert kernel.solid_facts([PLATE]).result()[0].valid
+
+
+def test_what_a_busy_kernel_has_not_begun_is_done_here_from_the_last():
+    kernel.start()
+    process = kernel._process().process
+    process.send_signal(signal.SIGSTOP)
+    try:
+        begun, owed = kernel.do(os.getpid), kernel.solid_facts([PLATE])
+        while len(kernel._process().waiting) > 1:  # until the first is asked
+            time.sleep(0.01)
+        others = [
+            kernel.do(os.getpid),
+            kernel.do(divmod, 1, 0),
+            kernel.do(time.monotonic_ns),
+            kernel.do(time.monotonic_ns),
+        ]
+        kernel.help_out()
+        assert [future.done() for future in (begun, owed, *others)] == [False, False, True, True, True, True]
+        assert others[0].result() == os.getpid()
+        with pytest.raises(ZeroDivisionError, match="division"):
+            others[1].result()
+        assert others[3].result() < others[2].result()
+    finally:
+        process.send_signal(signal.SIGCONT)
+    # What only the kernel can answer waits for it.
+    assert owed.result()[0].valid
+    assert begun.result() == process.pid
+
+
+def test_nobody_is_started_to_help():
+    kernel.start()
+    kernel._process().close()
+    kernel._process.cache_clear()
+    kernel.help_out()
+    assert kernel._process.cache_info().currsize == 0
 
 
 def test_an_idle_kernel_is_kept():
