@@ -182,6 +182,7 @@ class _Slabs:
         self.section = [piece.section for piece in pieces]
         self.slim = [piece.section.offset(-_SLIDE_MM, m3.JoinType.Miter) for piece in pieces]
         self.bounds = np.array([piece.section.bounds() for piece in pieces])
+        self.corners = np.array([piece.section.num_vert() for piece in pieces])
 
     def along(self) -> Bools:
         """True at (i, j) where body i, moved along +y, runs into body j."""
@@ -190,7 +191,7 @@ class _Slabs:
         before = self.low[None] > self.high[:, None] - _TOUCH_MM
         before &= self.owner[:, None] != self.owner[None]
         before &= self._covering(self.bounds)
-        for a, b in np.argwhere(before).tolist():
+        for a, b in self._simple_first(before):
             i, j = int(self.owner[a]), int(self.owner[b])
             if not found[i, j] and (self.slim[a] ^ self.section[b]).area() > _AREA_MM2:
                 found[i, j] = True
@@ -220,7 +221,7 @@ class _Slabs:
         common = np.minimum(self.high[:, None], self.high[None]) - np.maximum(self.low[:, None], self.low[None])
         near = (common > -_PLAY_MM) & (self.owner[:, None] < self.owner[None]) & self._covering(self.bounds + margin)
         wide: dict[int, m3.CrossSection] = {}
-        for a, b in np.argwhere(near).tolist():
+        for a, b in self._simple_first(near):
             i, j = int(self.owner[a]), int(self.owner[b])
             if found[i, j]:
                 continue
@@ -319,6 +320,11 @@ class _Slabs:
         """Of some slabs the widest: the head of a screw."""
         size = self.bounds[own]
         return int(own[int(np.argmax(size[:, 2] - size[:, 0]))])
+
+    def _simple_first(self, pairs: Bools) -> list[list[int]]:
+        """The pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
+        found = np.argwhere(pairs)
+        return list(found[np.argsort(self.corners[found].sum(axis=1), kind="stable")].tolist())
 
     def _covering(self, bounds: NDArray[np.float64]) -> Bools:
         """Which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""

@@ -183,7 +183,7 @@ def _candidates(
     for mask in dict.fromkeys([*seeds, *reach]):
         pieces = list(_pieces(touching, mask))
         # A piece may run into another that it does not touch.
-        yield from (piece for piece in pieces if _united(reach, _bits(piece)) == piece)
+        yield from (piece for piece in pieces if _united_in(reach, piece) == piece)
         if len(pieces) > 1:
             yield mask
 
@@ -209,12 +209,22 @@ def _united(masks: Sequence[int], members: Iterable[int]) -> int:
     return found
 
 
+def _united_in(masks: Sequence[int], members: int) -> int:
+    """The same for members that are the bits of a mask."""
+    found = 0
+    while members:
+        low = members & -members
+        found |= masks[low.bit_length() - 1]
+        members ^= low
+    return found
+
+
 def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
     """The pieces into which a set of bodies falls, as masks, from that of the lowest body."""
     while mask:
         piece = fresh = mask & -mask
         while fresh:
-            fresh = _united(touching, _bits(fresh)) & mask & ~piece
+            fresh = _united_in(touching, fresh) & mask & ~piece
             piece |= fresh
         yield piece
         mask &= ~piece

@@ -7,7 +7,7 @@ Joints turn about parallel axes. Two parts can therefore only meet if their exte
 their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import manifold3d as m3
@@ -34,11 +34,14 @@ Bodies = dict[str, list[tuple[Instance, m3.Manifold]]]
 
 def check(product: Product) -> tuple[Check, Check, Check]:
     """Look for parts that meet, at the angles where stops meet, and at the clearance between shank and base."""
-    found, clearance_mm = in_working_range(product)
+    by_body = _by_body(product)
+    turns = _turns(product, by_body)
+    found = [overlap for turn in turns for overlap in _while_turning(turn)]
+    clearance_mm = _shank_clearance_mm(product, by_body)
     text = f"shank and base come {-clearance_mm:.1f} mm into each other's reach"
     return (
         deepest(FREE_MOTION, "hip and knee through their working ranges", found),
-        worst_of(END_STOP, "bumpers and strikers at both ends of hip and knee", list(_stop_errors(product))),
+        worst_of(END_STOP, "bumpers and strikers at both ends of hip and knee", list(_stop_errors(turns))),
         worst_of(SHANK_CLEARANCE, "any hip angle, the knee's working range", [Finding(value=clearance_mm, text=text)]),
     )
 
@@ -50,34 +53,22 @@ class _Turn:
     Attributes:
         name: of the joint.
         stop: its end stops.
-        fixed, moving: the parts of the body that stands still and of the one that turns, at angle zero.
+        pairs: a part of the body that stands still and one of the body that turns, at angle zero; those that turning
+            can bring together.
         soft: names of the bumpers.
         strikers: names of the strikers.
     """
 
     name: str
     stop: JointStop
-    fixed: tuple[PlacedMesh, ...]
-    moving: tuple[PlacedMesh, ...]
+    pairs: tuple[tuple[PlacedMesh, PlacedMesh], ...]
     soft: frozenset[str]
     strikers: frozenset[str]
-
-    def pairs(self) -> Iterator[tuple[PlacedMesh, PlacedMesh]]:
-        """Parts of both sides that turning can bring together."""
-        reach = {mesh.name: radii_mm(mesh) for mesh in (*self.fixed, *self.moving)}
-        return ((a, b) for a in self.fixed for b in self.moving if _may_meet(a, b, reach))
 
     def meet_in_stop(self, one: PlacedMesh, other: PlacedMesh) -> bool:
         """Whether one part is a bumper and the other a striker."""
         names = {one.name, other.name}
         return bool(names & self.soft) and bool(names & self.strikers)
-
-
-def in_working_range(product: Product) -> tuple[list[Overlap], float]:
-    """Overlaps while hip and knee move through their working ranges, and the shank's distance from the base in mm."""
-    by_body = _by_body(product)
-    overlaps = [overlap for turn in _turns(product, by_body) for overlap in _while_turning(turn)]
-    return overlaps, _shank_clearance_mm(product, by_body)
 
 
 def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
@@ -102,11 +93,12 @@ def _turn(
     def named(role: Role) -> frozenset[str]:
         return frozenset(instance.name for instance, _ in (*fixed, *moving) if instance.part.role is role)
 
+    still, turning = ([PlacedMesh.of(i.name, body, frame @ i.world) for i, body in side] for side in (fixed, moving))
+    reach = {mesh.name: radii_mm(mesh) for mesh in (*still, *turning)}
     return _Turn(
         name=name,
         stop=stop,
-        fixed=tuple(PlacedMesh.of(i.name, body, frame @ i.world) for i, body in fixed),
-        moving=tuple(PlacedMesh.of(i.name, body, frame @ i.world) for i, body in moving),
+        pairs=tuple((a, b) for a in still for b in turning if _may_meet(a, b, reach)),
         soft=named(Role.BUMPER),
         strikers=named(Role.STRIKER),
     )
@@ -124,12 +116,11 @@ def _by_body(product: Product) -> Bodies:
 
 def _while_turning(turn: _Turn) -> Iterator[Overlap]:
     """Overlaps of the parts of two bodies while one turns about the joint between them."""
-    pairs = list(turn.pairs())
     stop = turn.stop
     for angle in _angles(stop):
         squeezed = not stop.lower_rad <= angle <= stop.upper_rad
         turned: dict[str, PlacedMesh] = {}
-        for one, other in pairs:
+        for one, other in turn.pairs:
             if squeezed and {one.name, other.name} & turn.soft:
                 continue
             if other.name not in turned:
@@ -146,10 +137,10 @@ def _angles(stop: JointStop) -> NDArray[np.float64]:
     return np.array([stop.lower_rad - stop.travel_rad, *inside, stop.upper_rad + stop.travel_rad])
 
 
-def _stop_errors(product: Product) -> Iterator[Finding]:
+def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
     """By how much each end stop meets at another angle than the joint's range ends at, in degrees."""
-    for turn in _turns(product, _by_body(product)):
-        pairs = [pair for pair in turn.pairs() if turn.meet_in_stop(*pair)]
+    for turn in turns:
+        pairs = [pair for pair in turn.pairs if turn.meet_in_stop(*pair)]
         stop = turn.stop
         for end_rad, sign in ((stop.lower_rad, -1.0), (stop.upper_rad, 1.0)):
             middle_rad = 0.5 * (stop.lower_rad + stop.upper_rad)
@@ -203,9 +194,15 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
         for instance, body in by_body["shank"]:
             mesh = PlacedMesh.of(instance.name, body, frame @ instance.in_body)
             beside = (low < mesh.high[1] - TOUCH_MM) & (mesh.low[1] < high - TOUCH_MM)
-            if np.any(beside):
+            # The distance of a mesh is at least that of its box, which often shows that it is not the nearest.
+            if np.any(beside) and _from_axis_mm(mesh) - np.max(reach[beside]) < clearance:
                 clearance = min(clearance, radii_mm(mesh)[0] - np.max(reach[beside]))
     return float(clearance)
+
+
+def _from_axis_mm(mesh: PlacedMesh) -> float:
+    """Least distance of a mesh's box from the y axis."""
+    return float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
 
 
 def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:

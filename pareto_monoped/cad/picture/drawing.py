@@ -7,6 +7,7 @@ import struct
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,11 +95,18 @@ class View:
 
     def axes(self) -> Floats:
         """Rows: right, up and towards the viewer, in the scene's frame."""
-        back = -np.asarray(self.towards, dtype=np.float64)
-        back /= np.linalg.norm(back)
-        right = np.cross(self.up, back)
-        right /= np.linalg.norm(right)
-        return np.stack([right, np.cross(back, right), back])
+        return _axes(self)
+
+
+@lru_cache(maxsize=16)
+def _axes(view: View) -> Floats:
+    back = -np.asarray(view.towards, dtype=np.float64)
+    back /= np.linalg.norm(back)
+    right = np.cross(view.up, back)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(back, right), back])
+    axes.flags.writeable = False
+    return axes
 
 
 def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> Faces:

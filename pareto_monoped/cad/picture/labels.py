@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -177,6 +178,7 @@ def _legend(pen: "ImageDraw", rows: Sequence[Row], left: int, height: int) -> No
         pen.text((left + 42 + step, top + 0.45 * step), row.text, fill=_BLACK, font=font, anchor="lm")
 
 
+@lru_cache(maxsize=32)
 def _font(size: float) -> "FreeTypeFont":
     from PIL import ImageFont
 

@@ -83,9 +83,16 @@ def shell_of(part: Part, tolerance_mm: float) -> tuple[NDArray[np.float64], NDAr
     Returns:
         points in millimetres, shape (n, 3), and indices of points, shape (m, 3).
     """
-    left = [bevel for bevel in part.bevels if has_cone(bevel)]
+    return _shell(part.prisms, part.balls, part.bevels, tolerance_mm)
+
+
+@lru_cache(maxsize=256)
+def _shell(
+    prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], tolerance_mm: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    left = [bevel for bevel in bevels if has_cone(bevel)]
     points, triangles, count = [], [], 0
-    pieces: list[Prism | Ball] = [*regrouped(part.prisms), *part.balls]
+    pieces: list[Prism | Ball] = [*regrouped(prisms), *balls]
     for piece in pieces:
         body = _extruded(piece, tolerance_mm) if isinstance(piece, Prism) else _ball(piece, tolerance_mm)
         mesh = mesh_from(body)
