@@ -73,28 +73,11 @@ def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:
 
 
 def rebound_rad_per_s(stop: EndStop, speed_rad_per_s: float, inertia_kg_m2: float) -> float:
-    """Speed at which a free inertia leaves a stop that it met at a speed, by Runge and Kutta's method.
+    """Speed at which a free inertia leaves a stop that it met at a speed, see ``rebound.rebound``.
 
     The stop pushes and never pulls.
     """
-    full, width = stop.impedance, stop.width_rad
+    from pareto_monoped.jump.rebound import rebound
 
-    def deceleration(r: float, v: float) -> float:
-        u = min(max(r / width, 0.0), 1.0)
-        share = u * (1.0 - full) / (1.0 - full * u)
-        torque = share * (stop.stiffness_n_m_per_rad * u * r + stop.damping_n_m_s_per_rad * v)
-        return max(0.0, torque) * (1.0 - full * u) / inertia_kg_m2  # the virtual inertia adds d / (1 - d)
-
-    r, v = 0.0, speed_rad_per_s
-    h = 0.005 * width / speed_rad_per_s
-    while r >= 0.0:
-        a1 = deceleration(r, v)
-        v2 = v - 0.5 * h * a1
-        a2 = deceleration(r + 0.5 * h * v, v2)
-        v3 = v - 0.5 * h * a2
-        a3 = deceleration(r + 0.5 * h * v2, v3)
-        v4 = v - h * a3
-        a4 = deceleration(r + h * v3, v4)
-        r += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
-        v -= h * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
-    return -v
+    stiffness, damping = stop.stiffness_n_m_per_rad, stop.damping_n_m_s_per_rad
+    return float(rebound(speed_rad_per_s, stop.width_rad, stop.impedance, stiffness, damping, inertia_kg_m2))

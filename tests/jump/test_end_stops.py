@@ -1,5 +1,7 @@
 """The simulated end stops against the law of the parts, and against MuJoCo."""
 
+import dataclasses
+
 import mujoco
 import numpy as np
 import pytest
@@ -7,7 +9,14 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, Design
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.end_stops import IMPACT_KG_M2, IMPACT_M_PER_S, end_stops, simulated, slow_torque_n_m
+from pareto_monoped.jump.end_stops import (
+    IMPACT_KG_M2,
+    IMPACT_M_PER_S,
+    end_stops,
+    rebound_rad_per_s,
+    simulated,
+    slow_torque_n_m,
+)
 from pareto_monoped.jump.single import simulate
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.stops import hip_stop, knee_stop
@@ -80,6 +89,33 @@ def test_an_impact_gives_back_what_the_elastomer_does(part):
             break
     share = (data.qvel[0] / speed) ** 2
     assert share == pytest.approx(part.bumper.elastomer.rebound_resilience, abs=0.001)
+
+
+def plain_rebound(stop, speed, inertia):
+    """The same by Runge and Kutta's method in plain Python."""
+
+    def acceleration(r, v):
+        u = min(max(r / stop.width_rad, 0.0), 1.0)
+        torque = stop.stiffness_n_m_per_rad * u * r + stop.damping_n_m_s_per_rad * v
+        virtual = 1.0 / (1.0 - stop.impedance * u)
+        return -max(0.0, u * (1.0 - stop.impedance) * virtual * torque) / (inertia * virtual)
+
+    r, v, h = 0.0, speed, 0.005 * stop.width_rad / speed
+    while r >= 0.0:
+        k1 = v, acceleration(r, v)
+        k2 = v + 0.5 * h * k1[1], acceleration(r + 0.5 * h * k1[0], v + 0.5 * h * k1[1])
+        k3 = v + 0.5 * h * k2[1], acceleration(r + 0.5 * h * k2[0], v + 0.5 * h * k2[1])
+        k4 = v + h * k3[1], acceleration(r + h * k3[0], v + h * k3[1])
+        r += h / 6.0 * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0])
+        v += h / 6.0 * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1])
+    return -v
+
+
+@both
+@pytest.mark.parametrize("damping", [0.0, 0.3, 1.0, 4.0])
+def test_the_compiled_rebound_is_that_of_plain_python(part, damping):
+    stop = dataclasses.replace(simulated(part), damping_n_m_s_per_rad=damping)
+    assert rebound_rad_per_s(stop, 80.0, 0.031) == pytest.approx(plain_rebound(stop, 80.0, 0.031), rel=1e-12)
 
 
 def test_stops_come_from_the_calibration_or_the_parts():

@@ -32,7 +32,8 @@ def check(product: Product) -> Check:
 def in_pose(product: Product) -> tuple[list[Overlap], int]:
     """Overlaps of all pairs of instances in the product's pose, and the number of pairs."""
     meshes = [PlacedMesh.of(i.name, k.mesh.body, i.world) for i, k in product.placed()]
-    records = {id(instance.part): _record(instance.part) for instance in product.instances}
+    parts = {id(instance.part): instance.part for instance in product.instances}
+    records = {key: _record(part) for key, part in parts.items()}
     stacks = {instance.name: _stack(instance, records[id(instance.part)]) for instance in product.instances}
     found: list[Overlap] = []
     for one, other in near(meshes):
