@@ -3,11 +3,13 @@
 Run: python benchmarks/cad_export.py
 
 Prints JSON. The aims are 15 s in a new process and 6 s in a running one, on two cores. The exports in ``later_s`` are
-of other designs than the first, so that the process has to build most of their actuators' parts.
+of other designs than the first, so that the process has to build most of their actuators' parts. The processor time of
+a new process is that of both of its processes; on two cores that have nothing else to do, half of it is the least time.
 """
 
 import json
 import os
+import resource
 import statistics
 import subprocess
 import sys
@@ -21,13 +23,14 @@ _LATER = ("nominal", "A", "B", "C", "nominal", "A")
 
 def main() -> None:
     with tempfile.TemporaryDirectory() as place:
-        fresh = []
+        fresh, processor = [], []
         for number in range(_FRESH):
-            started = time.perf_counter()
+            started, used = time.perf_counter(), _used_s()
             folder = Path(place) / f"fresh_{number}"
             command = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "-o", str(folder)]
             subprocess.run(command, check=True, capture_output=True)
             fresh.append(round(time.perf_counter() - started, 2))
+            processor.append(round(_used_s() - used, 2))
 
         from pareto_monoped.actuator.search import map_for
         from pareto_monoped.cad.export import export_design
@@ -46,11 +49,18 @@ def main() -> None:
             later.append(round(time.perf_counter() - started, 2))
     found = {
         "fresh_s": {"median": statistics.median(fresh), "all": fresh},
+        "fresh_processor_s": {"median": statistics.median(processor), "all": processor},
         "later_s": {"median": round(statistics.median(later), 2), "all": later},
         "load": [round(value, 1) for value in os.getloadavg()],
         "checks": {check.name: check.worst for check in summary.checks},
     }
     print(json.dumps(found, indent=2))
+
+
+def _used_s() -> float:
+    """Processor time of all processes that have ended, by user and system."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 if __name__ == "__main__":
