@@ -106,6 +106,10 @@ class GearGrade:
         treatment: which S-N curves and notch factors apply.
         quality: quality grade of material and treatment.
         hardness_hv: Vickers hardness of the flank.
+        hardness: limits of the flank's hardness in words, with their scale.
+        core_hardness: likewise of the core.
+        making: steps by which teeth are made, in their order.
+        layer_modules: limits of the depth of case or nitriding layer in finished teeth, in modules; None without one.
         flank_limit_mpa: allowable contact stress number sigma_H,lim.
         root_limit_mpa: nominal bending stress number sigma_F,lim of the standard test gear.
         yield_mpa: 0.2 % proof stress of the core.
@@ -118,15 +122,19 @@ class GearGrade:
     treatment: Treatment
     quality: Literal["ML", "MQ", "ME"]
     hardness_hv: Positive
+    hardness: str
+    core_hardness: str
+    making: str
     flank_limit_mpa: Positive
     root_limit_mpa: Positive
     yield_mpa: Positive
     slip_layer_mm: Positive
+    layer_modules: tuple[Positive, Positive] | None = None
 
     @property
-    def hardness(self) -> str:
-        """In words, with its scale; a nitrided flank is hard in its layer only."""
-        return f"{self.hardness_hv:g} HV"
+    def layer(self) -> str:
+        """Which depth ``layer_modules`` means: to 550 HV, or to 50 HV above the core (ISO 18203)."""
+        return {"case_hardened": "CHD", "nitrided": "NHD", "through_hardened": ""}[self.treatment]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

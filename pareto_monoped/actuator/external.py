@@ -19,7 +19,8 @@ from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
+from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, hub_note, spline_note
+from pareto_monoped.actuator.tooth_making import made, rated_teeth, spline_teeth
 from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
@@ -95,8 +96,10 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
+            teeth=made(rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings), spline_teeth(spline, settings)),
             fits=(Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),),
-            note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
+            note=f"one piece with its shaft, {spline_note(spline, data.spline.sun_shaft_radius_mm)}; "
+            + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(
@@ -115,12 +118,13 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             ),
             process="machined",
             group=Group.ROTOR,
+            teeth=(spline_teeth(spline, settings),),
             grade=ALLOYS["aw_7075_t6"],
             fits=(COUPLING_DOWEL.hole_fit,),
             features=(
                 clearance(_output_screw(output), (through,), shell.z_motor, shell.z_coupling, countersunk="high"),
             ),
-            note=f"screwed to the motor's turning face; bore {HUB_NOTE}",
+            note=f"screwed to the motor's turning face; bore {hub_note(settings)}",
         ),
         _coupling_dowels(shell, motor, settings),
     )

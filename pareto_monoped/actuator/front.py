@@ -17,10 +17,12 @@ from pareto_monoped.actuator.features import (
 from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.tooth_making import made, rated_teeth
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
 from pareto_monoped.geometry.features import Hole, bored, turned
-from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
+from pareto_monoped.geometry.iso286 import limits
+from pareto_monoped.geometry.making import Fit, raceway_note
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
@@ -33,6 +35,11 @@ _PIN_SPARE_MM = 2.0
 """How much deeper its hole is, for the tap's lead."""
 _WEB_THREAD_MM = 5.0
 """Of the screw in a web: M3 x 10 through the second carrier. Its hole ends before the shortest web does."""
+_PIN_ZONE, _RACEWAY_ZONE = "m6", "F7"
+"""Of a planet's pin, and of the bore in which needles run around it."""
+_RACEWAY_CASE = 0.1
+"""Least case depth of a raceway over the rolling elements' diameter, for loads up to C0 (SKF, Raceways on shafts and in
+housings)."""
 _RIM_TOOTH_DEPTHS = 1.2
 """Least rim under the planet's roots, in tooth depths (AGMA 2001-D04, rim thickness factor 1)."""
 _RING_HEIGHT_MM = 2.0
@@ -76,6 +83,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     pin_tap = pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM
     pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
+    needles = settings.planet_bearing == "needles"
     return (
         Part(
             name="planet",
@@ -96,7 +104,8 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                     pressed=settings.planet_bearing == "bushes",
                 ),
             ),
-            note=gear_note(gears.planet(data.gears.backlash_mm), settings),
+            teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings)),
+            note=_planet_note(gears.planet(data.gears.backlash_mm), settings),
             fits=planet_fits(settings),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
             if settings.planet_bearing == "bushes"
@@ -116,14 +125,14 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
             process="machined",
             group=Group.OUTPUT,
-            grade=ALLOYS["dowel"],
-            fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="m6"),),
+            grade=ALLOYS["raceway_pin" if needles else "dowel"],
+            fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone=_PIN_ZONE, raceway=needles),),
             features=(
                 tapped(M3, (Circle(radius_mm=M3.core),), pin_low, pin_tap, enters="low", usable_mm=_PIN_THREAD_MM),
                 turned(pin, pin_low, 1.0, pressed=True),
                 turned(pin, pin_front, -1.0, pressed=True),
             ),
-            note="dowel",
+            note=f"{_raceway(carrier.pin_diameter_mm, _PIN_ZONE)}; M3 tapped before hardening" if needles else "dowel",
             joint=Joint(kind=JointKind.PRESSED, how="pressed into secondary_carrier and", partner="carrier"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -152,6 +161,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.HOUSING,
             grade=gear_grade(settings, settings.gear_steels.ring),
             accuracy_class=gear_accuracy(settings),
+            teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings)),
             note=gear_note(gears.ring(data.gears.backlash_mm), settings),
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
         ),
@@ -160,8 +170,26 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
     """Tolerance of the planets' bores: with needles, a raceway that leaves them 1 to 24 um on a pin of m6."""
-    zone = "H7" if settings.planet_bearing == "bushes" else "F7"
-    return (Fit(diameter_mm=settings.planet_bore_mm, zone=zone, seat=True),)
+    needles = settings.planet_bearing == "needles"
+    return (
+        Fit(diameter_mm=settings.planet_bore_mm, zone=_RACEWAY_ZONE if needles else "H7", seat=True, raceway=needles),
+    )
+
+
+def _planet_note(gear: ExternalGear, settings: ActuatorSettings) -> str:
+    """A planet's note; with needles, what its bore needs as their outer raceway."""
+    note = gear_note(gear, settings)
+    if settings.planet_bearing == "bushes" or not note:
+        return note
+    case = ""
+    if settings.gear_steels.planet.treatment == "case_hardened":
+        case = f", case of {_RACEWAY_CASE * settings.parts.needles.diameter_mm:.2f} mm or more after honing"
+    return f"{note}; bore is {_raceway(settings.planet_bore_mm, _RACEWAY_ZONE)}{case}"
+
+
+def _raceway(diameter_mm: float, zone: str) -> str:
+    found = limits(diameter_mm, zone)
+    return raceway_note(found.upper_mm - found.lower_mm)
 
 
 def z_pin_front(thread_depth_mm: float, diaphragm_mm: float) -> float:

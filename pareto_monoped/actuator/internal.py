@@ -25,7 +25,8 @@ from pareto_monoped.actuator.internal_layout import InternalLayout, frameless, i
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, HUB_NOTE, spline_note
+from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, hub_note, spline_note
+from pareto_monoped.actuator.tooth_making import made, rated_teeth, spline_teeth
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
@@ -102,11 +103,12 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
+            teeth=made(rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings), spline_teeth(spline, settings)),
             fits=(
                 Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),
                 Fit(diameter_mm=2.0 * shaft, zone="h6", seat=True),
             ),
-            note=f"one piece with its shaft, {spline_note(spline)}; " + gear_note(teeth, settings),
+            note=f"one piece with its shaft, {spline_note(spline, shaft)}; " + gear_note(teeth, settings),
             joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
         Part(
@@ -120,10 +122,11 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             ),
             process="machined",
             group=Group.ROTOR,
+            teeth=(spline_teeth(spline, settings),),
             grade=ALLOYS["aw_7075_t6"],
             fits=(COUPLING_DOWEL.hole_fit,),
             features=(tapped(M3, (_bell_holes(settings, M3.core),), z_hub, shell.z_coupling, enters="high"),),
-            note=f"screwed to the bell; bore {HUB_NOTE}",
+            note=f"screwed to the bell; bore {hub_note(settings)}",
         ),
         dowel_part(
             "coupling_dowel",

@@ -1,7 +1,7 @@
 """Rows of loose needle rollers between a planet and its pin: how many, how long, and their ratings.
 
 Full complements have no catalogue rating. It follows from the needles by ISO 281 and ISO 76, as makers tell their
-customers to do. Pin and planet are the raceways, hardened to 58 HRC or more.
+customers to do. Pin and planet are the raceways; planets softer than 58 HRC carry less, by f_H.
 """
 
 from dataclasses import dataclass
@@ -17,6 +17,12 @@ _DYNAMIC = 1.1 * 0.83 * 207.9
 """b_m of needle rollers on machined raceways, reduction of line contact, constant of f_c (ISO 281, ISO/TR 1281-1)."""
 _STATIC = 44.0
 """ISO 76, clause 5.1, in N and mm."""
+_RACEWAY_FACTORS = (
+    (200.0, 300.0, 350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 655.0),
+    (0.07, 0.18, 0.25, 0.33, 0.42, 0.52, 0.65, 0.78, 1.0),
+)
+"""Vickers hardness of a raceway and f_H, rounded from the curve in Schaeffler, Rolling bearings; static ratings fall
+less, and take the same factor here."""
 LIFE_EXPONENT = 10.0 / 3.0
 """Of roller bearings (ISO 281, clause 7.3)."""
 
@@ -64,14 +70,20 @@ def needle_rows(width_mm: Numbers, settings: ActuatorSettings) -> NeedleRows:
     rows, length = (np.where(index >= 0, choices[index, column], np.nan)[()] for column in (1, 2))
     pin, needle = settings.parts.carrier.pin_diameter_mm, data.diameter_mm
     count = needle_count(pin, needle)
+    softer = raceway_factor(settings.gear_steels.planet.hardness_hv)
     carries = rows * (length - 2.0 * data.end_mm)
     return NeedleRows(
         needles=count,
         rows=rows,
         length_mm=length,
-        dynamic_rating_n=dynamic_rating_n(count, needle, carries, pin + needle),
-        static_rating_n=static_rating_n(count, needle, carries, pin + needle),
+        dynamic_rating_n=dynamic_rating_n(count, needle, carries, pin + needle) * softer,
+        static_rating_n=static_rating_n(count, needle, carries, pin + needle) * softer,
     )
+
+
+def raceway_factor(hardness_hv: float) -> float:
+    """f_H by which raceways softer than 670 HV carry less; SKF and ISO 281 take 58 HRC, 655 HV, as hard enough."""
+    return float(np.interp(hardness_hv, *_RACEWAY_FACTORS))
 
 
 def needle_count(pin_mm: float, needle_mm: float) -> int:

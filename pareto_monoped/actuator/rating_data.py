@@ -38,6 +38,7 @@ class RatingData:
         face_step_mm: face widths are multiples of this.
         accuracy_class: of the teeth, ISO 1328-1.
         flank_finish_factor: Z_L Z_v Z_R.
+        flank_roughness_um: greatest Rz of the flanks, for which it holds.
         root_roughness_um: Rz of the fillets.
         reversed_bending_factor: on sigma_F,lim of the planets, whose teeth bend both ways.
         second_carrier: what ties it to the first: the planets' ``pins`` alone, which tilt under load, or ``webs``
@@ -66,6 +67,7 @@ class RatingData:
     face_step_mm: Positive
     accuracy_class: Annotated[int, Field(ge=3, le=10)]
     flank_finish_factor: Positive
+    flank_roughness_um: Positive
     root_roughness_um: Annotated[float, Field(ge=1.0, le=40.0)]
     reversed_bending_factor: Positive
     second_carrier: SecondCarrier

@@ -130,7 +130,11 @@ class CouplingData:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SplineData:
-    """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm."""
+    """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm.
+
+    Attributes:
+        play_mm: least backlash along the pitch circle, by which the hub's spaces are wider than drawn.
+    """
 
     __pydantic_config__ = _STRICT
 
@@ -138,6 +142,7 @@ class SplineData:
     external_teeth: Annotated[int, Field(ge=6)]
     internal_teeth: Annotated[int, Field(ge=6)]
     sun_shaft_radius_mm: Positive
+    play_mm: Positive
 
     @property
     def external(self) -> ExternalGear:

@@ -18,8 +18,8 @@ COUPLING_DOWEL = Dowel(diameter_mm=2.5)
 """Between the coupling and what turns it; our own choice: they stand between screws of M3 or M4 on 22 mm."""
 DOWEL_STANDS_OUT_MM = 1.0
 """How far such a dowel may stand out: half of ``motor_carrier_clearance_mm``."""
-HUB_NOTE = "wire-cut to the shaft's spline, 0.02 mm play"
-"""How the coupling is made to fit; the play takes the retaining compound."""
+_RUN_OUT_MM = 2.0
+"""Along the shaft, of a hob of 24 mm that cuts 0.125 mm into it: sqrt(12^2 - 11.875^2) = 1.7 mm, rounded up."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +47,22 @@ def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
     )
 
 
-def spline_note(spline: ExternalGear) -> str:
-    """The spline in words. It is toothed like a gear, so that a hob and a wire-cutter do, not a tool of its own."""
-    return f"splined end of {spline.teeth:g} teeth, module {spline.module_mm:g} mm, 20 degrees"
+def hub_note(settings: ActuatorSettings) -> str:
+    """How the coupling is made to fit."""
+    return f"wire-cut to the shaft's spline, {settings.parts.spline.play_mm:g} mm play"
+
+
+def spline_note(spline: ExternalGear, shaft_radius_mm: float) -> str:
+    """The spline in words. It is toothed like a gear, so that a hob and a wire-cutter do, not a tool of its own.
+
+    Args:
+        spline: its teeth.
+        shaft_radius_mm: of the shaft beside them.
+    """
+    note = f"splined end of {spline.teeth:g} teeth, module {spline.module_mm:g} mm, 20 degrees"
+    root, shaft = 2.0 * float(spline.root_radius_mm), 2.0 * shaft_radius_mm
+    if root >= shaft:
+        return note
+    return (
+        f"{note}, roots of {root:g} mm below the shaft's {shaft:g} mm: hob may run out into it over {_RUN_OUT_MM:g} mm"
+    )

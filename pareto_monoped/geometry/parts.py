@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.features import Feature
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
 from pareto_monoped.geometry.tightening import Fastening
@@ -239,6 +239,7 @@ class Part:
         note: what else the maker should know (standard, catalogue number).
         grade: alloy or steel grade with its condition, where the maker must keep to one.
         fits: tolerances of its round faces.
+        teeth: how its teeth are made.
         fastening: size, preload, tightening torque and lock of a screw.
         accuracy_class: of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters.
         joint: what holds it where its shape does not.
@@ -262,6 +263,7 @@ class Part:
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)
     accuracy_class: int | None = field(default=None, compare=False)
+    teeth: tuple[ToothMaking, ...] = field(default=(), compare=False)
     fastening: Fastening | None = field(default=None, compare=False)
     joint: Joint | None = None
     visibility: Visibility = Visibility.OUTSIDE

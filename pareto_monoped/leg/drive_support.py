@@ -58,7 +58,7 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["case_18crnimo7_6"],
             fits=(
-                Fit(diameter_mm=2.0 * SHAFT_RADIUS, zone="h6", seat=True),
+                Fit(diameter_mm=2.0 * SHAFT_RADIUS, zone="h6", seat=True, raceway=True),
                 Fit(diameter_mm=2.0 * NECK_RADIUS, zone="h6"),
             ),
             note="raceway of the needle bearing, case-hardened and ground",

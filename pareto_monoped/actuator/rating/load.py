@@ -83,6 +83,12 @@ def helix_deviation_um(diameter_mm: Numbers, width_mm: Numbers, accuracy_class: 
     return (0.05 * np.sqrt(diameter_mm) + 0.35 * np.sqrt(width_mm) + 4.0) * np.sqrt(2.0) ** (accuracy_class - 5)
 
 
+def runout_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
+    """Tolerance F_rT of the radial runout, 0.9 F_pT (ISO 1328-1:2013, clause 5 and annex E)."""
+    pitch = 0.002 * diameter_mm + 0.55 * np.sqrt(diameter_mm) + 0.7 * module_mm + 12.0
+    return 0.9 * pitch * np.sqrt(2.0) ** (accuracy_class - 5)
+
+
 def face_running_in(steel: GearGrade) -> float:
     """y_beta over F_beta,x: how much of a misalignment wears away (ISO 6336-1, clause 7.4.2)."""
     return 0.15 if steel.treatment != "through_hardened" else min(320.0 / steel.flank_limit_mpa, 1.0)

@@ -12,7 +12,7 @@ from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.pdf import pdf
 from pareto_monoped.cad.drawing.sheet import Title, titled
 from pareto_monoped.cad.product import ListedPart, Product
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part
 
 _TOLERANCES: Mapping[str, tuple[str, str]] = {
@@ -80,7 +80,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
         hardness=part.grade.hardness if part.grade is not None else "",
         mass=_mass(float(part.unit_mass_kg())),
         count=unique.count,
-        process=part.process,
+        process=next((one.making for one in part.teeth if one.quality), part.process),
         tolerances=tolerances,
         finish=finish,
         design=origin.design,
@@ -88,7 +88,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
         date=origin.date,
         maker=origin.maker,
     )
-    return _file([_drawn(part, part.fits, part.accuracy_class, part.note)], title)
+    return _file([_drawn(part, part.fits, part.teeth, part.accuracy_class, part.note)], title)
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:
@@ -111,9 +111,11 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
     return _file([assembly_sheet(product), *exploded_sheets(product)], title)
 
 
-# Designs of one study share most of their parts; a part's note, fits and accuracy do not count when parts are compared.
+# Designs of one study share most of their parts; a part's note, fits, teeth and accuracy do not count when compared.
 @lru_cache(maxsize=256)
-def _drawn(part: Part, _fits: tuple[Fit, ...], _accuracy_class: int | None, _note: str) -> Sheet:
+def _drawn(
+    part: Part, _fits: tuple[Fit, ...], _teeth: tuple[ToothMaking, ...], _accuracy_class: int | None, _note: str
+) -> Sheet:
     """The sheet of a part without its title block."""
     return part_sheet(part)
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from pareto_monoped.cad.drawing.bores import number
 from pareto_monoped.geometry.gears import DEDENDUM, FILLET, ExternalGear, InternalGear
+from pareto_monoped.geometry.making import ToothMaking
 
 _PIN_MODULES = 1.68
 """Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
@@ -77,18 +78,19 @@ def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -
     return float(centres * (np.cos(0.5 * np.pi / z) if z % 2 else 1.0) - pin_mm)
 
 
-def measure(gear: ExternalGear | InternalGear, *, hole: bool = False) -> Span:
+def measure(gear: ExternalGear | InternalGear, *, hole: bool = False, play_mm: float = 0.0) -> Span:
     """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
 
     Args:
         gear: its teeth.
         hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
+        play_mm: by how much the spaces of such a hole are at least wider than drawn.
     """
     tolerance = thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm))
     play = float(gear.backlash_mm)
     if isinstance(gear, ExternalGear):
         count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad, float(gear.shift))
-        slack = (0.0, tolerance) if hole else (-tolerance, 0.0)
+        slack = (play_mm, play_mm + tolerance) if hole else (-tolerance, 0.0)
         least, greatest = (base_tangent_mm(gear, count, allowance_mm=-play + t) for t in slack)
         return Span(count=count, pin_mm=0.0, least_mm=least, greatest_mm=greatest)
     pin = round(_PIN_MODULES * float(gear.module_mm), 2)
@@ -97,11 +99,26 @@ def measure(gear: ExternalGear | InternalGear, *, hole: bool = False) -> Span:
 
 
 def gear_rows(
-    gear: ExternalGear | InternalGear, *, accuracy_class: int | None, hole: bool = False
+    gear: ExternalGear | InternalGear,
+    *,
+    accuracy_class: int | None,
+    hole: bool = False,
+    making: ToothMaking | None = None,
+    hardness: str = "",
 ) -> list[tuple[str, str]]:
-    """The rows of the table: what, and its value; for ``hole`` see ``measure``."""
+    """The rows of the table: what, and its value.
+
+    Args:
+        gear: its teeth.
+        accuracy_class: ISO 1328-1, where ``making`` says nothing.
+        hole: see ``measure``.
+        making: how the teeth are made, if that is known.
+        hardness: of their flanks.
+    """
     spline = hole and isinstance(gear, ExternalGear)
-    span = measure(gear, hole=spline)
+    play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
+    grade = accuracy_class if making is None else making.accuracy_class
+    span = measure(gear, hole=spline, play_mm=play)
     kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
     limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
     measured = (
@@ -121,8 +138,25 @@ def gear_rows(
         ("Root diameter", number(2.0 * float(gear.root_radius_mm))),
         measured,
         ("Tooth thickness tolerance", "DIN 3967, series 24"),
-        ("Accuracy of the teeth", f"ISO 1328-1 class {accuracy_class}" if accuracy_class else "ISO 1328-1 class 8"),
-        ("Backlash of the pair, at least", number(2.0 * float(gear.backlash_mm))),
+        ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
+        ("Backlash of the pair, at least", number(play)),
+        *(_making_rows(making, hardness) if making is not None else ()),
+    ]
+
+
+def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
+    """What the rating of the teeth takes for granted; of splines, only how they are made."""
+    if not making.quality:
+        return [("Making", making.making)]
+    layer = {"CHD": "Case depth CHD (ISO 18203), finished", "NHD": "Nitriding depth NHD (ISO 18203)"}
+    return [
+        ("Making", making.making),
+        ("Quality of material and treatment", f"ISO 6336-5 {making.quality}"),
+        ("Hardness of flanks", hardness),
+        ("Hardness of the core", making.core_hardness),
+        *([(layer[making.layer], making.layer_text)] if making.layer else []),
+        ("Roughness of flanks, fillets", f"Rz {making.flank_rz_um:g}, {making.root_rz_um:g} µm at most"),
+        ("Radial runout to the datum axis", f"{making.runout_mm:.3f} at most"),
     ]
 
 

@@ -10,6 +10,7 @@ from pareto_monoped.cad.drawing.profile import Teeth, cylinders, half_section, t
 from pareto_monoped.cad.drawing.section import RoundPart, common_chamfer, section_view
 from pareto_monoped.cad.drawing.sheet import table
 from pareto_monoped.cad.drawing.tolerances import DATUM, datum_fit, fit_table
+from pareto_monoped.geometry.making import ToothMaking
 from pareto_monoped.geometry.parts import Part
 
 
@@ -37,13 +38,25 @@ def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
         table(
             _gear_title(teeth, drawn),
             ("", ""),
-            gear_rows(teeth.gear, accuracy_class=part.accuracy_class, hole=teeth.hole),
+            gear_rows(
+                teeth.gear,
+                accuracy_class=part.accuracy_class,
+                hole=teeth.hole,
+                making=_making(part, teeth),
+                hardness=part.grade.hardness if part.grade is not None else "",
+            ),
         )
         for teeth in gears
     ]
     around = [2.0 * c.radius for c in cylinders(drawn.body)]
     fits = fit_table(part.fits, [any(fit.holds(diameter) for diameter in around) for fit in part.fits])
     return [*tables, *([fits] if fits is not None else [])]
+
+
+def _making(part: Part, teeth: Teeth) -> ToothMaking | None:
+    """How these teeth are made, if the part says so."""
+    gear = (int(teeth.gear.teeth), float(teeth.gear.module_mm))
+    return next((one for one in part.teeth if (one.teeth, one.module_mm) == gear), None)
 
 
 def _gear_title(teeth: Teeth, drawn: RoundPart) -> str:

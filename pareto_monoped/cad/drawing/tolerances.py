@@ -6,10 +6,10 @@ from pareto_monoped.cad.drawing.dimension import FRAME_MM, datum, frame
 from pareto_monoped.cad.drawing.lettering import width_mm
 from pareto_monoped.cad.drawing.paper import LETTER_MM, Paper
 from pareto_monoped.geometry.iso286 import limits
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import RACEWAY_RA_UM, Fit
 
 DATUM = "A"
-_SEAT_RA, _FIT_RA = "0.8", "1.6"
+_SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
 """Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
 _COAXIAL = "Ø0.02"
 """Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
@@ -51,7 +51,8 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
         paper.line([(0.0, y), (x, y)])
     for k, (fit, single) in enumerate(zip(fits, alone, strict=True)):
         y = top - (k + 2) * high
-        paper.text(_SEAT_RA if fit.seat else _FIT_RA, sum(widths[:2]) + 1.5, y + 0.5 * (high - LETTER_MM))
+        finish = _RACEWAY_RA if fit.raceway else _SEAT_RA if fit.seat else _FIT_RA
+        paper.text(finish, sum(widths[:2]) + 1.5, y + 0.5 * (high - LETTER_MM))
         x = sum(widths[:3]) + 1.5
         if fit is first and single:
             datum(paper, DATUM, x, y + 1.0)

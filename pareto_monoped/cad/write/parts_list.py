@@ -82,8 +82,9 @@ def _note(part: Part) -> str:
         filter(
             None,
             (
-                part.grade.name if part.grade else "",
+                f"{part.grade.name}, {part.grade.hardness}" if part.grade else "",
                 f"ISO 1328-1 class {part.accuracy_class}" if part.accuracy_class else "",
+                *(one.text for one in part.teeth),
                 *(fit.text for fit in part.fits),
                 part.note,
                 part.joint.text if part.joint else "",
