@@ -7,7 +7,8 @@ from typing import Any
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.layout import Family
-from pareto_monoped.actuator.motor_facts import motor_values_shown
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.motor_facts import CONTINUOUS_BASIS, how_long, motor_values_shown, peak_basis
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
@@ -15,6 +16,7 @@ from pareto_monoped.actuator.service.losses import BushLoad
 from pareto_monoped.actuator.service.sheet import ServiceSheet
 from pareto_monoped.actuator.settings import ConstraintName
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,15 +68,36 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "bearing_life_h": sheet.bearing_life_h,
         "output_tilt_n_m": sheet.output_tilt_n_m,
         "backlash_arcmin": sheet.backlash_arcmin,
+        "greatest_backlash_arcmin": sheet.greatest_backlash_arcmin,
         "stiffness_n_m_per_rad": sheet.stiffness.stiffness_n_m_per_rad,
+        **_caveats(actuator),
         **_safeties(actuator),
+    }
+
+
+def _caveats(actuator: Actuator) -> dict[str, Any]:
+    """What the torques of a row are worth: both are before losses."""
+    motor = actuator.motor
+    return {
+        "peak_torque_basis": peak_basis(motor),
+        "peak_torque_time": how_long(motor.peak_torque_time_s),
+        "continuous_torque_basis": CONTINUOUS_BASIS,
+        "continuous_torque_time": how_long(motor.continuous_torque_time_s),
+        "lasting_torque_n_m": None if (lasting := motor.lasting_torque_n_m) is None else actuator.ratio * lasting,
     }
 
 
 def _safeties(actuator: Actuator) -> dict[str, float]:
     """The least safety factors over the meshes, where the gears are rated."""
     rating = actuator.rating
-    return {} if rating is None else {"flank_safety": rating.flank_safety, "root_safety": rating.root_safety}
+    if rating is None:
+        return {}
+    return {
+        "flank_safety": rating.flank_safety,
+        "root_safety": rating.root_safety,
+        "overload_flank_safety": min(gear.overload_flank_safety for gear in rating.gears),
+        "overload_root_safety": min(gear.overload_root_safety for gear in rating.gears),
+    }
 
 
 def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
@@ -100,7 +123,9 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         },
         **({} if actuator.rating is None else {"rating": actuator.rating.as_dict()}),
         "motor": motor_values_shown(actuator.motor),
-        "parts": [_part(part) for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg()))],
+        "parts": [
+            _part(part, actuator.motor) for part in sorted(actuator.parts, key=lambda part: -float(part.mass_kg()))
+        ],
     }
 
 
@@ -159,14 +184,19 @@ def _bush(load: BushLoad) -> dict[str, float]:
     }
 
 
-def _part(part: Part) -> dict[str, Any]:
-    """All instances of one part together; the inertia is about the gearbox axis."""
+def _part(part: Part, motor: Motor) -> dict[str, Any]:
+    """All instances of one part together; the inertia is about the gearbox axis.
+
+    The motor's rotor has the inertia that is simulated: that of its data sheet or its estimate. Its solid is an
+    envelope of even density, which only weighs it.
+    """
     second_moment = part.mass_properties().second_kg_m2
+    inertia = float(second_moment[0, 0] + second_moment[1, 1])
     return {
         "name": part.name,
         "material": part.material.name,
         "group": part.group,
         "count": int(part.count),
         "mass_kg": float(part.mass_kg()),
-        "axial_inertia_kg_m2": float(second_moment[0, 0] + second_moment[1, 1]),
+        "axial_inertia_kg_m2": motor.rotor_inertia_kg_m2 if part.role is Role.MOTOR_ROTOR else inertia,
     }

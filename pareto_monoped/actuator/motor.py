@@ -242,6 +242,19 @@ class Motor:
         """The same for the published continuous torque: many makers mean a motor in the wind of its propeller."""
         return self._time_to_limit_s(self.continuous_torque_n_m)
 
+    @property
+    def peak_is_assumed(self) -> bool:
+        """Whether the peak torque is ``PEAK_TO_CONTINUOUS`` times the continuous one, as where none is published."""
+        return self.peak_torque_n_m == PEAK_TO_CONTINUOUS * self.continuous_torque_n_m
+
+    @property
+    def lasting_torque_n_m(self) -> float | None:
+        """What the winding stands for ever in still air; None where ``thermal`` is not known."""
+        if self.thermal is None:
+            return None
+        heat_w = self.thermal.lasting_heat_w(continuous_heat_w=self.winding_heat_w(self.continuous_torque_n_m))
+        return self.torque_constant_n_m_per_a * math.sqrt(heat_w / self.terminal_resistance_ohm)
+
     def _time_to_limit_s(self, torque_n_m: float) -> float | None:
         if self.thermal is None:
             return None

@@ -70,6 +70,17 @@ class ThermalData:
         """
         return self.rise_k / (continuous_heat_w * resistance_growth(self.winding_limit_degc))
 
+    def lasting_heat_w(self, *, continuous_heat_w: float) -> float:
+        """Heat of the winding at 25 C with which it stays at its limit for ever.
+
+        Args:
+            continuous_heat_w: that of the continuous current, which it is without ``housing_to_ambient_k_per_w``.
+        """
+        if self.housing_to_ambient_k_per_w is None:
+            return continuous_heat_w
+        whole = self.winding_to_housing_k_per_w + self.housing_to_ambient_k_per_w
+        return self.rise_k / (whole * resistance_growth(self.winding_limit_degc))
+
     def time_to_limit_s(self, heat_w: float, *, continuous_heat_w: float) -> float:
         """How long a cold winding takes to its limit; infinite if it never gets there.
 

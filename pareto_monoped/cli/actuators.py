@@ -235,11 +235,11 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
         markup=False,
     )
     for name, value in (
-        ("torque, peak", f"{actuator.peak_torque_n_m:.2f} N m"),
-        ("torque, continuous", f"{actuator.continuous_torque_n_m:.2f} N m"),
+        *_torque_lines(actuator),
         ("no-load speed", f"{actuator.no_load_speed_rad_per_s:.1f} rad/s"),
         ("mesh efficiency", f"{100.0 * actuator.efficiency:.1f} %"),
         ("reflected inertia", f"{actuator.reflected_inertia_kg_m2:.5f} kg m2"),
+        ("rotor inertia", f"{1e6 * actuator.motor.rotor_inertia_kg_m2:.2f} kg mm2, of the motor alone"),
         ("contact ratios", f"{actuator.contact_ratio_sun:.2f} sun, {actuator.contact_ratio_ring:.2f} ring"),
         *_shift_lines(actuator.gears),
         ("face width, length", f"{actuator.face_width_mm:.2f} mm, {actuator.length_mm:.1f} mm"),
@@ -258,6 +258,25 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
     console.print(_parts_table(known["parts"], actuator.mass_kg))
     for line in _rivals(actuator.family, known):
         console.print(line, markup=False)
+
+
+def _torque_lines(actuator: "Actuator") -> list[tuple[str, str]]:
+    """The torques with their basis and how long they may be held; all before losses."""
+    from pareto_monoped.actuator.motor_facts import CONTINUOUS_BASIS, how_long, peak_basis
+
+    motor = actuator.motor
+    lasting = motor.lasting_torque_n_m
+    return [
+        ("torque, peak", f"{actuator.peak_torque_n_m:.2f} N m before losses; {how_long(motor.peak_torque_time_s)}"),
+        ("", peak_basis(motor)),
+        ("torque, continuous", f"{actuator.continuous_torque_n_m:.2f} N m before losses, {CONTINUOUS_BASIS}"),
+        ("", how_long(motor.continuous_torque_time_s)),
+        *(
+            ()
+            if lasting is None
+            else (("torque, lasting", f"{actuator.ratio * lasting:.2f} N m, by its thermal data"),)
+        ),
+    ]
 
 
 def _parts_table(parts: list[dict[str, Any]], mass_kg: float) -> "Table":

@@ -20,13 +20,19 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
         f"{100.0 * share:g} % over {angle:g} rad"
         for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
     )
+    steels = {one.gear: one for one in rating.gears}
     console.print()
     console.print("Rating after ISO 6336 at the motor's peak torque", markup=False)
     for name, value in (
         ("duty", f"{duty.jumps:g} jumps, each {levels}"),
         ("overload", f"{data.overload_factor:g} times the peak torque, once"),
         ("accuracy", f"ISO 1328-1 class {data.accuracy_class}"),
-        *((gear, steel) for gear, steel in {one.gear: one.steel for one in rating.gears}.items()),
+        ("highest level", f"{rating.highest_share:g} times the peak torque, to which the limits refer"),
+        ("gap of the planets", f"{rating.planet_gap_mm:.3f} mm between their tips"),
+        ("K_gamma", f"AGMA 6123, sun {data.sun_support}"),
+        *((one.gear, f"{one.steel}, {one.quality}, {one.hardness_hv:g} HV") for one in steels.values()),
+        ("equal to 1", "Z_beta, Z_X, Y_beta, Y_DT, Y_X, Y_epsilon (method B)"),
+        ("Y_ST", "2"),
     ):
         console.print(f"  {name:20} {value}", markup=False)
     console.print(_loads(rating))
@@ -48,7 +54,12 @@ def _loads(rating: "Rating") -> "Table":
     rows: Iterable[tuple[str, Callable[[MeshRating], float], str]] = (
         ("tangential force F_t, N", lambda mesh: mesh.tangential_force_n, ".1f"),
         ("pitch-line speed v, m/s", lambda mesh: mesh.pitch_speed_m_per_s, ".2f"),
+        ("reference diameter d_1, mm", lambda mesh: mesh.pinion_diameter_mm, ".3f"),
+        ("gear ratio u", lambda mesh: mesh.gear_ratio, ".4f"),
         ("contact ratio epsilon_alpha", lambda mesh: mesh.contact_ratio, ".3f"),
+        ("stiffness c_gamma, N/(mm um)", lambda mesh: mesh.mesh_stiffness_n_per_mm_um, ".3f"),
+        ("misalignment F_beta,y, um", lambda mesh: mesh.misalignment_um, ".3f"),
+        ("pitch f_pb less running in, um", lambda mesh: mesh.pitch_deviation_um, ".3f"),
         ("application K_A", lambda mesh: mesh.application_factor, ".3f"),
         ("load sharing K_gamma", lambda mesh: mesh.sharing_factor, ".3f"),
         ("dynamic K_V", lambda mesh: mesh.dynamic_factor, ".3f"),
@@ -56,6 +67,9 @@ def _loads(rating: "Rating") -> "Table":
         ("face load, root K_Fbeta", lambda mesh: mesh.root_face_load_factor, ".3f"),
         ("transverse load, flank K_Halpha", lambda mesh: mesh.transverse_load_factor, ".3f"),
         ("transverse load, root K_Falpha", lambda mesh: mesh.root_transverse_load_factor, ".3f"),
+        ("zone Z_H", lambda mesh: mesh.zone_factor, ".4f"),
+        ("elasticity Z_E, sqrt(MPa)", lambda mesh: mesh.elasticity_factor, ".2f"),
+        ("contact ratio Z_epsilon", lambda mesh: mesh.contact_ratio_factor, ".4f"),
     )
     table = _table("load", "sun mesh", "ring mesh")
     for name, value, form in rows:
@@ -66,9 +80,16 @@ def _loads(rating: "Rating") -> "Table":
 def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table":
     data = settings.parts.rating
     rows: Iterable[tuple[str, Callable[[GearRating], float], str]] = (
+        ("tip diameter d_a, mm", lambda gear: gear.tip_diameter_mm, ".3f"),
+        ("root diameter d_f, mm", lambda gear: gear.root_diameter_mm, ".3f"),
+        ("tip thickness s_a, mm", lambda gear: gear.tip_thickness_mm, ".3f"),
+        ("", lambda gear: 0.0, ""),
         ("single contact Z_B, Z_D", lambda gear: gear.single_contact_factor, ".3f"),
         ("flank load cycles, equivalent", lambda gear: gear.flank_cycles, ".2g"),
         ("life Z_NT", lambda gear: gear.flank_life_factor, ".3f"),
+        ("strength sigma_H,lim, MPa", lambda gear: gear.contact_number_mpa, ".0f"),
+        ("finish Z_L Z_v Z_R", lambda gear: gear.finish_factor, ".3f"),
+        ("work hardening Z_W", lambda gear: gear.work_hardening_factor, ".3f"),
         ("contact stress sigma_H, MPa", lambda gear: gear.contact_stress_mpa, ".0f"),
         ("limit sigma_HG, MPa", lambda gear: gear.contact_limit_mpa, ".0f"),
         (f"S_H, at least {data.flank_safety:g}", lambda gear: gear.flank_safety, ".2f"),
@@ -79,6 +100,10 @@ def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table
         ("rim Y_B", lambda gear: gear.rim_factor, ".3f"),
         ("root load cycles, equivalent", lambda gear: gear.root_cycles, ".2g"),
         ("life Y_NT", lambda gear: gear.root_life_factor, ".3f"),
+        ("strength sigma_F,lim, MPa", lambda gear: gear.bending_number_mpa, ".0f"),
+        ("notch Y_delta,rel,T", lambda gear: gear.notch_sensitivity_factor, ".3f"),
+        ("roughness Y_R,rel,T", lambda gear: gear.roughness_factor, ".3f"),
+        ("mean stress Y_M", lambda gear: gear.mean_stress_factor, ".3f"),
         ("bending stress sigma_F, MPa", lambda gear: gear.bending_stress_mpa, ".0f"),
         ("limit sigma_FG, MPa", lambda gear: gear.bending_limit_mpa, ".0f"),
         (f"S_F, at least {data.root_safety:g}", lambda gear: gear.root_safety, ".2f"),

@@ -39,14 +39,20 @@ def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[t
     shares = (
         ("teeth", stiffness.mesh),
         ("pins", stiffness.pins),
-        ("sun's shaft", stiffness.shaft),
+        *((("needles", stiffness.needles),) if stiffness.needles else ()),
+        ("shaft", stiffness.shaft),
         ("carrier", stiffness.carrier),
     )
     return [
         ("with all losses", f"{100.0 * losses.efficiency_total:.1f} %: {', '.join(sources)} %"),
-        ("stiffness at output", f"{1e-3 * stiffness.stiffness_n_m_per_rad:.1f} kN m/rad"),
+        ("stiffness at output", f"{1e-3 * stiffness.stiffness_n_m_per_rad:.1f} kN m/rad at most"),
+        ("taken as rigid", "rims, spline, ring's bond, housing, bolted joints"),
         ("share in giving way", ", ".join(f"{name} {100.0 * part / whole:.0f}" for name, part in shares) + " %"),
-        ("backlash at output", f"{sheet.backlash_arcmin:.1f} arcmin"),
+        (
+            "backlash at output",
+            f"{sheet.backlash_arcmin:.1f} arcmin at least, {sheet.greatest_backlash_arcmin:.1f} at most by the teeth",
+        ),
+        ("", "play of bearings comes on top"),
         ("bending at output", f"{sheet.output_tilt_n_m:.1f} N m"),
         *_bush_lines(sheet, settings),
     ]

@@ -269,6 +269,20 @@ class InternalGear:
         """Outermost circle, at the bottom of the spaces."""
         return self.pitch_radius_mm + (DEDENDUM + self.shift) * self.module_mm
 
+    @property
+    def tip_thickness_mm(self) -> Numbers:
+        """Thickness of a tooth on the tip circle, along the arc: what the space leaves of the pitch."""
+        tip = self.tip_radius_mm
+        space = half_angle(
+            radius_mm=tip,
+            teeth=self.teeth,
+            module_mm=self.module_mm,
+            thinning_mm=-_array(self.backlash_mm),
+            shift=self.shift,
+            pressure_angle_rad=self.pressure_angle_rad,
+        )
+        return 2.0 * tip * (np.pi / _array(self.teeth) - space)
+
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
         return _area_mm2(self)

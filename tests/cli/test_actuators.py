@@ -40,7 +40,13 @@ KEYS = [
     "bearing_life_h",
     "output_tilt_n_m",
     "backlash_arcmin",
+    "greatest_backlash_arcmin",
     "stiffness_n_m_per_rad",
+    "peak_torque_basis",
+    "peak_torque_time",
+    "continuous_torque_basis",
+    "continuous_torque_time",
+    "lasting_torque_n_m",
 ]
 
 
@@ -179,8 +185,9 @@ def test_the_sheet_of_one_ratio_prints_losses_bearings_and_stiffness_in_80_colum
     assert max(len(line) for line in printed.splitlines()) <= 80
     percent = [f"{100 * known[f'efficiency_{source}']:.1f}" for source in ("total", "mesh", "planets", "bearings")]
     assert "{} %: mesh {}, planets {}, bearings {} %".format(*percent) in printed
-    assert f"{1e-3 * known['stiffness_n_m_per_rad']:.1f} kN m/rad" in printed
-    assert f"{known['backlash_arcmin']:.1f} arcmin" in printed
+    assert f"{1e-3 * known['stiffness_n_m_per_rad']:.1f} kN m/rad at most" in printed
+    least, most = known["backlash_arcmin"], known["greatest_backlash_arcmin"]
+    assert f"{least:.1f} arcmin at least, {most:.1f} at most by the teeth" in printed
     assert f"pv {known['bush']['pv_mpa_m_per_s']:.1f} MPa m/s" in printed
     main = known["bearings"][0]
     (line,) = [line for line in printed.splitlines() if line.startswith(" main, knee")]
@@ -250,7 +257,8 @@ def test_rated_map_has_safety_factors_in_json_csv_and_table(capsys, tmp_path):
     code, output = run(capsys, "--rules", "iso6336", "--json", "--csv", str(path))
     rows = json.loads(output.out)
     assert code == 0
-    assert all(list(row) == [*KEYS, "flank_safety", "root_safety"] for row in rows)
+    safeties = [f"{event}{place}_safety" for event in ("", "overload_") for place in ("flank", "root")]
+    assert all(list(row) == [*KEYS, *safeties] for row in rows)
     assert all(row["flank_safety"] >= 1.1 and row["root_safety"] >= 1.4 and row["planets"] >= 3 for row in rows)
     with path.open(newline="") as stream:
         written = list(csv.DictReader(stream))

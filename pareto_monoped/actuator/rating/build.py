@@ -9,7 +9,12 @@ from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import Family, ring_radius_mm
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.rating import load
-from pareto_monoped.actuator.rating.flank import flank_factors, flank_limit_mpa, flank_load_n_per_mm
+from pareto_monoped.actuator.rating.flank import (
+    flank_factors,
+    flank_limit_mpa,
+    flank_load_n_per_mm,
+    work_hardening_factor,
+)
 from pareto_monoped.actuator.rating.geometry import (
     TOOTH_DEPTH,
     contact_ratio_factor,
@@ -145,6 +150,7 @@ def _mesh(
         wheel_teeth=teeth[1],
         diameter_mm=diameter,
         contact_ratio=contact_ratio,
+        working_angle_rad=working_angle_rad,
         force_n=force_n,
         sharing=sharing,
         speed_m_per_s=speed,
@@ -203,6 +209,8 @@ def _member(
         root_cycles=root_cycles,
         flank_life=flank_life,
         root_life=root_life,
+        bending_factor=bending_factor,
+        work_hardening=work_hardening_factor(steel, mate),
         flank_limit_mpa=flank,
         root_limit_mpa=root,
         overload_flank_limit_mpa=over_flank,

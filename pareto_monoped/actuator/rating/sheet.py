@@ -6,9 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.rating.flank import contact_stress_mpa
-from pareto_monoped.actuator.rating.root import bending_stress_mpa
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.rating.flank import contact_stress_mpa, elasticity_factor
+from pareto_monoped.actuator.rating.geometry import contact_ratio_factor, zone_factor
+from pareto_monoped.actuator.rating.life import highest_share
+from pareto_monoped.actuator.rating.root import bending_stress_mpa, notch_sensitivity_factor, roughness_factor
 from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, acting, safeties_of
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 
 
@@ -19,10 +23,16 @@ class GearRating:
     Attributes:
         gear: ``sun``, ``planet`` or ``ring``.
         steel: name of its grade.
+        treatment, quality, hardness_hv: of that grade.
+        tip_diameter_mm, root_diameter_mm: d_a, d_f.
+        tip_thickness_mm: s_a of the drawn teeth.
+        contact_number_mpa, bending_number_mpa: sigma_H,lim and sigma_F,lim.
         contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H.
         bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F.
         overload_flank_safety, overload_root_safety: against static failure under the overload.
         single_contact_factor: Z_B or Z_D.
+        finish_factor, work_hardening_factor: Z_L Z_v Z_R and Z_W.
+        notch_sensitivity_factor, roughness_factor, mean_stress_factor: Y_delta rel T, Y_R rel T, Y_M.
         form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B.
         flank_cycles, root_cycles: load cycles that do the damage of the whole duty, at the peak torque or at the
             highest level of the duty, if that is higher.
@@ -31,6 +41,14 @@ class GearRating:
 
     gear: str
     steel: str
+    treatment: str
+    quality: str
+    hardness_hv: float
+    tip_diameter_mm: float
+    root_diameter_mm: float
+    tip_thickness_mm: float
+    contact_number_mpa: float
+    bending_number_mpa: float
     contact_stress_mpa: float
     contact_limit_mpa: float
     flank_safety: float
@@ -40,6 +58,11 @@ class GearRating:
     overload_flank_safety: float
     overload_root_safety: float
     single_contact_factor: float
+    finish_factor: float
+    work_hardening_factor: float
+    notch_sensitivity_factor: float
+    roughness_factor: float
+    mean_stress_factor: float
     form_factor: float
     stress_correction: float
     rim_factor: float
@@ -57,6 +80,9 @@ class MeshRating:
         tangential_force_n: F_t at the motor's peak torque, if the planets shared it evenly.
         pitch_speed_m_per_s: against the carrier, at the motor's no-load speed.
         contact_ratio: epsilon_alpha.
+        gear_ratio, pinion_diameter_mm: u, d1.
+        zone_factor, elasticity_factor, contact_ratio_factor: Z_H, Z_E in sqrt(MPa), Z_epsilon.
+        mesh_stiffness_n_per_mm_um, misalignment_um, pitch_deviation_um: c_gamma,alpha; F_beta,y; f_pb less y_alpha.
         application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V.
         face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta.
         transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha.
@@ -66,6 +92,14 @@ class MeshRating:
     tangential_force_n: float
     pitch_speed_m_per_s: float
     contact_ratio: float
+    gear_ratio: float
+    pinion_diameter_mm: float
+    zone_factor: float
+    elasticity_factor: float
+    contact_ratio_factor: float
+    mesh_stiffness_n_per_mm_um: float
+    misalignment_um: float
+    pitch_deviation_um: float
     application_factor: float
     sharing_factor: float
     dynamic_factor: float
@@ -79,8 +113,18 @@ class MeshRating:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rating:
-    """Rating of a gear set at its face width."""
+    """Rating of a gear set at its face width.
 
+    Attributes:
+        face_width_mm: b.
+        planet_gap_mm: between the tips of neighbouring planets.
+        highest_share: largest torque of the duty over the motor's peak torque, at least 1, to which limits refer.
+        sun_mesh, ring_mesh: the meshes.
+    """
+
+    face_width_mm: float
+    planet_gap_mm: float
+    highest_share: float
     sun_mesh: MeshRating
     ring_mesh: MeshRating
 
@@ -126,10 +170,27 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
             return float(value[place] if isinstance(value, np.ndarray) and value.ndim else value)
 
         return Rating(
-            sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number), ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number)
+            face_width_mm=number(width_mm),
+            planet_gap_mm=number(_planet_gap_mm(stage.gears)),
+            highest_share=highest_share(stage.settings.parts.duty),
+            sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number),
+            ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number),
         )
 
     return tuple(map(one, range(np.size(width_mm))))
+
+
+def _planet_gap_mm(gears: GearSet) -> Numbers:
+    """Between the tips of neighbouring planets."""
+    return 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
+
+
+def _drawn(stage: Stage, gear: str) -> ExternalGear | InternalGear:
+    """A gear with the backlash that it is drawn with."""
+    thinning = stage.settings.parts.gears.backlash_mm
+    if gear == "ring":
+        return stage.gears.ring(thinning)
+    return stage.gears.sun(thinning) if gear == "sun" else stage.gears.planet(thinning)
 
 
 def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callable[[Numbers], float]) -> MeshRating:
@@ -138,6 +199,14 @@ def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callab
         tangential_force_n=number(mesh.force_n),
         pitch_speed_m_per_s=number(mesh.speed_m_per_s),
         contact_ratio=number(mesh.contact_ratio),
+        gear_ratio=number(mesh.ratio),
+        pinion_diameter_mm=number(mesh.diameter_mm),
+        zone_factor=number(zone_factor(mesh.working_angle_rad)),
+        elasticity_factor=elasticity_factor(stage.settings.materials.gear_steel),
+        contact_ratio_factor=number(contact_ratio_factor(mesh.contact_ratio)),
+        mesh_stiffness_n_per_mm_um=number(at.stiffness),
+        misalignment_um=number(at.misalignment_um),
+        pitch_deviation_um=number(mesh.pitch_deviation_um),
         application_factor=stage.settings.parts.rating.application_factor,
         sharing_factor=number(mesh.sharing),
         dynamic_factor=number(at.dynamic),
@@ -156,9 +225,18 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
     )
     bending = bending_stress_mpa(loads.root, stage.gears.module_mm, member.form, member.rim_factor)
+    drawn, data = _drawn(stage, member.gear), stage.settings.parts.rating
     return GearRating(
         gear=member.gear,
         steel=member.steel.name,
+        treatment=member.steel.treatment,
+        quality=member.steel.quality,
+        hardness_hv=member.steel.hardness_hv,
+        tip_diameter_mm=number(2.0 * drawn.tip_radius_mm),
+        root_diameter_mm=number(2.0 * drawn.root_radius_mm),
+        tip_thickness_mm=number(drawn.tip_thickness_mm),
+        contact_number_mpa=member.steel.flank_limit_mpa,
+        bending_number_mpa=member.steel.root_limit_mpa,
         contact_stress_mpa=number(contact),
         contact_limit_mpa=number(member.flank_limit_mpa),
         flank_safety=number(safeties.flank),
@@ -168,6 +246,11 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         overload_flank_safety=number(safeties.overload_flank),
         overload_root_safety=number(safeties.overload_root),
         single_contact_factor=number(member.single_contact),
+        finish_factor=data.flank_finish_factor,
+        work_hardening_factor=member.work_hardening,
+        notch_sensitivity_factor=number(notch_sensitivity_factor(member.steel, member.form.notch)),
+        roughness_factor=roughness_factor(member.steel, data.root_roughness_um),
+        mean_stress_factor=number(member.bending_factor),
         form_factor=number(member.form.form_factor),
         stress_correction=number(member.form.stress_correction),
         rim_factor=number(member.rim_factor),

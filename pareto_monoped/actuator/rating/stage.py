@@ -42,6 +42,8 @@ class Member:
         rim_factor: Y_B.
         flank_cycles, root_cycles: equivalent load cycles at ``life.highest_share``.
         flank_life, root_life: Z_NT and Y_NT at these.
+        bending_factor: Y_M.
+        work_hardening: Z_W.
         flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG.
         overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure.
         carries: load per face width at a safety of 1, each with its own load factors.
@@ -57,6 +59,8 @@ class Member:
     root_cycles: Numbers
     flank_life: Numbers
     root_life: Numbers
+    bending_factor: Numbers
+    work_hardening: float
     flank_limit_mpa: Numbers
     root_limit_mpa: Numbers
     overload_flank_limit_mpa: float
@@ -65,7 +69,10 @@ class Member:
 
 
 class MeshLoad(NamedTuple):
-    """What a mesh carries at a face width: F_m / b, with load sharing, K_A and K_V in it, and the load factors."""
+    """What a mesh carries at a face width: F_m / b, with load sharing, K_A and K_V in it, and the load factors.
+
+    The last two are what they come from: c_gamma,alpha, and F_beta,y after running in.
+    """
 
     mean_n_per_mm: Numbers
     dynamic: Numbers
@@ -73,6 +80,8 @@ class MeshLoad(NamedTuple):
     face_root: Numbers
     transverse_flank: Numbers
     transverse_root: Numbers
+    stiffness: Numbers
+    misalignment_um: Numbers
 
     @property
     def flank_n_per_mm(self) -> Numbers:
@@ -93,6 +102,7 @@ class Mesh:
         internal: whether the wheel is the ring.
         pinion, wheel: both gears.
         pinion_teeth, wheel_teeth, diameter_mm, contact_ratio: z1, z2, d1, epsilon_alpha.
+        working_angle_rad: alpha_wt.
         force_n: tangential force at the motor's peak torque, shared evenly by the planets.
         sharing: K_gamma.
         speed_m_per_s: of the pitch point against the carrier, at the motor's no-load speed.
@@ -107,6 +117,7 @@ class Mesh:
     wheel_teeth: Numbers
     diameter_mm: Numbers
     contact_ratio: Numbers
+    working_angle_rad: Numbers
     force_n: Numbers
     sharing: Numbers
     speed_m_per_s: Numbers
@@ -215,9 +226,11 @@ class Stage:
             load.helix_deviation_um(mesh.wheel_teeth * module, width_mm, grade),
         )
         worn = 0.5 * (load.face_running_in(mesh.pinion.steel) + load.face_running_in(mesh.wheel.steel))
-        face = load.face_load_factor((1.0 - worn) * (elastic_um + made), load.FACE_STIFFNESS_SHARE * stiffness, mean)
+        left_um = (1.0 - worn) * (elastic_um + made)
+        face = load.face_load_factor(left_um, load.FACE_STIFFNESS_SHARE * stiffness, mean)
         flank, root = load.transverse_load_factors(mean * face, stiffness, mesh.pitch_deviation_um, mesh.contact_ratio)
-        return MeshLoad(mean, dynamic, face, load.root_face_load_factor(face, width_mm, module), flank, root)
+        root_face = load.root_face_load_factor(face, width_mm, module)
+        return MeshLoad(mean, dynamic, face, root_face, flank, root, stiffness, left_um)
 
     def safeties(self, width_mm: Numbers) -> Safeties:
         """The least safety factors of all flanks and roots at a face width."""

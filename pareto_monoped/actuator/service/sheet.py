@@ -15,9 +15,15 @@ from pareto_monoped.actuator.service.losses import (
     planet_bearing_loss,
 )
 from pareto_monoped.actuator.service.output import knee_forces_n, main_bearing_depth_mm
-from pareto_monoped.actuator.service.stiffness import Stiffness, backlash_arcmin, stiffness
+from pareto_monoped.actuator.service.stiffness import (
+    Stiffness,
+    backlash_arcmin,
+    greatest_backlash_arcmin,
+    stiffness,
+)
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +38,8 @@ class ServiceSheet:
         output_tilt_n_m: bending moment in the knee's output face at the peak torque.
         losses: by source.
         stiffness: of the parts between rotor and output.
-        backlash_arcmin: at the output, between both stops.
+        backlash_arcmin, greatest_backlash_arcmin: at the output, between both stops, at least and by tolerance of the
+            teeth at most; without the play of bearings.
     """
 
     bearings: tuple[BearingService, ...]
@@ -42,6 +49,7 @@ class ServiceSheet:
     losses: Losses
     stiffness: Stiffness
     backlash_arcmin: float
+    greatest_backlash_arcmin: float
 
     @property
     def bearing_life_h(self) -> float:
@@ -81,6 +89,7 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
         ),
         stiffness=stiffness(actuator, at, settings),
         backlash_arcmin=backlash_arcmin(gears, settings.parts.gears.backlash_mm),
+        greatest_backlash_arcmin=greatest_backlash_arcmin(gears, settings.parts.gears.backlash_mm, GENERAL_SERIES),
     )
 
 

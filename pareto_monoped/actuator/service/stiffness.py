@@ -7,14 +7,18 @@ import numpy as np
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.needles import needle_rows
 from pareto_monoped.actuator.rating.load import mesh_stiffness, pair_stiffness
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.parts import Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle
+from pareto_monoped.geometry.tooth_thickness import thickness_tolerance_mm
 from pareto_monoped.materials import ElasticMaterial
 
+_PALMGREN, _NEEDLE_SHARE = 3.84e-5, 4.08
+"""Of steel rollers on steel, in mm and N; highest load of a roller over the mean one, without clearance (as below)."""
 _ARCMIN = 60.0 * 180.0 / np.pi
 
 
@@ -25,29 +29,32 @@ class Stiffness:
     Attributes:
         mesh: teeth of sun, planets and ring.
         pins: bending of the planets' pins.
+        needles: contact of the planets' needles; 0 with bushes.
         shaft: torsion of the sun's shaft up to the coupling.
         carrier: torsion of the carrier up to the output face.
     """
 
     mesh: float
     pins: float
+    needles: float
     shaft: float
     carrier: float
 
     @property
     def stiffness_n_m_per_rad(self) -> float:
         """Of all in series."""
-        return 1.0 / (self.mesh + self.pins + self.shaft + self.carrier)
+        return 1.0 / (self.mesh + self.pins + self.needles + self.shaft + self.carrier)
 
 
 def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Stiffness:
     """Torsional stiffness at the output at the peak torque, rotor and housing held.
 
-    Rings of gears, housing, bolted joints and the rotor itself are taken as rigid.
+    It is an upper bound: rims of gears, spline, the ring's bond, housing, bolted joints and rotor are taken as rigid.
     """
     return Stiffness(
         mesh=mesh_compliance(actuator),
         pins=pin_compliance(actuator.gears, at, settings),
+        needles=needle_compliance(actuator, settings),
         shaft=_shaft_compliance(actuator, at, settings.materials.gear_steel) / actuator.ratio**2,
         carrier=_carrier_compliance(actuator, at, settings.materials.aluminium),
     )
@@ -87,6 +94,24 @@ def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> fl
     sway = 0.25 / (12.0 * bending / length_mm**3 + web)
     softness = 1e-3 * (length_mm**3 / (720.0 * bending) + sway)  # m/N
     return float(softness / (float(gears.planets) * (1e-3 * float(gears.carrier_radius_mm)) ** 2))
+
+
+def needle_compliance(actuator: Actuator, settings: ActuatorSettings) -> float:
+    """Of the needles at the peak torque, in rad / (N m): the secant of their curve; 0 with bushes.
+
+    The most loaded of Z needles carries Q = 4.08 F / Z of a planet's force F where they have no clearance. It comes
+    nearer to either raceway by 3.84e-5 Q^0.9 / l^0.8 in N and mm (Palmgren; Harris, Rolling Bearing Analysis).
+    """
+    if settings.planet_bearing == "bushes":
+        return 0.0
+    gears = actuator.gears
+    rows = needle_rows(actuator.face_width_mm, settings)
+    radius_m, planets = 1e-3 * float(gears.carrier_radius_mm), float(gears.planets)
+    force_n = actuator.peak_torque_n_m / (planets * radius_m)
+    length_mm = float(rows.length_mm) - 2.0 * settings.parts.needles.end_mm
+    highest_n = _NEEDLE_SHARE * force_n / (rows.needles * float(rows.rows))
+    moved_mm = 2.0 * _PALMGREN * highest_n**0.9 / length_mm**0.8
+    return 1e-3 * moved_mm / (radius_m * actuator.peak_torque_n_m)
 
 
 def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:
@@ -133,3 +158,18 @@ def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
     """
     play_mm = 2.0 * thinning_mm * (np.cos(PRESSURE_ANGLE_RAD) / np.cos(gears.working_angle_rad))
     return float(_ARCMIN * play_mm / gears.carrier_radius_mm)
+
+
+def greatest_backlash_arcmin(gears: GearSet, thinning_mm: float, series: int) -> float:
+    """The same with every tooth as thin as its tolerance allows; a planet's place does not matter to the mean.
+
+    Args:
+        gears: the gear set.
+        thinning_mm: of each tooth, as drawn.
+        series: of DIN 3967, for the tolerance of the thickness.
+    """
+    sun, planet, ring = (
+        float(thickness_tolerance_mm(gears.module_mm * teeth, series))
+        for teeth in (gears.sun_teeth, gears.planet_teeth, gears.ring_teeth)
+    )
+    return backlash_arcmin(gears, thinning_mm + 0.25 * (sun + 2.0 * planet + ring))

@@ -16,11 +16,14 @@ import numpy as np
 from pareto_monoped.cad.drawing.bores import number
 from pareto_monoped.geometry.gears import DEDENDUM, FILLET, ExternalGear, InternalGear
 from pareto_monoped.geometry.making import ToothMaking
+from pareto_monoped.geometry.tooth_thickness import (
+    GENERAL_SERIES,
+    LARGEST_PITCH_DIAMETER_MM,
+    thickness_tolerance_mm,
+)
 
 _PIN_MODULES = 1.68
 """Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
-# DIN 3967, tolerance series 24: largest pitch diameter in mm, tolerance of the tooth thickness in mm.
-_THICKNESS_TOLERANCE = ((10.0, 0.012), (50.0, 0.020), (125.0, 0.025), (280.0, 0.030))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,18 +40,6 @@ class Span:
     pin_mm: float
     least_mm: float
     greatest_mm: float
-
-
-def thickness_tolerance_mm(pitch_diameter_mm: float) -> float:
-    """Tolerance of the tooth's thickness.
-
-    Raises:
-        ValueError: a gear larger than the table.
-    """
-    for largest, tolerance in _THICKNESS_TOLERANCE:
-        if pitch_diameter_mm <= largest:
-            return tolerance
-    raise ValueError(f"pitch diameter {pitch_diameter_mm:g} mm: must be at most 280 mm")
 
 
 def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> int:
@@ -85,8 +76,14 @@ def measure(gear: ExternalGear | InternalGear, *, hole: bool = False, play_mm: f
         gear: its teeth.
         hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
         play_mm: by how much the spaces of such a hole are at least wider than drawn.
+
+    Raises:
+        ValueError: a gear larger than the table of tolerances.
     """
-    tolerance = thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm))
+    diameter = 2.0 * float(gear.pitch_radius_mm)
+    if diameter > LARGEST_PITCH_DIAMETER_MM:
+        raise ValueError(f"pitch diameter {diameter:g} mm: must be at most {LARGEST_PITCH_DIAMETER_MM:g} mm")
+    tolerance = float(thickness_tolerance_mm(diameter, GENERAL_SERIES))
     play = float(gear.backlash_mm)
     if isinstance(gear, ExternalGear):
         count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad, float(gear.shift))

@@ -10,11 +10,11 @@ from pareto_monoped.cad.drawing.gear_data import (
     gear_rows,
     measure,
     spanned_teeth,
-    thickness_tolerance_mm,
 )
 from pareto_monoped.cad.shape.curves import Contour, Spline, polygon
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.tooth_thickness import thickness_tolerance_mm
 
 EXTERNAL = [
     (18, 0.5, 0.0, 0.0),
@@ -119,9 +119,9 @@ def test_limits_leave_at_least_the_drawn_backlash():
 
 
 def test_thickness_tolerance_is_that_of_the_size():
-    assert [thickness_tolerance_mm(d) for d in (10.0, 10.1, 50.0, 125.0)] == [0.012, 0.020, 0.020, 0.025]
+    assert [thickness_tolerance_mm(d, 24) for d in (10.0, 10.1, 50.0, 125.0)] == [0.012, 0.020, 0.020, 0.025]
     with pytest.raises(ValueError, match="at most 280 mm"):
-        thickness_tolerance_mm(300.0)
+        measure(ExternalGear(teeth=300, module_mm=1.0))
 
 
 def test_the_table_names_what_a_gear_cutter_needs():
