@@ -96,7 +96,10 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             group=Group.ROTOR,
             grade=gear_grade(settings, settings.gear_steels.sun),
             accuracy_class=gear_accuracy(settings),
-            teeth=made(rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings), spline_teeth(spline, settings)),
+            teeth=made(
+                rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings, at.gears.planet()),
+                spline_teeth(spline, settings),
+            ),
             fits=(Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),),
             note=f"one piece with its shaft, {spline_note(spline, data.spline.sun_shaft_radius_mm)}; "
             + gear_note(teeth, settings),

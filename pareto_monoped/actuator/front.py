@@ -104,7 +104,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                     pressed=settings.planet_bearing == "bushes",
                 ),
             ),
-            teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings)),
+            teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
             note=_planet_note(gears.planet(data.gears.backlash_mm), settings),
             fits=planet_fits(settings),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
@@ -161,7 +161,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.HOUSING,
             grade=gear_grade(settings, settings.gear_steels.ring),
             accuracy_class=gear_accuracy(settings),
-            teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings)),
+            teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
             note=gear_note(gears.ring(data.gears.backlash_mm), settings),
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
         ),

@@ -12,8 +12,10 @@ SPLINE_CLASS = 8
 """ISO 1328-1 class of splines; our own choice: they are bonded and do not roll."""
 
 
-def rated_teeth(gear: ExternalGear | InternalGear, steel: GearGrade, settings: ActuatorSettings) -> ToothMaking | None:
-    """How a rated gear is made; None under the rules of the paper, which rate none, and for arrays."""
+def rated_teeth(
+    gear: ExternalGear | InternalGear, steel: GearGrade, settings: ActuatorSettings, *mates: ExternalGear | InternalGear
+) -> ToothMaking | None:
+    """How a rated gear is made, and its mates; None under the rules of the paper, which rate none, and for arrays."""
     if settings.rules == "paper" or np.ndim(gear.teeth):
         return None
     data, module = settings.parts.rating, float(gear.module_mm)
@@ -24,6 +26,7 @@ def rated_teeth(gear: ExternalGear | InternalGear, steel: GearGrade, settings: A
         module_mm=module,
         accuracy_class=data.accuracy_class,
         making=steel.making,
+        mates_mm=tuple(2.0 * float(mate.pitch_radius_mm) for mate in mates),
         quality=steel.quality,
         core_hardness=steel.core_hardness,
         layer=steel.layer,
@@ -44,6 +47,7 @@ def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMakin
         module_mm=float(spline.module_mm),
         accuracy_class=SPLINE_CLASS,
         making="hobbed; hub wire-cut to fit",
+        mates_mm=(2.0 * float(spline.pitch_radius_mm),),
         play_mm=settings.parts.spline.play_mm,
     )
 

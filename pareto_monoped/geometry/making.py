@@ -60,6 +60,7 @@ class ToothMaking:
         teeth, module_mm: of the outline.
         accuracy_class: ISO 1328-1.
         making: the steps in their order.
+        mates_mm: reference diameters of the gears that mesh with them.
         play_mm: least backlash of the pair along the pitch circle, where the outlines are drawn without it; None: as
             they are drawn.
         quality: of material and treatment (ISO 6336-5), such as ``MQ``; '' for teeth that are not rated.
@@ -74,6 +75,7 @@ class ToothMaking:
     module_mm: float
     accuracy_class: int
     making: str
+    mates_mm: tuple[float, ...]
     play_mm: float | None = None
     quality: str = ""
     core_hardness: str = ""

@@ -101,6 +101,10 @@ def test_drawings_of_gears_carry_what_their_rating_assumes(ratio):
         )
         runout = float(value(texts, "Radial runout to the datum axis").split()[0])
         assert runout <= 1e-3 * runout_um(diameter, module, data.accuracy_class) < runout + 1e-3
+        least, most = (float(value(texts, f"Backlash of the pair, at {end}")) for end in ("least", "most"))
+        measures = [texts[k + 1] for k, text in enumerate(texts) if text.startswith(("Base tangent", "Between pins"))]
+        assert least + 0.02 < most < least + 0.06
+        assert measures
         (rated,) = (one for one in part.teeth if one.quality)
         assert rated.text.startswith(f"teeth {steel.making}, {steel.quality}, ")
 

@@ -137,8 +137,15 @@ def gear_rows(
         ("Tooth thickness tolerance", "DIN 3967, series 24"),
         ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
         ("Backlash of the pair, at least", number(play)),
+        *([("Backlash of the pair, at most", number(round(play + _loss_mm(gear, making), 3)))] if making else ()),
         *(_making_rows(making, hardness) if making is not None else ()),
     ]
+
+
+def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking) -> float:
+    """By how much a pair's backlash grows where both thicknesses are at the end of their tolerance; the worst mate."""
+    mates = (thickness_tolerance_mm(diameter, GENERAL_SERIES) for diameter in making.mates_mm)
+    return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), GENERAL_SERIES) + max(mates))
 
 
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:

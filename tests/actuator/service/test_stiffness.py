@@ -161,3 +161,43 @@ def test_teeth_of_the_cad_are_as_thin_as_the_backlash_says(vt_map):
         height = wheel().tip_radius_mm - wheel().root_radius_mm
         areas.append((plain - thin) / (int(wheel().teeth) * height))
     assert sum(areas) == pytest.approx(2 * thinning, rel=0.1)
+
+
+def test_the_greatest_backlash_has_all_teeth_at_the_end_of_their_tolerance(vt8020):
+    """6:1 under iso6336: mean of both meshes, each with twice the thinning and the tolerances of both its gears."""
+    tied = map_of(vt8020, "iso6336")
+    actuator = tied.lookup(6.0)
+    gears, sheet = actuator.gears, service_sheet(actuator, tied.settings)
+    tolerance = sheet.greatest_backlash_arcmin / sheet.backlash_arcmin
+    thinning = next(
+        float(prism.outline.backlash_mm)
+        for part in actuator.parts
+        for prism in part.prisms
+        if hasattr(prism.outline, "backlash_mm") and float(prism.outline.backlash_mm) > 0.0
+    )
+    sun, planet, ring = (table(gears.module_mm * teeth) for teeth in (18, 36, 90))
+    more = 0.5 * ((sun + planet) + (planet + ring))
+    assert gears.sun_teeth == 18
+    assert tolerance == pytest.approx(1.0 + more / (2.0 * thinning))
+
+
+def table(diameter_mm):
+    """DIN 3967, series 24."""
+    return next(t for most, t in ((10.0, 0.012), (50.0, 0.020), (125.0, 0.025)) if diameter_mm <= most)
+
+
+@pytest.mark.parametrize("ratio", [4.0, 7.5])
+def test_needles_give_way_by_what_the_work_of_the_worst_one_says(vt8020, ratio):
+    """A planet's centre moves by two contacts of 3.84e-5 Q^0.9 / l^0.8 mm; its torque about the axis is n F r."""
+    tied = map_of(vt8020, "iso6336")
+    actuator = tied.lookup(ratio)
+    force = 1e3 * actuator.peak_torque_n_m / (actuator.gears.planets * actuator.gears.carrier_radius_mm)
+    (needles,) = (part for part in actuator.parts if part.name == "planet_needles")
+    rows = len(needles.places_mm)
+    length = float(needles.prisms[0].z1_mm - needles.prisms[0].z0_mm) - 0.6
+    worst = 4.08 * force / (15 * rows)
+    moved = 2 * 3.84e-5 * worst**0.9 / length**0.8
+    turned = moved / actuator.gears.carrier_radius_mm
+    found = service_sheet(actuator, tied.settings).stiffness
+    assert found.needles == pytest.approx(turned / actuator.peak_torque_n_m)
+    assert 1.0 / found.stiffness_n_m_per_rad > found.needles + found.mesh + found.shaft
