@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.actuator.motors import Motor, load_motor
+from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
+from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration, strength_for
+from pareto_monoped.leg.motor_fit import require_leg
 
 if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
@@ -72,11 +74,13 @@ def case_job(
 
     Raises:
         InputError: an unknown format.
-        MotorError: an unknown or impossible motor.
+        MotorError: an unknown or impossible motor, or one that no gearbox or no leg fits.
     """
+    chosen, source = load_motor(motor), motor_source(motor)
+    require_leg(map_of(chosen, rules, source=source), source)
     return Job(
         design=PAPER_CASES[case].design,
-        motor=load_motor(motor),
+        motor=chosen,
         calibration=load_calibration(DEFAULT),
         rules=rules,
         folder=folder,

@@ -64,13 +64,16 @@ def simulate(
     audited: bool,
 ) -> None:
     """Simulate one jump and print its measures."""
+    from pareto_monoped.actuator.motors import motor_source
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.calibration import load_calibration, rules_for
     from pareto_monoped.jump.single import simulate as jump
+    from pareto_monoped.leg.motor_fit import require_leg
 
     design = _design(case, changes)
     calibration = load_calibration(calibration_name)
     actuator_map = map_for(motor, rules_for(calibration_name, rules))
+    require_leg(actuator_map, motor_source(motor))
     for note in filter(None, map(actuator_map.stand_in, sorted({design.hip_ratio, design.knee_ratio}))):
         click.echo(f"note: {note}", err=True)
     result = jump(design, actuator_map, calibration, trace=trace is not None)

@@ -68,21 +68,34 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
     return Pulley(x_mm=x, y_mm=y, radius_mm=_CORNER)
 
 
+def hip_short_mm(d: LegDimensions) -> float:
+    """By how much the round end at the hip is too small for the ears of the hip's stop; 0 or less where it is not.
+
+    The other plate's round end is the same for every motor, and larger.
+    """
+    return _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0]) - d.rim_radius_mm
+
+
+def _least_hip_radius_mm(face: Face) -> float:
+    """Radius of the round end that an ear's edge touches."""
+    return float(face.x_mm) - WING
+
+
 def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
     """The fillet between an ear's edge and the round end at the hip, which it almost touches.
 
     Raises:
-        DesignError: the ear stands beside the round end.
+        DesignError: the ear stands beside the round end; ``motor_fit.require_leg`` refuses such motors.
     """
-    x = float(face.x_mm) - WING + _FILLET
-    least = x - _FILLET
+    least = _least_hip_radius_mm(face)
+    x = least + _FILLET
     if top_radius_mm < least:
         raise DesignError(
             complaint(
-                "the thigh's radius in mm at the hip, around the motor,",
+                "the thigh's radius in mm at the hip",
                 round(top_radius_mm, 2),
                 f"at least {least:.4g}, so that the ears of the hip's stop are joined to it",
-                f"choose a motor that is at least {2.0 * (least - top_radius_mm):.4g} mm wider",
+                "choose a wider motor",
             )
         )
     return Pulley(

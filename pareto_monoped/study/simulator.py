@@ -13,6 +13,7 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.leg.motor_fit import require_leg
 from pareto_monoped.study.coordinates import Coordinates, coordinates_of
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.reader import StudyData
@@ -97,10 +98,13 @@ def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simul
 
 
 def _simulator(study: Study, motor: Motor, calibration: Calibration, workers: int) -> Simulator:
+    source = motor_source(study.motor)
+    actuator_map = map_of(motor, study.rules, source=source)
+    require_leg(actuator_map, source)
     return Simulator(
         motor=motor,
         calibration=calibration,
-        evaluator=Evaluator(map_of(motor, study.rules, source=motor_source(study.motor)), calibration, workers=workers),
+        evaluator=Evaluator(actuator_map, calibration, workers=workers),
         files={"motor": _text(study.motor), "calibration": _text(study.calibration)},
     )
 

@@ -11,6 +11,11 @@ import pytest
 
 from pareto_monoped import cli
 from pareto_monoped.actuator.motors import load_motor, motor_values
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import DesignError, MotorError
+from pareto_monoped.leg.motor_fit import require_leg
+from pareto_monoped.robot.build import build_robot
 
 TINY = """
 kv_rpm_per_v = 300.0
@@ -90,17 +95,43 @@ def test_commands_that_are_given_a_stored_study(capsys, folder, words):
     ]
 
 
-@pytest.mark.parametrize("words", [("simulate", "--motor", "narrow.toml"), ("run", "narrow_study.toml")])
+NARROW = (
+    "framed.outer_diameter_mm = 55.0: must be at least 65 for a leg, so that the ears of the hip's stop are joined to "
+    "the thigh; choose a wider motor, or design its gearboxes alone with actuators\n"
+)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("simulate", "--motor", "narrow.toml"),
+        ("run", "narrow_study.toml"),
+        ("export", "--case", "C", "--motor", "narrow.toml", "-o", "out"),
+    ],
+)
 def test_a_motor_with_gearboxes_that_the_leg_is_too_wide_for(capsys, folder, words):
     """55 mm across: seven gearboxes, and a thigh whose hip would end beside the ears of its stop."""
     Path("narrow.toml").write_text(TINY.replace("35.0", "55.0"))
     Path("narrow_study.toml").write_text('name = "s"\nmotor = "narrow.toml"\nevaluations = 40\n')
     assert "ESSPG" in cli_run(capsys, "actuators", "--motor", "narrow.toml").out
     _, line = refused(capsys, *words)
-    assert line == (
-        "error: the thigh's radius in mm at the hip, around the motor, = 38.0: must be at least 43, so that the ears "
-        "of the hip's stop are joined to it; choose a motor that is at least 10 mm wider\n"
-    )
+    assert line.startswith("error: motor file ")
+    assert line.endswith(f"narrow.toml: {NARROW}")
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(("diameter_mm", "fits"), [("64.9", False), ("65.1", True)])
+def test_the_width_that_the_message_asks_for_is_enough(folder, diameter_mm, fits):
+    Path("edge.toml").write_text(TINY.replace("35.0", diameter_mm).replace("mass_kg = 0.05", "mass_kg = 0.1"))
+    found = map_for("edge.toml")
+    if fits:
+        require_leg(found)
+        assert build_robot(PAPER_CASES["C"].design, found).mass_kg > 1.0
+    else:
+        with pytest.raises(MotorError, match="must be at least 65 for a leg"):
+            require_leg(found)
+        with pytest.raises(DesignError, match="the thigh's radius in mm at the hip"):
+            build_robot(PAPER_CASES["C"].design, found)
 
 
 def test_the_main_job(folder):
