@@ -167,10 +167,11 @@ def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Nu
 def transverse_load_factors(
     load_n_per_mm: Numbers, stiffness: Numbers, deviation_um: Numbers, contact_ratio: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """K_Halpha and K_Falpha by method B, within their bounds (ISO 6336-1, clause 8.3.2).
+    """K_Halpha and K_Falpha by method B, within their bounds (ISO 6336-1:2006, equations 73 to 76 in clause 8.3).
 
     Where two or three pairs share the load instead of one or two, at contact ratios above 2, pitch deviations weigh
-    sqrt(2 (epsilon - 1) / epsilon) instead of epsilon / 2 times as much; both are 1 at 2.
+    sqrt(2 (epsilon - 1) / epsilon) instead of epsilon / 2 times as much; both are 1 at 2. The equations are those that
+    three open implementations of the standard have alike; its text was not at hand.
 
     Args:
         load_n_per_mm: F_tH / b, with K_A, K_V, K_Hbeta and the load sharing.
