@@ -182,6 +182,8 @@ def _finish(summary: "RunSummary") -> int:
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
+    for line in summary.remarks:
+        _say(f"note: {line}")
     if not summary.strength:
         _say(f"note: {NO_STRENGTH}")
     return 130 if summary.stop_reason == "interrupted" else 0

@@ -1,7 +1,7 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -22,6 +22,7 @@ from pareto_monoped.study.algorithm_settings import (
     WeightedSettings,
 )
 from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
+from pareto_monoped.study.weighted_budget import within_budget
 
 NO_STRENGTH = "strength was not asked for: designs may not hold"
 """What every output says of a study without ``Study.strength``; those of earlier versions are among them."""
@@ -168,7 +169,8 @@ def load_study(
         strength: whether designs must hold, instead of what the file says.
 
     Raises:
-        StudyError: an unknown key, a wrong type, impossible bounds, or no readable TOML.
+        StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
+            weighted search, or no readable TOML.
     """
     values = read_toml(path, what="study file", error=StudyError)
     # Paths in a study file are relative to that file, so that a folder with both can be moved.
@@ -189,7 +191,10 @@ def load_study(
         values["objectives"] = list(objectives)
         if isinstance(corner := values.get("reference_point"), dict):
             values["reference_point"] = {name: value for name, value in corner.items() if name in objectives}
-    return study_from_dict(values, source=f"study file {str(path)!r}")
+    source = f"study file {str(path)!r}"
+    study = study_from_dict(values, source=source)
+    given = "iterations" in values.get("algorithm", {})
+    return replace(study, algorithm=within_budget(study.algorithm, study.evaluations, given=given, source=source))
 
 
 def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:

@@ -17,6 +17,7 @@ from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.remarks import remarks
 from pareto_monoped.study.session import Progress, Session
 from pareto_monoped.study.simulator import Simulator, continued_simulator, load_simulator, stored_simulator
 from pareto_monoped.study.store import Store, create_database
@@ -37,6 +38,7 @@ class RunSummary:
         stop_reason: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or
             ``interrupted``.
         strength: whether designs on the front hold; else strength was not asked for.
+        remarks: see ``study.remarks``.
     """
 
     db: Path
@@ -49,6 +51,7 @@ class RunSummary:
     seconds: float
     stop_reason: str
     strength: bool
+    remarks: tuple[str, ...] = ()
 
 
 def _silent(_: Any) -> None:
@@ -220,4 +223,5 @@ def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> R
         seconds=seconds,
         stop_reason=after.meta.stop_reason or "",
         strength=after.study.strength,
+        remarks=tuple(remarks(after, front)),
     )

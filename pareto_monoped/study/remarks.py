@@ -1,0 +1,147 @@
+"""What a user should hear of a study's result: limits that no design holds, variables whose bounds limit the front."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.design import VARIABLES
+from pareto_monoped.measures import measure
+from pareto_monoped.study.algorithm_settings import WeightedSettings
+from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.goals import Limit
+from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.weighted_budget import sweep_evaluations
+
+_AT = 0.005
+"""Share of its range within which a variable is at its bound. Our own choice: 1 N/m of K's 195."""
+_WORTH_TELLING = 0.05
+"""Least share of the front that is told. Our own choice."""
+_GAP = 0.1
+"""Share of the front's extent in its first objective over which a part of it must be missing to divide it in two."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AtBound:
+    """A variable that is at one of its bounds on a share of the front.
+
+    Attributes:
+        name: of the variable.
+        side: ``lower`` or ``upper``.
+        bound: its value there.
+        share: of the designs on the front, at most 1.
+        parts: least and greatest first objective of each part of the front where it is there, in stored units.
+    """
+
+    name: str
+    side: str
+    bound: float
+    share: float
+    parts: tuple[tuple[float, float], ...]
+
+
+def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
+    """One line per remark; none if there is nothing to say.
+
+    Args:
+        data: the study.
+        front: its front, if it is at hand.
+    """
+    front = data.front() if front is None else front
+    if len(data.trials) == 0:
+        return []
+    if len(front) == 0:
+        return [_why_not_feasible(data)]
+    lines = [_bound_line(data, found) for found in at_bounds(data, front)]
+    return [*_unfinished_sweep(data), *lines]
+
+
+def _unfinished_sweep(data: StudyData) -> list[str]:
+    """A line if the budget of a weighted search ended before its last weight."""
+    settings = data.study.algorithm
+    if not isinstance(settings, WeightedSettings) or not data.meta.finished:
+        return []
+    run, weights = int(data.checkpoint.state.get("run", 0)), len(settings.height_weights)
+    if run >= weights:
+        return []
+    return [
+        f"the budget of {len(data.trials)} ended at weight {run + 1} of {weights}; all weights need up to "
+        f"{sweep_evaluations(settings)}: continue with --evaluations {sweep_evaluations(settings)}"
+    ]
+
+
+def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
+    """The free variables that are at a bound on at least ``_WORTH_TELLING`` of the front, the greatest share first."""
+    study = data.study
+    along = front[study.objectives.names[0]].to_numpy(dtype=np.float64)
+    found = []
+    for name in study.free:
+        if not isinstance(study.variables[name], Bounds):
+            continue
+        lower, upper = data.coordinates.limits(name)
+        values, near = front[name].to_numpy(dtype=np.float64), _AT * (upper - lower)
+        for side, bound, there in (("lower", lower, values <= lower + near), ("upper", upper, values >= upper - near)):
+            if there.mean() >= _WORTH_TELLING:
+                parts = _parts(along[there], float(np.ptp(along)))
+                found.append(AtBound(name=name, side=side, bound=bound, share=float(there.mean()), parts=parts))
+    return sorted(found, key=lambda one: -one.share)
+
+
+def _parts(values: NDArray[np.float64], extent: float) -> tuple[tuple[float, float], ...]:
+    """Ranges of values that are divided where none lies within ``_GAP`` of the extent."""
+    values = np.sort(values)
+    ends = np.flatnonzero(np.diff(values) > _GAP * extent)
+    first, last = [0, *(ends + 1).tolist()], [*ends.tolist(), len(values) - 1]
+    return tuple((float(values[a]), float(values[b])) for a, b in zip(first, last, strict=True))
+
+
+def _bound_line(data: StudyData, found: AtBound) -> str:
+    variable = next(one for one in VARIABLES if one.name == found.name)
+    entry = measure(data.study.objectives.names[0])
+    where = " and ".join(
+        entry.text(low) if low == high else f"{low * entry.scale:.{entry.decimals}f} to {entry.text(high)}"
+        for low, high in found.parts
+    )
+    unit = "" if variable.unit == "1" else f" {variable.unit}"
+    return (
+        f"{found.name} is at its {found.side} bound of {found.bound:.4g}{unit} in {100.0 * found.share:.0f} % of the "
+        f"front ({entry.short} {where})"
+    )
+
+
+def _why_not_feasible(data: StudyData) -> str:
+    """The limits that stand in the way: those that every design misses, else the one that most designs miss."""
+    jumped = data.trials[data.trials["state"] != "failed"]
+    total, failed = len(data.trials), len(data.trials) - len(jumped)
+    if len(jumped) == 0:
+        reason = data.trials["reason"].mode().iloc[0]
+        return f"no design is feasible: none of {total} jumps, most often because: {reason}"
+    if (jumped["state"] == "feasible").any():
+        return f"no design is on the front: all of {int((jumped['state'] == 'feasible').sum())} failed their audit"
+    missed = {limit: _missing(jumped, limit) for limit in data.study.constraints.limits}
+    most = max(int(rows.sum()) for rows in missed.values())
+    lines = [
+        f"{most} of {len(jumped)} miss {limit.measure} {'<=' if limit.side == 'max' else '>='} {limit.value:g}; "
+        f"{_closest(jumped, limit)}"
+        for limit, rows in missed.items()
+        if rows.sum() == most
+    ]
+    also = [f"{failed} did not jump"] if failed else []
+    return f"no design is feasible: {'. '.join([*lines, *also])}"
+
+
+def _missing(trials: pd.DataFrame, limit: Limit) -> NDArray[np.bool_]:
+    values = trials[limit.measure].to_numpy(dtype=np.float64)
+    return np.asarray(~(limit.shares(values) <= 0.0))
+
+
+def _closest(trials: pd.DataFrame, limit: Limit) -> str:
+    """The value nearest to the limit, such as "the least is 4.218 kg"."""
+    values = trials[limit.measure].to_numpy(dtype=np.float64)
+    if np.isnan(values).all():
+        return "no design has a value"
+    entry = measure(limit.measure)
+    word, value = ("least", np.nanmin(values)) if limit.side == "max" else ("greatest", np.nanmax(values))
+    unit = "" if entry.unit == "1" else f" {entry.unit}"
+    return f"the {word} is {value:.4g}{unit}"

@@ -1,0 +1,135 @@
+"""What a user hears of a result: variables at their bounds along the front, limits that no design holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from pareto_monoped.errors import StudyError
+from pareto_monoped.study.definition import load_study, study_from_dict
+from pareto_monoped.study.goals import constraints_of
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.remarks import at_bounds, remarks
+from pareto_monoped.study.run import run
+
+
+def made(**more):
+    settings = {"name": "s", "evaluations": 40, "audit": False, "algorithm": {"name": "random"}, "gear_list": True}
+    return study_from_dict(settings | more, source="test")
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    path = tmp_path_factory.mktemp("random") / "s.db"
+    run(made(), path)
+    return read_study(path)
+
+
+def front_of(data, height_m, **columns):
+    """A front with these heights, all variables in the middle of their ranges but for the columns given."""
+    middle = {name: np.mean(data.coordinates.limits(name)) for name in data.study.free}
+    return pd.DataFrame(middle | {"height_m": height_m, "energy_j": 10.0} | columns)
+
+
+def test_bounds_are_told_with_the_share_of_the_front_and_its_parts(data):
+    height = np.linspace(0.6, 1.0, 41)
+    lowest, highest = data.coordinates.limits("knee_ratio")
+    front = front_of(
+        data,
+        height,
+        stiffness_n_per_m=np.where((height < 0.705) | (height > 0.895), 5.4, 60.0),
+        damping_n_s_per_m=np.where(height > 0.8951, 9.99, 9.9),
+        knee_ratio=np.where(height < 0.785, lowest, np.where(height > 0.9951, highest, 6.0)),
+    )
+    found = {(one.name, one.side): one for one in at_bounds(data, front)}
+    assert list(found) == [
+        ("stiffness_n_per_m", "lower"),
+        ("knee_ratio", "lower"),
+        ("damping_n_s_per_m", "upper"),
+    ]
+    stiffness = found["stiffness_n_per_m", "lower"]
+    assert (stiffness.share, stiffness.bound) == (pytest.approx(22 / 41), 5.0)
+    assert np.allclose(stiffness.parts, [(0.6, 0.7), (0.9, 1.0)])
+    assert np.allclose(found["damping_n_s_per_m", "upper"].parts, [(0.9, 1.0)])
+    assert remarks(data, front)[:2] == [
+        "stiffness_n_per_m is at its lower bound of 5 N/m in 54 % of the front (height 0.600 to 0.700 m and 0.900 to "
+        "1.000 m)",
+        f"knee_ratio is at its lower bound of {lowest:.4g} in 46 % of the front (height 0.600 to 0.780 m)",
+    ]
+
+
+def test_a_front_between_all_bounds_needs_no_remark(data):
+    assert remarks(data, front_of(data, np.linspace(0.6, 1.0, 10))) == []
+
+
+def test_a_run_without_a_feasible_design_names_the_limit_and_the_closest_value(tmp_path, data):
+    study = replace(made(), constraints=constraints_of({"mass_kg": {"max": 2.0}, "drift_m": {"max": 10.0}}))
+    summary = run(study, tmp_path / "s.db")
+    found = read_study(tmp_path / "s.db").trials
+    jumped = found[found["state"] != "failed"]
+    assert (found["state"] == "feasible").sum() == 0
+    (line,) = summary.remarks
+    assert line.startswith(
+        f"no design is feasible: {len(jumped)} of {len(jumped)} miss mass_kg <= 2; the least is "
+        f"{jumped['mass_kg'].min():.4g} kg"
+    )
+    assert "drift_m" not in line
+
+
+def test_limits_that_only_together_leave_no_design_are_named_by_how_many_miss_them(data):
+    trials = data.trials.iloc[:10].copy()
+    trials["state"], trials["mass_kg"] = "infeasible", np.linspace(3.0, 3.9, 10)
+    trials["height_m"] = np.linspace(0.5, 0.59, 10)
+    constraints = constraints_of({"mass_kg": {"max": 3.25}, "height_m": {"min": 0.575}})
+    infeasible = replace(data, trials=trials, study=replace(data.study, constraints=constraints))
+    assert remarks(infeasible) == ["no design is feasible: 8 of 10 miss height_m >= 0.575; the greatest is 0.59 m"]
+
+
+def test_a_search_in_which_nothing_jumps_says_why(data):
+    trials = data.trials.iloc[:10].copy()
+    trials["state"], trials["reason"] = "failed", ["fell"] * 7 + ["sank"] * 3
+    assert remarks(replace(data, trials=trials)) == [
+        "no design is feasible: none of 10 jumps, most often because: fell"
+    ]
+
+
+WEIGHTED = 'name = "w"\nevaluations = {}\naudit = false\n[algorithm]\nname = "weighted_cmaes"\nheight_weights = {}\n'
+
+
+def written(folder, evaluations, weights, more=""):
+    path = folder / "w.toml"
+    path.write_text(WEIGHTED.format(evaluations, weights) + more)
+    return path
+
+
+@pytest.mark.parametrize(("evaluations", "iterations"), [(2400, 30), (2479, 30), (80, 1), (16_000, 200), (99_999, 200)])
+def test_weights_share_a_budget(tmp_path, evaluations, iterations):
+    study = load_study(written(tmp_path, evaluations, [k / 11 for k in range(1, 11)]))
+    assert study.algorithm.iterations == iterations
+    assert study.as_dict()["algorithm"]["iterations"] == iterations
+
+
+def test_a_budget_that_ends_before_the_last_weight_is_refused_with_the_number(tmp_path):
+    path = written(tmp_path, 2400, [0.2, 0.5, 0.8], "iterations = 200\n")
+    with pytest.raises(
+        StudyError,
+        match=r"evaluations = 2400: 3 weights of 8 designs times 200 iterations need 4800; raise it, set "
+        r"algorithm.iterations = 100, or leave",
+    ):
+        load_study(path)
+    assert load_study(path, evaluations=4800).algorithm.iterations == 200
+    with pytest.raises(StudyError, match=r"evaluations = 20: 3 weights .* need 24; raise it$"):
+        load_study(written(tmp_path, 20, [0.2, 0.5, 0.8]))
+
+
+def test_a_shared_budget_reaches_the_last_weight_and_a_cut_one_says_where_it_ended(tmp_path):
+    study = load_study(written(tmp_path, 60, [0.2, 0.5, 0.8]))
+    cut = run(study, tmp_path / "w.db", evaluations=24)
+    assert any(
+        line.startswith("the budget of 24 ended at weight 2 of 3; all weights need up to 48: continue with")
+        for line in cut.remarks
+    )
+    whole = run(study, tmp_path / "w.db")
+    assert not any("weight" in line for line in whole.remarks)
+    assert read_study(tmp_path / "w.db").trials["height_weight"].tolist() == [0.2] * 16 + [0.5] * 16 + [0.8] * 16
