@@ -1,0 +1,161 @@
+"""The best known front of a motor: many surrogate-assisted searches, one after the other, their fronts merged.
+
+    python benchmarks/search_reference.py                             # a short look: 2 searches of 400 jumps
+    python benchmarks/search_reference.py --full                      # VT8020: 25 searches of 8,000 jumps
+    python benchmarks/search_reference.py --full --motor U8 --searches 6
+
+Each search has its own seed, from 1001 on, which no other benchmark uses. Its front is added to
+``benchmarks/search_reference/MOTOR.csv`` as soon as it ends. The script can therefore be stopped at any time; started
+again, it continues with the next seed. The file's first line says what it was made with, and the file is begun anew if
+jumps have changed. The last step is the refinement: ``--refine`` further searches start from the merged front instead
+of from designs spread over the space.
+"""
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.jump.calibration import rules_for, strength_for
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.study.algorithms import make_algorithm
+from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.protocol import Scores
+from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.study.simulator import Simulator, load_simulator
+
+HERE = Path(__file__).parent
+FOLDER = HERE / "search_reference"
+FIRST_SEED = 1001
+MOST_KEPT = 1500
+"""Designs of a merged front that are stored: the hypervolume of 1,500 is 0.01 percent less than of 10,000."""
+
+Floats = NDArray[np.float64]
+
+
+def study_of(motor: str, seed: int, evaluations: int) -> Study:
+    """Case C of a motor under ``reference``, as in studies/motor_*.toml."""
+    corner = {"height_m": 0.55, "energy_j": 200.0 if motor in ("U12", "MN8014") else 100.0}
+    values: dict[str, Any] = {
+        "name": "r",
+        "case": "C",
+        "motor": motor,
+        "calibration": "reference",
+        "rules": rules_for("reference"),
+    }
+    values |= {"strength": strength_for("reference"), "gear_list": True, "reference_point": corner}
+    values |= {"evaluations": evaluations, "seed": seed, "algorithm": {"name": "surrogate"}}
+    return study_from_dict(values, source="benchmark")
+
+
+def searched(simulator: Simulator, study: Study, known: Floats) -> tuple[Floats, Floats]:
+    """The front of one search: coordinates, shape (k, d), and objectives, shape (k, m).
+
+    Args:
+        simulator: of the study.
+        study: the search, its seed and its budget.
+        known: coordinates of designs that it begins with, shape (n, d), n may be 0; they are simulated, too.
+    """
+    coordinates = simulator.coordinates(study)
+    algorithm = make_algorithm(study, coordinates)
+    values, points = np.zeros((0, len(coordinates.space.names))), np.zeros((0, 2))
+
+    def simulated(asked: Floats) -> Scores:
+        result = simulator.evaluator(coordinates.designs(asked))
+        return scores(result, judge(result, study.constraints, study.objectives), study.objectives)
+
+    def added(asked: Floats, found: Scores) -> None:
+        nonlocal values, points
+        good = found.violation == 0.0
+        values, points = np.vstack((values, asked[good])), np.vstack((points, found.values[good]))
+        mask = front_mask(points, study.objectives)
+        values, points = values[mask], points[mask]
+
+    if len(known):
+        found = simulated(known)
+        added(known, found)
+        algorithm.restore({"generation": study.evaluations}, [(known, found)])
+    done = 0
+    while done < study.evaluations and (proposal := algorithm.ask()) is not None:
+        found = simulated(proposal.values)
+        algorithm.tell(found)
+        added(proposal.values, found)
+        done += len(proposal.values)
+    return values, points
+
+
+def thinned(points: Floats, most: int) -> NDArray[np.intp]:
+    """Rows of at most ``most`` points spread evenly along a front, its ends included."""
+    order = np.argsort(points[:, 0])
+    if len(order) <= most:
+        return order
+    scaled = (points - points.min(axis=0)) / np.ptp(points, axis=0)
+    along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(scaled[order], axis=0)).sum(axis=1))))
+    return order[np.unique(np.searchsorted(along, np.linspace(0.0, along[-1], most)).clip(0, len(order) - 1))]
+
+
+def read(path: Path, probe: Any, names: tuple[str, ...]) -> tuple[dict[str, Any], Floats]:
+    """What a file says of itself, and its rows; a new one if there is none or if jumps have changed since."""
+    if path.exists():
+        first, *_ = path.read_text().splitlines()
+        about: dict[str, Any] = json.loads(first.removeprefix("# "))
+        if about["probe"] == probe:
+            return about, np.loadtxt(path, delimiter=",", skiprows=2, ndmin=2)
+    return {"probe": probe, "seeds": [], "evaluations": 0, "refinements": 0, "seconds": 0.0}, np.zeros((0, len(names)))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--motor", default="VT8020")
+    parser.add_argument("--full", action="store_true", help="25 searches of 8,000 jumps; keep the front")
+    parser.add_argument("--searches", type=int, help="searches in all, those in the file included")
+    parser.add_argument("--refine", type=int, default=2, help="searches from the merged front")
+    parser.add_argument("--evaluations", type=int, help="jumps per search")
+    parser.add_argument("--workers", type=int, default=1, help="threads that simulate")
+    parser.add_argument("--folder", type=Path, help="where the front is kept")
+    arguments = parser.parse_args()
+    searches, evaluations, folder = (25, 8_000, FOLDER) if arguments.full else (2, 400, HERE.parent / "build")
+    searches, evaluations = arguments.searches or searches, arguments.evaluations or evaluations
+    folder = arguments.folder or folder
+    first = study_of(arguments.motor, FIRST_SEED, evaluations)
+    simulator = load_simulator(first, workers=arguments.workers)
+    names = (*first.free, *first.objectives.names)
+    path = folder / f"{arguments.motor}.csv"
+    folder.mkdir(exist_ok=True)
+    about, rows = read(path, simulator.probe(), names)
+    coordinates, free = simulator.coordinates(first), [name in first.free for name in NAMES]
+    while len(about["seeds"]) < searches or about["refinements"] < arguments.refine:
+        began, refining = time.perf_counter(), len(about["seeds"]) >= searches
+        count = about["refinements"] if refining else len(about["seeds"])
+        seed = FIRST_SEED + count + (1000 if refining else 0)
+        designs = np.tile(first.lower, (len(rows), 1))
+        designs[:, free] = rows[:, :-2]
+        known = coordinates.values(designs)[: MOST_KEPT if refining else 0]
+        study = study_of(arguments.motor, seed, evaluations)
+        values, points = searched(simulator, study, known)
+        found = coordinates.designs(values)[:, free]
+        rows = np.vstack((rows, np.hstack((found, points))))
+        rows = rows[front_mask(rows[:, -2:], first.objectives)]
+        volume = hypervolume(rows[:, -2:], first.reference_point)
+        rows = rows[thinned(rows[:, -2:], MOST_KEPT)]
+        if refining:
+            about["refinements"] += 1
+        else:
+            about["seeds"].append(seed)
+        about["evaluations"] += evaluations + len(known)
+        about["seconds"] = round(about["seconds"] + time.perf_counter() - began, 1)
+        about["hypervolume"] = round(hypervolume(rows[:, -2:], first.reference_point), 5)
+        header = f"{json.dumps(about)}\n{','.join(names)}"
+        np.savetxt(path, rows, delimiter=",", fmt="%.9g", header=header)
+        kind = "refinement" if refining else "seed"
+        print(f"{arguments.motor} {kind} {seed}: hypervolume {volume:.4f}, {len(rows)} designs", flush=True)
+
+
+if __name__ == "__main__":
+    main()
