@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from pareto_monoped.cad.drawing.assembly_views import Seen, areas, balloons, drawn, leg_section, side_view, within
+from pareto_monoped.cad.drawing.assembly_views import Seen, areas, drawn, leg_section, side_view, within
+from pareto_monoped.cad.drawing.balloons import balloons
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.sheet import A0, A1, SCALES, Size, compose, scale_text, table
 from pareto_monoped.cad.product import Product

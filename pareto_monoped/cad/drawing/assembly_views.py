@@ -1,6 +1,6 @@
 """The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import manifold3d as m3
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.assembly import Pose, body_frames
-from pareto_monoped.cad.drawing.dimension import spread
 from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
@@ -20,11 +19,6 @@ from pareto_monoped.geometry.roles import SCREWS, Role, Visibility
 
 Floats = NDArray[np.float64]
 
-BALLOON_MM = 4.0
-"""Radius of an item's balloon (ISO 6433)."""
-_BALLOON_PITCH_MM = 9.5
-_TEXT_MM = 2.5
-_COLUMN_MM = 14.0
 _LEAST_MM2 = 0.3  # smaller visible areas on paper are not drawn
 _NOT_CUT = SCREWS | {Role.BOLT, Role.PIN, Role.SHAFT, Role.ROD}
 """Parts that are drawn uncut where the plane runs along them (ISO 128-3)."""
@@ -107,65 +101,6 @@ def areas(seen: Sequence[Seen]) -> dict[int, float]:
     for one in seen:
         found[one.item] = max(found.get(one.item, 0.0), max((p.area for p in polygons(one.region)), default=0.0))
     return found
-
-
-def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
-    """Balloons in a column on either side of a view, each with a leader into a visible region of its part.
-
-    Args:
-        paper: the view.
-        seen: its regions.
-        scale: paper over robot.
-        items: which items to point at; all of them are seen.
-    """
-    points = {}
-    for item in items:
-        region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
-        point = region.representative_point()
-        points[item] = (point.x * scale, point.y * scale)
-    left, _, right, _ = paper.box()
-    columns: dict[bool, list[int]] = {False: [], True: []}
-    for rank, item in enumerate(sorted(points, key=lambda item: (points[item][0], item))):
-        columns[2 * rank >= len(points)].append(item)
-    for to_right, members in columns.items():
-        x = right + _COLUMN_MM if to_right else left - _COLUMN_MM
-        order = sorted(members, key=lambda item: (points[item][1], item))
-        heights = spread([points[item][1] for item in order], _BALLOON_PITCH_MM)
-        for item, y in zip(_uncrossed(order, heights, x, points), heights, strict=True):
-            _balloon(paper, item, (x, y), points[item])
-
-
-def _uncrossed(
-    order: Sequence[int], heights: Sequence[float], x: float, points: Mapping[int, tuple[float, float]]
-) -> list[int]:
-    """Items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
-    items = list(order)
-
-    def long(k: int, item: int) -> float:
-        return float(np.hypot(points[item][0] - x, points[item][1] - heights[k]))
-
-    shorter = True
-    while shorter:
-        shorter = False
-        for a in range(len(items)):
-            for b in range(a + 1, len(items)):
-                now = long(a, items[a]) + long(b, items[b])
-                if long(a, items[b]) + long(b, items[a]) < now - 1e-9:
-                    items[a], items[b] = items[b], items[a]
-                    shorter = True
-    return items
-
-
-def _balloon(paper: Paper, item: int, at: tuple[float, float], tip: tuple[float, float]) -> None:
-    """An item's number in a circle, with a leader that ends in a dot within the part."""
-    way = np.array(tip) - np.array(at)
-    start = np.array(at) + way / np.hypot(*way) * BALLOON_MM
-    paper.circle(*at, BALLOON_MM, width_mm=0.35)
-    paper.text(f"{item + 1}", at[0], at[1] - 0.5 * _TEXT_MM, height_mm=_TEXT_MM, align="centre")
-    paper.line([tuple(start), tip])
-    angles = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
-    dot = np.stack([tip[0] + 0.5 * np.cos(angles), tip[1] + 0.5 * np.sin(angles)], axis=1)
-    paper.fill(dot)
 
 
 def to_view(axes: Floats) -> Floats:

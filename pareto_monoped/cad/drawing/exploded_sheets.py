@@ -7,7 +7,8 @@ import numpy as np
 import shapely
 
 from pareto_monoped.cad.assembly import Instance, Pose, body_frames
-from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT_LYING, Seen, balloons, drawn, outline_of, to_view
+from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT_LYING, Seen, drawn, outline_of, to_view
+from pareto_monoped.cad.drawing.balloons import clear_balloons
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.sheet import A0, A1, SCALES, Size, compose, scale_text
 from pareto_monoped.cad.product import Product, UniquePart
@@ -59,7 +60,7 @@ def _filled(views: Sequence[tuple[str, list[Seen]]]) -> tuple[int, Sheet]:
 
 def _view(name: str, seen: Sequence[Seen], scale: float) -> Paper:
     paper = drawn(seen, scale)
-    balloons(paper, seen, scale, [one.item for one in seen])
+    clear_balloons(paper, seen, scale)
     left, low, right, high = paper.box()
     paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
     centred = Paper()

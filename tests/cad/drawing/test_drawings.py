@@ -3,10 +3,16 @@
 import csv
 import io
 
+import numpy as np
 import pytest
+import shapely
 
+from pareto_monoped.cad.drawing.assembly_sheet import assembly_sheet
 from pareto_monoped.cad.drawing.drawings import assembly_drawing, origin_of, part_drawings
+from pareto_monoped.cad.drawing.exploded_sheets import exploded_sheets
+from pareto_monoped.cad.drawing.paper import overlapping
 from pareto_monoped.cad.write.parts_list import parts_list
+from tests.cad.drawing.crossings import crossed
 from tests.cad.drawing.reader import pages, texts
 
 
@@ -75,6 +81,43 @@ def test_the_exploded_sheets_number_every_item_once(product, origin):
     assert sorted(map(int, numbers)) == list(range(1, len(product.unique) + 1))
     said = [text for page in exploded for text, _, _ in page.texts]
     assert [f"A1   {k}/{len(exploded) + 1}" in said for k in range(2, len(exploded) + 2)] == [True] * len(exploded)
+
+
+def test_no_line_runs_through_a_text_of_the_assembly(product):
+    for paper, size, _ in (assembly_sheet(product), *exploded_sheets(product)):
+        assert crossed(paper) == []
+        assert overlapping(paper.labels) == []
+        x0, y0, x1, y1 = paper.box()
+        assert x0 > 20.0
+        assert y0 > 10.0
+        assert x1 < size.width_mm - 10.0
+        assert y1 < size.height_mm - 10.0
+
+
+def test_leaders_on_exploded_sheets_cross_next_to_no_part(product):
+    """A leader ends in a dot within its own part; every other outline that it meets is one too many."""
+    leaders, crossings = 0, 0
+    for paper, _, _ in exploded_sheets(product):
+        outlines = [shapely.Polygon(s.points) for s in paper.strokes if s.closed and len(s.points) > 2]
+        circles = [one for one in outlines if _is_balloon(one)]
+        parts = shapely.STRtree([outline for outline in outlines if outline not in circles])
+        for stroke in paper.strokes:
+            if stroke.closed or len(stroke.points) != 2 or not _begins_at(stroke.points[0], circles):
+                continue
+            leaders += 1
+            tip = shapely.Point(stroke.points[1])
+            met = parts.query(shapely.LineString(stroke.points), predicate="crosses")
+            crossings += sum(not parts.geometries[k].buffer(0.01).covers(tip) for k in met)
+    assert leaders == len(product.unique)
+    assert crossings <= 0.1 * leaders
+
+
+def _is_balloon(outline):
+    return len(outline.exterior.coords) > 30 and abs(outline.area - np.pi * 4.0**2) < 0.3
+
+
+def _begins_at(point, circles):
+    return any(abs(np.hypot(*(point - np.array(circle.centroid.coords[0]))) - 4.0) < 0.05 for circle in circles)
 
 
 def test_drawings_are_the_same_bytes_each_time(product, origin):
