@@ -1,10 +1,10 @@
 """The motor drivers on the base: a plate on the outside of either cheek, under the upper rods' screws, carries a board.
 
 Each driver stands on the side of its motor. The knee motor's cables come through the journal, on the hip axis, where
-the thigh's swing only twists them. Cable ties hold them to the driver's plate and to the rods.
+the thigh's swing only twists them. Cable ties hold them to the driver's plate; ``cad.cables`` has their paths.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,41 @@ _CORNER = 4.0  # radius of plate and window
 _TIE_HOLE = 1.75  # radius: for ties of 2.5 mm
 _TIES_X = (6.0, 12.0)  # of the holes for a tie in the plate's upper side
 _CLEAR_OF_HOLES = 4.0  # from the board's holes to what stands on it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoardPlace:
+    """Where cables pass a driver's board, in the frame of the base.
+
+    Attributes:
+        plate_mm, inner_mm: height z of the plate's outer face, and of the board's face towards it.
+        low_mm, high_mm: height y of the board's lower and upper edge.
+        tie_x_mm, tie_y_mm: middle of a pair of holes for a tie, on either side.
+    """
+
+    plate_mm: float
+    inner_mm: float
+    low_mm: float
+    high_mm: float
+    tie_x_mm: float
+    tie_y_mm: float
+
+    def behind_mm(self, off_mm: float) -> float:
+        """Height z of a cable's middle line that lies so far off the plate."""
+        return self.plate_mm + float(np.sign(self.inner_mm - self.plate_mm)) * off_mm
+
+
+def board_place(face_mm: float, direction: float, d: LegDimensions) -> BoardPlace:
+    """The place of a driver's board; see ``driver_parts``."""
+    plate, middle = face_mm + direction * DRIVER_PLATE_MM, _lower_row_mm(d) + 0.5 * d.driver.hole_length_mm
+    return BoardPlace(
+        plate_mm=plate,
+        inner_mm=plate + direction * _STANDOFF,
+        low_mm=middle - 0.5 * d.driver.length_mm,
+        high_mm=middle + 0.5 * d.driver.length_mm,
+        tie_x_mm=0.5 * sum(_TIES_X),
+        tie_y_mm=_lower_row_mm(d) + d.driver.hole_length_mm,
+    )
 
 
 def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:

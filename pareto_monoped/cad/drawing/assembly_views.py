@@ -24,7 +24,8 @@ _NOT_CUT = SCREWS | {Role.BOLT, Role.PIN, Role.SHAFT, Role.ROD}
 """Parts that are drawn uncut where the plane runs along them (ISO 128-3)."""
 # Rows: right, up and towards the viewer of each view, in the assembly's frame.
 _FROM_RIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-_FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+FROM_LEFT = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
@@ -62,7 +63,7 @@ def leg_section(product: Product) -> list[Seen]:
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     found = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
-        body = placed(unique.mesh.body, to_view(_FROM_FRONT) @ frames[instance.body] @ instance.in_body)
+        body = placed(unique.mesh.body, to_view(FROM_FRONT) @ frames[instance.body] @ instance.in_body)
         low, high = body.bounding_box()[2], body.bounding_box()[5]
         if low >= 0.0 or high <= 0.0:
             continue

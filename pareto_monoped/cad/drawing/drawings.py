@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from pareto_monoped.cad.drawing.assembly_sheet import assembly_sheet
+from pareto_monoped.cad.drawing.cable_sheet import cable_sheet
 from pareto_monoped.cad.drawing.exploded_sheets import exploded_sheets
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
@@ -108,7 +109,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
         date=origin.date,
         maker=origin.maker,
     )
-    return _file([assembly_sheet(product), *exploded_sheets(product)], title)
+    return _file([assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)], title)
 
 
 # Designs of one study share most of their parts; a part's note, fits, teeth and accuracy do not count when compared.

@@ -7,11 +7,13 @@ from pareto_monoped.cad.assembling.bodies import Blocking, blocking_of
 from pareto_monoped.cad.assembling.steps import Addition, Step, steps_of, titled
 from pareto_monoped.cad.assembling.taking_apart import stuck, take_apart
 from pareto_monoped.cad.assembly import Instance, instances
+from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.picture.step_scenes import stage_of, step_picture
 from pareto_monoped.cad.product import Listed
 from pareto_monoped.cad.write import triangles
+from pareto_monoped.cad.write.cables import cables_csv
 from pareto_monoped.cad.write.foot_mould import foot_mould, rubber_ml
 from pareto_monoped.cad.write.hardware import hardware, items, tightening
 from pareto_monoped.errors import CheckError
@@ -28,6 +30,7 @@ _FROM = {
     "-z": "from below",
 }
 _VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
+_TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
 _SLACK = 0.01
 """Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
 since the torque of a jump changes its sign. Our own choice."""
@@ -56,6 +59,7 @@ def assembly_pack(product: Listed) -> dict[str, bytes]:
     halves = foot_mould(foot, block)
     for name, half in zip(("front", "back"), halves, strict=True):
         made[f"{FOLDER}/foot_mould_{name}.3mf"] = triangles.threemf(half, f"foot_mould_{name}")
+    made[f"{FOLDER}/cables.csv"] = cables_csv(product).encode()
     made[f"{FOLDER}/hardware.csv"] = hardware(product).encode()
     made[f"{FOLDER}/index.html"] = "\n".join(_page(product, steps, blocking, placed, foot)).encode()
     return made
@@ -91,6 +95,7 @@ def _page(
     yield "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise.</p>"
     yield from _table(("screw", "count", "where", "torque", "lock"), _screws(product))
     yield from _chain(product)
+    yield from _cables(product)
     yield "<h2>To buy</h2><p>The same as a table for a spreadsheet: <a href='hardware.csv'>hardware.csv</a>.</p>"
     yield from _table(
         ("kind", "designation", "standard", "count"),
@@ -163,6 +168,37 @@ def _chain(product: Listed) -> Iterator[str]:
         f"{100.0 * _SLACK:g} percent of its {span_mm:.0f} mm. It must not be taut in any pose of the knee.</li>"
     )
     yield "<li>Lock the nuts. Look again after the first 20 jumps, when the chain has bedded in.</li></ol>"
+
+
+def _cables(product: Listed) -> Iterator[str]:
+    """What is cut, and where it runs."""
+    made = cables(product.robot)
+    yield "<h2>Cables</h2>"
+    yield (
+        "<p>The last sheet of <code>drawings/assembly.pdf</code> shows where they run, "
+        "<a href='cables.csv'>cables.csv</a> has every corner. Lay them with the thigh hanging down. The cut length is "
+        f"the path with {_TAILS}. Bend no cable more tightly than its radius.</p>"
+    )
+    yield from _table(
+        ("cable", "from", "to", "cut", "path", "bend radius"),
+        (
+            (
+                cable.name.replace("_", " "),
+                cable.start,
+                cable.end,
+                f"{cable.wires} x {cable.cut_mm:g} mm, {cable.designation}",
+                f"{cable.length_mm:.0f} mm",
+                f"{cable.bend_radius_mm:.0f} mm",
+            )
+            for cable in made
+        ),
+    )
+    uncounted = sum(cable.mass_g for cable in made)
+    yield (
+        f"<p>The motors' wires weigh {uncounted:.0f} g. The robot's mass does not count them, since nobody knows where "
+        "a motor's own leads end. The encoders' masses count 0.3 m of cable each. Supply and bus of the drivers come "
+        "from the test stand.</p>"
+    )
 
 
 def _printing(product: Listed, foot: Part) -> Iterator[str]:

@@ -28,16 +28,17 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     "pdf": (
         (
             "drawings/assembly.pdf",
-            "the robot with sections and the list of items, then its units pulled apart, with balloons, A1",
+            "the robot with sections and the list of items, its units pulled apart, with balloons, and its cables",
         ),
         ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
     ),
     "assembly": (
         (
             "assembly/index.html",
-            "how the robot is put together: steps, torques, chain, printing, casting",
+            "how the robot is put together: steps, torques, chain, cables, printing, casting",
         ),
-        ("assembly/hardware.csv", "what is bought: designations, standards, counts"),
+        ("assembly/hardware.csv", "what is bought: designations, standards, counts, lengths of cables"),
+        ("assembly/cables.csv", "where the cables run: every corner, bend radius, cut length, ties"),
         ("assembly/", "the pictures of the steps, and the mould for the foot"),
     ),
     "png": (

@@ -5,6 +5,7 @@ import io
 import re
 from dataclasses import dataclass
 
+from pareto_monoped.cad.cables import TIE, TIE_DESIGNATION, Cable, cables
 from pareto_monoped.cad.product import Listed
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Role
@@ -66,6 +67,14 @@ def items(product: Listed) -> list[Item]:
     return sorted(found.values(), key=lambda item: item.kind)
 
 
+def by_designation(product: Listed) -> dict[str, list[Cable]]:
+    """The robot's cables, those of one kind together."""
+    found: dict[str, list[Cable]] = {}
+    for cable in cables(product.robot):
+        found.setdefault(cable.designation, []).append(cable)
+    return found
+
+
 def hardware(product: Listed) -> str:
     """The purchasing list as CSV."""
     stream = io.StringIO()
@@ -74,6 +83,13 @@ def hardware(product: Listed) -> str:
     for item in items(product):
         parts, remarks = " ".join(item.parts), "; ".join(item.remarks)
         writer.writerow((item.kind, item.designation, item.standard, item.count, parts, remarks))
+    for designation, made in by_designation(product).items():
+        lengths = ", ".join(f"{c.name} {c.wires} x {c.cut_mm:g} mm" for c in made)
+        total_m = 1e-3 * sum(c.wires * c.cut_mm for c in made)
+        names = " ".join(c.name for c in made)
+        writer.writerow(("cable", designation, "", sum(c.wires for c in made), names, f"{lengths}; {total_m:.2f} m"))
+    ties = sum(cable.notes.count(TIE) for made in by_designation(product).values() for cable in made)
+    writer.writerow(("cable", TIE_DESIGNATION, "", ties, "driver plates", ""))
     locked = sum(unique.count for unique in product.unique if unique.part.role in FASTENERS)
     writer.writerow(("consumable", LOCKER, "", 1, f"{locked} screws and bolts", "10 ml"))
     return stream.getvalue()

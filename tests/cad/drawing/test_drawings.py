@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 import shapely
 
+from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.drawing.assembly_sheet import assembly_sheet
+from pareto_monoped.cad.drawing.cable_sheet import cable_sheet
 from pareto_monoped.cad.drawing.drawings import assembly_drawing, origin_of, part_drawings
 from pareto_monoped.cad.drawing.exploded_sheets import exploded_sheets
 from pareto_monoped.cad.drawing.paper import overlapping
@@ -74,17 +76,28 @@ def test_each_item_has_at_most_one_balloon_and_most_have_one(product, origin):
 
 
 def test_the_exploded_sheets_number_every_item_once(product, origin):
-    _, *exploded = pages(assembly_drawing(product, origin))
+    _, *exploded, _ = pages(assembly_drawing(product, origin))
     assert exploded
     above_title_mm = 65.0
     numbers = [text for page in exploded for text, _, y in page.texts if text.isdigit() and y > above_title_mm]
     assert sorted(map(int, numbers)) == list(range(1, len(product.unique) + 1))
     said = [text for page in exploded for text, _, _ in page.texts]
-    assert [f"A1   {k}/{len(exploded) + 1}" in said for k in range(2, len(exploded) + 2)] == [True] * len(exploded)
+    assert [f"A1   {k}/{len(exploded) + 2}" in said for k in range(2, len(exploded) + 2)] == [True] * len(exploded)
+
+
+def test_the_sheet_of_the_cables_says_how_to_cut_them(product, origin):
+    *_, sheet = pages(assembly_drawing(product, origin))
+    said = [text for text, _, _ in sheet.texts]
+    for letter, cable in zip("ABCD", cables(product.robot), strict=True):
+        assert f"{cable.start} to {cable.end}" in said
+        assert f"{cable.wires} x {cable.designation}" in said
+        assert f"{cable.cut_mm:g}" in said
+        # In both views and in the table.
+        assert [said.count(f"{letter}{k}") for k in range(1, len(cable.notes) + 1)] == [3] * len(cable.notes)
 
 
 def test_no_line_runs_through_a_text_of_the_assembly(product):
-    for paper, size, _ in (assembly_sheet(product), *exploded_sheets(product)):
+    for paper, size, _ in (assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)):
         assert crossed(paper) == []
         assert overlapping(paper.labels) == []
         x0, y0, x1, y1 = paper.box()
