@@ -160,6 +160,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             process="machined",
             group=Group.HOUSING,
             grade=gear_grade(settings, settings.gear_steels.ring),
+            fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
             accuracy_class=gear_accuracy(settings),
             teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
             note=gear_note(gears.ring(data.gears.backlash_mm), settings),

@@ -234,6 +234,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
+                # A gap of 0.01 to 0.06 mm for the bond of a stator whose bore is H7; our own choice.
+                Fit(diameter_mm=2.0 * at.r_stator_in, zone="g6"),
                 FLANGE_DOWEL.hole_fit,
             ),
             features=(

@@ -105,7 +105,8 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
             grade=ALLOYS["aw_7075_t6"],
             note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped {THREAD.name} "
-            f"right-hand and left-hand, {_TAPPED:g} mm deep; travel {TRAVEL:g} mm at either end to either side",
+            f"right-hand and left-hand, {_TAPPED:g} mm deep, drawn as square bores; "
+            f"travel {TRAVEL:g} mm at either end to either side",
         ),
         *(
             part
@@ -133,7 +134,8 @@ def _fastened(
             prisms=_end(side, d),
             places_mm=shifted(0.5 * pins_mm),
             grade=ALLOYS["c45_qt"],
-            note=f"fork with {hand} {THREAD.name} stud and pin for the chain's inner link",
+            note=f"fork with {hand} {THREAD.name} - 6g stud, drawn as a square of its area; its pin goes through both "
+            "cheeks and the chain's inner link and is riveted",
         ),
         Part(
             name=f"turnbuckle_nut_{end}",

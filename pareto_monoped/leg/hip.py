@@ -9,7 +9,7 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, SEAT_RADIUS, support_parts
+from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, NECK_RADIUS, SEAT_RADIUS, support_parts
 from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
@@ -174,6 +174,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             prisms=sprocket_prisms(d, M3.head + HEAD_PLAY),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["aw_7075_t6"],
+            fits=(Fit(diameter_mm=2.0 * NECK_RADIUS, zone="H7"), _output_dowel(d).hole_fit),
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
         Part(

@@ -1,6 +1,9 @@
 """The view of a round part along its axis: visible edges, patterns of holes and their callouts."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.bores import Bore, number
 from pareto_monoped.cad.drawing.dimension import callout, callout_height
@@ -102,6 +105,19 @@ def _visible(part: RoundPart, bore: Bore) -> bool:
     )
 
 
+def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDArray[np.float64]]:
+    """The hole of each pattern that its leader ends at: of the rightmost two, in turn the upper and the lower one."""
+    found = []
+    side = 1.0
+    for bore in bores:
+        mirrored = 1.0 if from_above else -1.0
+        centres = np.array([(mirrored * cx * scale, cy * scale) for cx, cy in bore.centres])
+        right = centres[centres[:, 0] >= centres[:, 0].max() - 1e-3]
+        found.append(right[int(np.argmax(side * right[:, 1]))])
+        side = -side if len(right) > 1 else side
+    return found
+
+
 def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, outer: float) -> None:
     """Callouts in a column at the right, each with a leader to one of its holes."""
     entries = [
@@ -114,12 +130,12 @@ def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, ou
     ]
     y = 0.5 * sum(callout_height(lines, place) for _, lines, place in entries)
     x = outer + _COLUMN_MM
-    for bore, lines, place in entries:
+    pointed = _pointed([bore for bore, _, _ in entries], scale, part.from_above)
+    # From above in the order of the holes, so that no leader crosses another.
+    for k in sorted(range(len(entries)), key=lambda k: (-round(float(pointed[k][1]), 3), k)):
+        bore, lines, place = entries[k]
         y -= 4.0
-        mirrored = 1.0 if part.from_above else -1.0
-        centres = np.array([(mirrored * cx * scale, cy * scale) for cx, cy in bore.centres])
-        cost = np.abs(centres[:, 1] - y) - 0.5 * centres[:, 0]
-        centre = centres[int(np.argmin(np.round(cost, 6)))]
+        centre = pointed[k]
         towards = np.array([x - 3.0, y]) - centre
         tip = centre + bore.radius * scale * towards / np.hypot(*towards)
         callout(paper, lines, x, y, (float(tip[0]), float(tip[1])), place=place)

@@ -19,6 +19,9 @@ from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, TITLE_MM, Title,
 from pareto_monoped.cad.shape.curves import polygon
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
+from pareto_monoped.geometry.gears import InternalGear
+from pareto_monoped.geometry.roles import Role
+from pareto_monoped.materials import GearGrade
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
 
@@ -187,6 +190,26 @@ def test_gears_have_their_data_and_fits_their_limits(sheets):
         if part.fits:
             assert "Fits (ISO 286-2)" in said
     assert gears >= 5
+
+
+def test_hardened_gears_say_how_deep_and_rings_how_wide(sheets):
+    """A quarter of the module at most: more would harden the teeth's cores."""
+    hard = rings = 0
+    for part, paper, _, _ in sheets:
+        if not is_round(part) or part.role is not Role.GEAR or not isinstance(part.grade, GearGrade):
+            continue
+        said = [label.text for label in paper.labels]
+        if part.grade.treatment == "through_hardened":
+            continue
+        row = next(k for k, text in enumerate(said) if text.startswith(("Case depth", "Nitriding depth")))
+        least, most = map(float, said[row + 1].split(" to "))
+        module = float(teeth_of(part)[-1].gear.module_mm)
+        assert 0.1 * module < least < most <= 0.25 * module + 0.005
+        hard += 1
+        if any(isinstance(teeth.gear, InternalGear) for teeth in teeth_of(part)):
+            rings += 1
+            assert any(text.endswith(" h6") for text in said), part.name
+    assert rings >= 2 or hard == 0
 
 
 def test_a_fitted_pattern_of_holes_has_a_frame_with_its_position(sheets):
