@@ -125,7 +125,8 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
     if len(members) > 1:
         return f"Put together {_listed(members, blocking)}, and bring them {way}."
     joint = blocking.bodies[members[0]].instance.part.joint
-    how = f" It is {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
+    several = len(blocking.bodies[members[0]].instances) > 1
+    how = f" {'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
     verb = "Put" if joint is None else _VERB.get(joint.kind, "Put")
     return f"{verb} {_listed(members, blocking)} in place {way}.{how}"
 
@@ -161,6 +162,10 @@ def _chain(product: Listed) -> Iterator[str]:
     notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
     yield "<h2>Chain</h2><ol>"
+    yield (
+        "<li>Put the turnbuckles together before they go in: each nut onto the stud of its fork, then both forks into "
+        "the bar by equal turns. Only then put the forks' pins through the last links of the chain.</li>"
+    )
     yield from (f"<li>Turnbuckles: {escape(note)}.</li>" for note in notes)
     yield "<li>Turn the knee to a right angle and hold the shank. Turn both turnbuckles by equal angles.</li>"
     yield (
@@ -176,8 +181,9 @@ def _cables(product: Listed) -> Iterator[str]:
     yield "<h2>Cables</h2>"
     yield (
         "<p>The last sheet of <code>drawings/assembly.pdf</code> shows where they run, "
-        "<a href='cables.csv'>cables.csv</a> has every corner. Lay them with the thigh hanging down. The cut length is "
-        f"the path with {_TAILS}. Bend no cable more tightly than its radius.</p>"
+        "<a href='cables.csv'>cables.csv</a> has every corner. Lay them last, with the thigh hanging "
+        "down: they slide up behind the drivers' boards. The cut length is the "
+        f"path with {_TAILS}. Bend no cable more tightly than its radius.</p>"
     )
     yield from _table(
         ("cable", "from", "to", "cut", "path", "bend radius"),
