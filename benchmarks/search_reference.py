@@ -25,6 +25,7 @@ from pareto_monoped.jump.calibration import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
+from pareto_monoped.study.coordinates import coordinates_of
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.scoring import judge, scores
@@ -129,7 +130,8 @@ def main() -> None:
     path = folder / f"{arguments.motor}.csv"
     folder.mkdir(exist_ok=True)
     about, rows = read(path, simulator.probe(), names)
-    coordinates, free = simulator.coordinates(first), [name in first.free for name in NAMES]
+    coordinates = coordinates_of(first, simulator.evaluator.actuator_map)
+    free = [name in first.free for name in NAMES]
     while len(about["seeds"]) < searches or about["refinements"] < arguments.refine:
         began, refining = time.perf_counter(), len(about["seeds"]) >= searches
         count = about["refinements"] if refining else len(about["seeds"])

@@ -104,7 +104,7 @@ def trial_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for one trial of a study, with the motor and the calibration that the study stores.
+    """The job for one trial of a study, with its motor and its calibration as the study stores them.
 
     Args:
         data: the study.
@@ -123,7 +123,7 @@ def trial_job(
     row = data.trials.loc[data.trials["trial"] == trial].iloc[0]
     return Job(
         design=Design.from_array([row[name] for name in NAMES]),
-        motor=data.motor,
+        motor=data.motor_of_trial(trial),
         calibration=data.calibration,
         rules=data.study.rules,
         folder=folder,

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
 
 
-def shown_columns(trials: "DataFrame", objectives: "Objectives") -> list[str]:
-    """The columns of each design in the output of ``front`` and ``pick``: objectives and variables in use."""
-    return ["trial", *objectives.names, *(variable.name for variable in in_use(trials))]
+def shown_columns(data: "StudyData", objectives: "Objectives") -> list[str]:
+    """The columns of each design in the output of ``front`` and ``pick``: objectives, variables in use, choices."""
+    variables = [variable.name for variable in in_use(data.trials)]
+    return ["trial", *objectives.names, *variables, *(["motor"] if len(data.study.motors) > 1 else [])]
 
 
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -142,7 +143,7 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
         unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
         click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
     _say_of_strength(data)
-    rows = rows[shown_columns(data.trials, chosen)]
+    rows = rows[shown_columns(data, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -188,19 +189,23 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     shown = [variable for variable in VARIABLES if variable.name in rows.columns]
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
     widths = [max(len(head), 8) for head in heads]
-    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) <= _TABLE_WIDTH
+    # The motors' names stand last, in a column as wide as the longest.
+    motors = ["motor", *rows["motor"]] if "motor" in rows.columns else []
+    last = 1 + max(map(len, motors)) if motors else 0
+    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= _TABLE_WIDTH
     # With a third objective the usual columns do not fit; three digits of each variable then must do.
     number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
     symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
-    click.echo(f"{'trial':>6} {words} {symbols}")
+    click.echo(f"{'trial':>6} {words} {symbols}" + (" motor" if motors else ""))
     for _, row in rows.iterrows():
         values = " ".join(number(row[variable.name]) for variable in shown)
         goals = " ".join(
             f"{row[entry.name]:{width}.{_decimals(entry)}f}"
             for entry, width in zip(objectives.measures, widths, strict=True)
         )
-        click.echo(f"{int(row['trial']):6d} {goals} {values}")
+        motor = f" {row['motor']}" if motors else ""
+        click.echo(f"{int(row['trial']):6d} {goals} {values}{motor}")
 
 
 @click.command()
@@ -214,7 +219,7 @@ def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
 
     wanted = required(selector)
     data = read_study(db)
-    rows, names = data.front(), shown_columns(data.trials, data.study.objectives)
+    rows, names = data.front(), shown_columns(data, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
     _say_of_strength(data)
     row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
@@ -223,4 +228,4 @@ def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
         return
     click.echo(picked.why)
     for name in names[1:]:
-        click.echo(f"{name:<34} {row[name]:.6g}")
+        click.echo(f"{name:<34} {row[name]}" if name == "motor" else f"{name:<34} {row[name]:.6g}")

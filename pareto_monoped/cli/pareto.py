@@ -2,7 +2,7 @@
 
 import contextlib
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,9 +53,11 @@ def pareto(
     folder.mkdir(parents=True, exist_ok=True)
     table, report, cad = folder / "actuators.csv", folder / "report.html", folder / "cad"
     other = counterpart(study.objectives)
-    steps = _Steps(total=4 if other is None else 5)
+    tables = {motor: table if motor == study.motor else _named(table, motor) for motor in study.motors}
+    steps = _Steps(total=(4 if other is None else 5) + len(tables) - 1)
 
-    steps.do("actuators", "--motor", study.motor, "--csv", table)
+    for motor, path in tables.items():
+        steps.do("actuators", "--motor", motor, "--csv", path)
     options = [f"--evaluations={evaluations}"] if evaluations else []
     options += [f"--workers={workers}"] if workers else []
     options += ["--no-strength"] if no_strength else []
@@ -77,7 +79,7 @@ def pareto(
     made = [f"jumps by {_by(data)}; opens in Optuna" for data in studies]
     fronts = zip(dbs, made if other else ["every jump; resumable, opens in Optuna"], strict=True)
     for path, what in (
-        (table, "the lightest actuator of every ratio"),
+        *((path, f"the lightest actuator of every ratio{_of(motor, study.motors)}") for motor, path in tables.items()),
         *fronts,
         (design, "CAD and models of the knee design"),
         (report, "the fronts: open it in a browser" if other else "the front: open it in a browser"),
@@ -86,11 +88,21 @@ def pareto(
     _print_headline(studies[0], knee.trial)
     if other is not None:
         _print_choices(studies)
-    click.echo(f"Simulated with motor {study.motor}, calibration {study.calibration}.")
+    word = "motor" if len(study.motors) == 1 else "motors"
+    click.echo(f"Simulated with {word} {', '.join(study.motors)}, calibration {study.calibration}.")
     if not studies[0].study.strength:
         click.echo(f"Note: {NO_STRENGTH}.")
     counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
     click.echo(f"Designs on the front: {counts}.")
+
+
+def _named(table: Path, motor: str) -> Path:
+    """The table of one of several motors, such as actuators_U8.csv for actuators.csv."""
+    return table.with_name(f"{table.stem}_{Path(motor).stem if motor.endswith('.toml') else motor}{table.suffix}")
+
+
+def _of(motor: str, motors: Sequence[str]) -> str:
+    return f", {Path(motor).stem}" if len(motors) > 1 else ""
 
 
 @dataclass(slots=True)
@@ -161,9 +173,15 @@ def _print_choices(studies: "list[StudyData]") -> None:
     click.echo(f" {'least':6}{'chosen by mechanical energy':>31}  {'chosen by battery energy':>31} {'costs at':>8}")
     click.echo(f" {'height':6}{side}  {side} {'battery':>8}")
     click.echo(f" {'─' * 78}")
-    for row in choices(*pair):
+    rows = choices(*pair)
+    for row in rows:
         cost = "-" if row.cost is None else f"{100.0 * row.cost:+.1f} %"
         click.echo(f" {row.height_m:.1f} m {_cells(row.mechanical)}  {_cells(row.battery)} {cost:>8}")
+    if len(studies[0].study.motors) > 1:
+        click.echo("\nMotors")
+        for row in rows:
+            chosen = "  ".join(f"{'not reached' if c is None else c.motor:>31}" for c in (row.mechanical, row.battery))
+            click.echo(f" {row.height_m:.1f} m {chosen}")
     click.echo("\nhip, knee: gear ratios; costs: what choosing by mechanical energy adds there.")
 
 

@@ -1,5 +1,6 @@
 """Designs in, evaluations out, in the same order: search, report and command line jump through this module only."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -10,10 +11,10 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, col
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.jump.rows import take
+from pareto_monoped.jump.rows import joined, take
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.frames import JOINTS
-from pareto_monoped.robot.population import RobotArrays, robot_arrays
+from pareto_monoped.robot.population import JointStops, RobotArrays, robot_arrays
 from pareto_monoped.strength.factors import safeties, strength_factors
 from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
 
@@ -100,38 +101,68 @@ class Evaluations:
 
 
 class Evaluator:
-    """Evaluates designs with the actuators of one motor under one calibration.
+    """Evaluates designs with the actuators of one motor, or of one of several, under one calibration.
 
     To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
     workers.
 
     Attributes:
-        actuator_map: ratio -> lightest actuator.
+        actuator_map: ratio -> lightest actuator, of the first or only motor.
+        actuator_maps: of every motor.
         calibration: the jump model.
         workers: threads.
     """
 
-    def __init__(self, actuator_map: ActuatorMap, calibration: Calibration, workers: int = 1) -> None:
+    def __init__(
+        self,
+        actuator_map: ActuatorMap,
+        calibration: Calibration,
+        workers: int = 1,
+        *,
+        others: Sequence[ActuatorMap] = (),
+    ) -> None:
         self.actuator_map = actuator_map
+        self.actuator_maps = (actuator_map, *others)
         self.calibration = calibration
         self.workers = workers
 
-    def __call__(self, designs: ArrayLike) -> Evaluations:
+    def __call__(self, designs: ArrayLike, motors: ArrayLike | None = None) -> Evaluations:
         """Jump with each design.
 
         Args:
             designs: shape (n, 7) or (n, number of variables), see ``design.complete``.
+            motors: which of ``actuator_maps`` each design is built with, shape (n,); the first if None.
         """
         values = np.atleast_2d(complete(designs))
         table, reasons = _Table(len(values)), _nonsense(values)
         for i, reason in reasons.items():
             table.fail(i, "bad_input", reason)
         sane = np.setdiff1d(np.arange(len(values)), list(reasons))
+        chosen = np.zeros(len(values), dtype=np.intp) if motors is None else np.asarray(motors, dtype=np.intp)
         if len(sane):
-            robots = robot_arrays(values[sane], self.actuator_map, self.calibration.mass)
-            _jump(robots, columns(values[sane], CONTROL), self.calibration, self.workers, table, sane)
-            _add_safeties(values, self.actuator_map, table, sane)
+            self._evaluate(values, {k: sane[chosen[sane] == k] for k in np.unique(chosen[sane]).tolist()}, table)
         return table.evaluations()
+
+    def _evaluate(self, values: Floats, rows_of: Mapping[int, NDArray[np.intp]], table: "_Table") -> None:
+        """Fill the table; ``rows_of`` has the rows of each motor."""
+        built = {
+            k: robot_arrays(values[rows], self.actuator_maps[k], self.calibration.mass) for k, rows in rows_of.items()
+        }
+        # Robots with the same end stops share one model, so they jump together whatever their motors.
+        for members in _alike(built):
+            robots = joined([built[k] for k in members])
+            rows = np.concatenate([rows_of[k] for k in members])
+            _jump(robots, columns(values[rows], CONTROL), self.calibration, self.workers, table, rows)
+        for k, rows in rows_of.items():
+            _add_safeties(values, self.actuator_maps[k], table, rows)
+
+
+def _alike(robots: Mapping[int, RobotArrays]) -> list[list[int]]:
+    """Keys of populations that have the same end stops, and can thus be one population."""
+    groups: dict[JointStops, list[int]] = {}
+    for key, population in robots.items():
+        groups.setdefault(population.stops, []).append(key)
+    return list(groups.values())
 
 
 def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Evaluations:

@@ -1,5 +1,6 @@
 """Rows of a struct of arrays."""
 
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, TypeVar
 
@@ -24,3 +25,21 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
         elif isinstance(values, np.ndarray):
             kept[field.name] = values[rows]
     return replace(record, **kept)  # type: ignore[type-var]
+
+
+def joined(records: Sequence[T]) -> T:
+    """One record with the rows of all, see ``take``; a single record stays as it is.
+
+    Args:
+        records: at least one; what is the same for all items must be the same in all of them.
+    """
+    if len(records) == 1:
+        return records[0]
+    together: dict[str, Any] = {}
+    for field in fields(records[0]):  # type: ignore[arg-type]
+        parts = [getattr(record, field.name) for record in records]
+        if isinstance(parts[0], tuple):
+            together[field.name] = tuple(item for part in parts for item in part)
+        elif isinstance(parts[0], np.ndarray):
+            together[field.name] = np.concatenate(parts)
+    return replace(records[0], **together)  # type: ignore[type-var]

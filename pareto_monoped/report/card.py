@@ -38,6 +38,14 @@ HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MapPlace:
+    """Where the page has the stage 1 map of a motor: number of the map, and of its first gearbox."""
+
+    number: int
+    first_gearbox: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
     """A stored study, what was simulated again for it, and its exported models by trial."""
 
@@ -50,8 +58,7 @@ def study_card(
     source: Source,
     label: str,
     most_rows: int,
-    map_number: int,
-    first_gearbox: int,
+    maps: Mapping[str, MapPlace],
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
 ) -> StudyCard:
@@ -61,8 +68,7 @@ def study_card(
         source: the study.
         label: its name on the page.
         most_rows: trials that the page may hold of it.
-        map_number: which of the page's stage 1 maps is its motor's.
-        first_gearbox: number of that map's first gearbox.
+        maps: name of each of its motors -> where the page has that motor's stage 1 map.
         variables: those that the page shows.
         goals: the objectives of all studies on the page.
     """
@@ -76,23 +82,20 @@ def study_card(
     feasible_kg = data.trials.loc[state == "feasible", "mass_kg"]
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
-
-    def gearboxes(designs: pd.DataFrame) -> dict[str, list[int]]:
-        return {
-            joint: gearbox_numbers(data.actuator_map, designs[f"{joint}_ratio"].to_numpy(dtype=float), first_gearbox)
-            for joint in ("hip", "knee")
-        }
-
+    several = len(study.motors) > 1
     return StudyCard(
         label=label,
         name=study.name,
         description=study.description,
         database=str(data.db),
-        motor=data.actuator_map.motor.name,
-        motor_name=study.motor,
+        motor=", ".join(data.actuator_maps),
+        case_motor=data.motor.name,
+        motor_names={
+            str(maps[motor].number): given for motor, given in zip(data.actuator_maps, study.motors, strict=True)
+        },
         calibration=data.meta.calibration,
         calibration_name=study.calibration,
-        map=map_number,
+        map=maps[data.motor.name].number,
         algorithm=study.algorithm.name,
         seed=study.seed,
         objectives=study.objectives.names,
@@ -111,7 +114,14 @@ def study_card(
         },
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
-        trials=trial_columns(trials, gearboxes(trials), len(data.trials), variables, goals),
+        trials=trial_columns(
+            trials,
+            _gearboxes(data, trials, maps)
+            | ({"motor": [maps[name].number for name in trials["motor"]]} if several else {}),
+            len(data.trials),
+            variables,
+            goals,
+        ),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
         picks=_picks(front, row_of, study.objectives),
@@ -120,7 +130,7 @@ def study_card(
         jumps={str(trial): jump for trial, jump in again.jumps.items()},
         models={str(trial): model for trial, model in source.models.items()},
         cases=again.cases,
-        case_gearboxes=gearboxes(cases),
+        case_gearboxes=_gearboxes(data, cases.assign(motor=data.motor.name), maps, suffix=""),
         history=history_columns(data.history),
         weighted=[[weight, row_of[trial]] for weight, trial in weights],
         floor_mass_kg=float(feasible_kg.min()) if len(feasible_kg) else None,
@@ -131,16 +141,30 @@ def study_card(
     )
 
 
+def _gearboxes(
+    data: StudyData, designs: pd.DataFrame, maps: Mapping[str, MapPlace], suffix: str = "_gearbox"
+) -> dict[str, list[int]]:
+    """Numbers of the designs' gearboxes on the page, by joint."""
+    found = {joint: np.full(len(designs), -1) for joint in ("hip", "knee")}
+    for actuator_map, rows in data.motor_rows(designs):
+        first = maps[actuator_map.motor.name].first_gearbox
+        for joint, numbers in found.items():
+            ratios = designs[f"{joint}_ratio"].to_numpy(dtype=float)[rows]
+            numbers[rows] = gearbox_numbers(actuator_map, ratios, first)
+    return {f"{joint}{suffix}": numbers.tolist() for joint, numbers in found.items()}
+
+
 def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float64]:
     """Masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
-    if len(designs) == 0:
-        return np.zeros((0, 3))
-    values = designs[list(NAMES)].to_numpy(dtype=np.float64)
-    return robot_arrays(values, data.actuator_map, data.calibration.mass).body_mass_kg
+    masses = np.zeros((len(designs), 3))
+    for actuator_map, rows in data.motor_rows(designs):
+        values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
+        masses[rows] = robot_arrays(values, actuator_map, data.calibration.mass).body_mass_kg
+    return masses
 
 
 def _foot(data: StudyData) -> tuple[float, float]:
-    """Mass in kg, which the shank's mass includes, and radius in m of the foot that was simulated."""
+    """Mass in kg, which the shank's mass includes, and radius in m of the simulated foot; no motor changes it."""
     given, leg = data.calibration.mass, leg_dimensions(data.actuator_map)
     mass_kg = float(foot_part(0.0, leg).mass_kg()) if given.foot_mass_kg is None else given.foot_mass_kg
     radius_m = 1e-3 * leg.foot_radius_mm if given.foot_radius_m is None else given.foot_radius_m

@@ -42,7 +42,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
         rows.append(
             {
                 "label": label,
-                "motor": data.study.motor,
+                "motor": ", ".join(data.study.motors),
                 "calibration": data.meta.calibration,
                 "algorithm": data.study.algorithm.name,
                 "seed": data.study.seed,
@@ -85,7 +85,11 @@ def _choices(studies: Sequence[StudyData]) -> list[dict[str, Any]]:
 
 
 def _plain(choice: Choice | None) -> dict[str, Any] | None:
-    return None if choice is None else {name: number(value) for name, value in asdict(choice).items()}
+    return (
+        None
+        if choice is None
+        else {name: value if isinstance(value, str) else number(value) for name, value in asdict(choice).items()}
+    )
 
 
 def least_second(front: Floats, levels: Floats, objectives: Objectives = HEIGHT_AND_ENERGY) -> Floats:

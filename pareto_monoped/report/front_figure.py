@@ -41,6 +41,7 @@ def front_figure(payload: Payload, figure: Any) -> bool:
     published = [(c["energy_j"], c["height_m"], c["name"]) for c in payload.published] if papers_own else []
     for i, card in enumerate(payload.studies):
         _cloud_and_front(axes, card, i, places, third)
+        _motors(axes, payload, card, places, third)
         if i == 0:
             _diamonds(axes, _simulated(card, places), "black", "paper, simulated here")
     _diamonds(axes, published, "white", "paper, published")
@@ -111,6 +112,22 @@ def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, thi
         axes.plot(across, up, drawstyle=steps, marker=symbol, ms=2.5, color=tint, label=card.label, lw=0.8)
     else:
         axes.plot(across, up, symbol, ms=2.5, color=tint, label=card.label)
+
+
+def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: Sequence[str]) -> None:
+    """The designs on the front with a colour and a mark for each motor, where the study has several."""
+    if "motor" not in card.trials.columns:
+        return
+    across, up = _places(card, card.front, places)
+    chosen = values(card.trials.columns["motor"], card.front)
+    for k, number in enumerate(map(int, card.motor_names)):
+        rows = chosen == number
+        if rows.any():
+            tint, symbol = STYLES[k % len(STYLES)]
+            # A third objective keeps the colour; the marks then stand around its dots.
+            fill = {"mfc": "none", "mew": 0.5} if third else {}
+            label = payload.maps[number].motor
+            axes.plot(across[rows], up[rows], symbol, ls="", ms=4.5 if third else 3, color=tint, label=label, **fill)
 
 
 def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pareto_monoped import __version__
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.report.card import HEADLINES_M, Source, study_card
+from pareto_monoped.report.card import HEADLINES_M, MapPlace, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.motors import motor_tables
 from pareto_monoped.report.quantities import QUANTITIES
@@ -36,17 +36,17 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         literal: the paper's cases under the ``paper`` calibration, as in ``jump.table1.Spread``.
     """
     mapped: list[Any] = []
-    first_gearboxes: list[int] = []
+    places: list[MapPlace] = []
     gearboxes: list[Gearbox] = []
     maps: list[MotorMap] = []
     for source in sources:
-        actuator_map = source.data.actuator_map
-        if _origin(actuator_map) not in mapped:
-            tables = motor_tables(actuator_map, first=len(gearboxes))
-            mapped.append(_origin(actuator_map))
-            first_gearboxes.append(len(gearboxes))
-            maps.append(tables.map)
-            gearboxes.extend(tables.gearboxes)
+        for actuator_map in source.data.actuator_maps.values():
+            if _origin(actuator_map) not in mapped:
+                tables = motor_tables(actuator_map, first=len(gearboxes))
+                places.append(MapPlace(number=len(maps), first_gearbox=len(gearboxes)))
+                mapped.append(_origin(actuator_map))
+                maps.append(tables.map)
+                gearboxes.extend(tables.gearboxes)
     labels = _labels(sources)
     used = {variable.name for source in sources for variable in in_use(source.data.trials)}
     variables = [variable for variable in VARIABLES if variable.name in used]
@@ -55,8 +55,8 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     for source, label, most_rows in zip(
         sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
     ):
-        number = mapped.index(_origin(source.data.actuator_map))
-        cards.append(study_card(source, label, most_rows, number, first_gearboxes[number], variables, goals))
+        own = {name: places[mapped.index(_origin(one))] for name, one in source.data.actuator_maps.items()}
+        cards.append(study_card(source, label, most_rows, own, variables, goals))
     return Payload(
         version=__version__,
         title=_title(cards),

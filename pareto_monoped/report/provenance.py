@@ -19,7 +19,7 @@ def provenance(data: StudyData) -> list[list[str]]:
         ("state", "finished" if meta.finished else "unfinished"),
         ("ended because of", meta.stop_reason or "nothing yet"),
         ("seed", study.seed),
-        ("motor", study.motor),
+        ("motor", ", ".join(study.motors)),
         ("calibration", meta.calibration),
         ("settings hash (SHA-256)", meta.hash),
         *((f"version of {name}", version) for name, version in meta.versions.items()),

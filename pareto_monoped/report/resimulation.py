@@ -44,7 +44,7 @@ class Resimulation:
 
     Attributes:
         jumps: of designs on the front, by trial number.
-        cases: the paper's designs.
+        cases: the paper's designs, with ``StudyData.motor``.
         drift_m: largest difference between a stored height and the height simulated now.
     """
 
@@ -63,11 +63,16 @@ def resimulate(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Resimulation
         knee = pick(front, Knee(), data.study.objectives).trial
         chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
     rows = front.iloc[sorted(chosen)]
-    jumps = jumps_of(rows[list(NAMES)].to_numpy(dtype=np.float64), data.actuator_map, data.calibration)
+    jumps: dict[int, Jump] = {}
+    for actuator_map, places in data.motor_rows(rows):
+        members = rows.iloc[places]
+        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), actuator_map, data.calibration)
+        jumps |= zip(members["trial"].astype(int).tolist(), made, strict=True)
+    heights = zip(rows["trial"].astype(int), rows["height_m"], strict=True)
     return Resimulation(
-        jumps=dict(zip(rows["trial"].astype(int).tolist(), jumps, strict=True)),
+        jumps={trial: jumps[trial] for trial in rows["trial"].astype(int)},
         cases=paper_cases(data.actuator_map, data.calibration),
-        drift_m=max((abs(jump.height_m - h) for jump, h in zip(jumps, rows["height_m"], strict=True)), default=0.0),
+        drift_m=max((abs(jumps[trial].height_m - height) for trial, height in heights), default=0.0),
     )
 
 

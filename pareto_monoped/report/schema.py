@@ -172,9 +172,12 @@ class StudyCard:
 
     Attributes:
         label: short and unique among the page's studies.
-        motor, calibration: as shown.
-        motor_name, calibration_name: as the command line takes them.
-        map: index of the motor's stage 1 map on the page.
+        motor, calibration: as shown; several motors with commas between them.
+        case_motor: the motor that ``cases`` were simulated with, as shown.
+        motor_names: index of each motor's stage 1 map on the page -> the motor as the command line takes it.
+        calibration_name: as the command line takes it.
+        map: index of the map of ``case_motor``. Trials of a study with several motors have that of theirs as the column
+            ``motor``.
         objectives: of the study, which decide what is on its front.
         group: equal for studies that are runs of one study with several seeds.
         bounds: variable -> [lower, upper], equal for a fixed one.
@@ -193,7 +196,8 @@ class StudyCard:
     description: str
     database: str
     motor: str
-    motor_name: str
+    case_motor: str
+    motor_names: Mapping[str, str]
     calibration: str
     calibration_name: str
     map: int

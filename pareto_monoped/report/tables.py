@@ -96,12 +96,12 @@ def cases_table(payload: Payload) -> str:
     ]
     parts = [_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
     # Studies with the same motor and calibration share a column: their cases are the same.
-    cards = list({(card.motor, card.calibration): card for card in payload.studies}.values())
+    cards = list({(card.case_motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
     literal = bool(payload.literal)
     if literal:
         names.append("calibration paper, median (5 to 95 %)")
-    names += [f"simulated here: {card.motor}, {card.calibration}" for card in cards]
+    names += [f"simulated here: {card.case_motor}, {card.calibration}" for card in cards]
     for quantity, unit, decimals in (("height", "m", 3), ("energy", "J", 2)):
         key = f"{quantity}_{unit.lower()}"
         rows = []
@@ -173,29 +173,34 @@ def _choices_table(comparison: Comparison) -> str:
     """What choosing by mechanical energy costs at the battery; an empty text if the studies are not two such fronts."""
     if not comparison.choices:
         return ""
-    sides = '<th scope="colgroup" colspan="4" class="n">chosen by mechanical energy</th>'
-    sides += '<th scope="colgroup" colspan="4" class="n">chosen by battery energy</th>'
-    four = "".join(f'<th scope="col" class="n">{name}</th>' for name in ("mechanical, J", "battery, J", "hip", "knee"))
+    found = [side for row in comparison.choices for side in (row["mechanical"], row["battery"]) if side is not None]
+    several = len({side["motor"] for side in found}) > 1
+    names = ["mechanical, J", "battery, J", "hip", "knee", *(["motor"] if several else [])]
+    sides = f'<th scope="colgroup" colspan="{len(names)}" class="n">chosen by mechanical energy</th>'
+    sides += f'<th scope="colgroup" colspan="{len(names)}" class="n">chosen by battery energy</th>'
+    heads = "".join(f'<th scope="col" class="n">{name}</th>' for name in names)
     top = f'<th scope="col" rowspan="2">height</th>{sides}<th scope="col" rowspan="2" class="n">costs</th>'
     body = ""
     for row in comparison.choices:
         cost = "-" if row["cost"] is None else f"{100.0 * row['cost']:+.1f} %"
         cells = "".join(
-            f'<td class="n">{c}</td>' for c in (*_choice(row["mechanical"]), *_choice(row["battery"]), cost)
+            f'<td class="n">{safe(c)}</td>'
+            for c in (*_choice(row["mechanical"], names), *_choice(row["battery"], names), cost)
         )
         body += f'<tr><th scope="row">{row["height_m"]:.1f} m</th>{cells}</tr>'
     caption = (
         "For each height, the designs of least energy on either front with the ratios of their gearboxes, and what "
         "choosing by mechanical energy costs at the battery."
     )
-    table = f"<caption>{caption}</caption><thead><tr>{top}</tr><tr>{four}{four}</tr></thead><tbody>{body}</tbody>"
+    table = f"<caption>{caption}</caption><thead><tr>{top}</tr><tr>{heads}{heads}</tr></thead><tbody>{body}</tbody>"
     return f'<h3>The two energies</h3><div class="scroll" tabindex="0" id="energies"><table>{table}</table></div>'
 
 
-def _choice(chosen: Mapping[str, Any] | None) -> list[str]:
+def _choice(chosen: Mapping[str, Any] | None, names: Sequence[str]) -> list[str]:
     if chosen is None:
-        return ["-"] * 4
-    return [_number(chosen[name], 2) for name in ("energy_j", "electrical_energy_j", "hip_ratio", "knee_ratio")]
+        return ["-"] * len(names)
+    numbers = [_number(chosen[name], 2) for name in ("energy_j", "electrical_energy_j", "hip_ratio", "knee_ratio")]
+    return [*numbers, *([chosen["motor"]] if "motor" in names else [])]
 
 
 def provenance_tables(payload: Payload) -> str:

@@ -38,7 +38,7 @@ def thinned(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> pd.Da
 
 def trial_columns(
     trials: pd.DataFrame,
-    gearboxes: Mapping[str, Sequence[int]],
+    numbers: Mapping[str, Sequence[int]],
     total: int,
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
@@ -47,14 +47,14 @@ def trial_columns(
 
     Args:
         trials: one row per trial.
-        gearboxes: number of each trial's gearbox, by joint.
+        numbers: more columns: where the page has what the trial chooses, such as its gearboxes.
         total: trials in the database.
         variables: those that the page shows.
         goals: measures that are objectives of a study on the page.
     """
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(trials[name]) for name in names}
-    columns |= {f"{joint}_gearbox": numbers for joint, numbers in gearboxes.items()}
+    columns |= numbers
     return Trials(
         trial=trials["trial"].tolist(),
         state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),

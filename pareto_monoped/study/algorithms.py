@@ -10,10 +10,11 @@ from pareto_monoped.study.algorithm_settings import (
 )
 from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.protocol import Algorithm
 
 
-def make_algorithm(study: Study, coordinates: Coordinates | None = None) -> Algorithm:
+def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None) -> Algorithm:
     """The search algorithm that the study's settings name, before its first ``ask``.
 
     Args:
@@ -39,6 +40,7 @@ def make_algorithm(study: Study, coordinates: Coordinates | None = None) -> Algo
             from pareto_monoped.study.weighted import WeightedSearch
 
             start = PAPER_CASES["nominal"].design.replace(settings.start).as_array()
+            assert isinstance(coordinates, Coordinates)  # the study file refuses several motors
             first = coordinates.values(start[None])[0]
             return WeightedSearch(space, settings, first, study.seed, study.reference_point)
         case RandomSettings() as settings:

@@ -1,12 +1,14 @@
 """Audits of a study's front: whether each point is a property of its design or an accident of the simulation."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
+from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.simulator import Simulator
 from pareto_monoped.study.store import Store
 
@@ -29,11 +31,10 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
         if len(fresh) == 0:
             return
         notify(f"auditing {len(fresh)} designs of the front")
-        for first in range(0, len(fresh), _CHUNK):
-            rows = fresh.iloc[first : first + _CHUNK]
+        for actuator_map, rows in _chunks(data, fresh):
             audits = audit(
                 rows[list(NAMES)].to_numpy(),
-                simulator.evaluator.actuator_map,
+                actuator_map,
                 simulator.calibration,
                 workers=simulator.evaluator.workers,
                 known=Jumps(
@@ -53,3 +54,10 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
                     for i, trial in enumerate(rows["trial"])
                 ]
             )
+
+
+def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[ActuatorMap, pd.DataFrame]]:
+    """Trials that are audited together, all with the same motor, and the gearboxes of that motor."""
+    for actuator_map, places in data.motor_rows(trials):
+        for first in range(0, len(places), _CHUNK):
+            yield actuator_map, trials.iloc[places[first : first + _CHUNK]]

@@ -105,15 +105,22 @@ _JUDGEMENT = (
         values=lambda generation: [generation.height_weight] * len(generation.designs),
     ),
 )
+_MOTOR = Column(
+    name="motor",
+    sql="TEXT",
+    dtype="str",
+    meaning="name of the motor of both joints; NULL in the database of a study with one",
+    values=lambda generation: generation.motors or [None] * len(generation.designs),
+)
 _VARIABLES = tuple(_variable(index) for index in range(len(VARIABLES)))
 _MEASURES = tuple(_measure(measure.name, measure.meaning) for measure in MEASURES)
 
-COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, *_MEASURES)
+COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_MEASURES)
 """All columns of a trial, in the order of the database."""
 
 REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *HEIGHT_AND_ENERGY.names)
 """Columns that every study has, in the order of the data frame; the others follow as the database has them."""
 
-LATER: tuple[Column, ...] = tuple(column for column in (*_VARIABLES, *_MEASURES) if column.name not in REQUIRED)
-"""Columns that a database of an earlier version may lack: optional variables, which then have their defaults, and
-measures, which then are missing. They are added to such a database when its study goes on."""
+LATER: tuple[Column, ...] = tuple(column for column in (*_VARIABLES, _MOTOR, *_MEASURES) if column.name not in REQUIRED)
+"""Columns that a database of an earlier version may lack. Optional variables then have their defaults, the motor is the
+study's only one, and measures are missing. The columns are added to such a database when its study goes on."""

@@ -1,5 +1,6 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -57,14 +58,14 @@ class Stop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _File:
-    """Keys of a study file; its tables but ``stop``, and the objectives, are checked separately."""
+    """Keys of a study file; its tables but ``stop``, the motors and the objectives are checked separately."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
     description: Annotated[str, Field(max_length=2000)] = ""
     case: Literal["A", "B", "C"] | None = None
-    motor: Annotated[str, Field(min_length=1, max_length=1000)] = "VT8020"
+    motor: Any = "VT8020"
     calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
     rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
@@ -84,6 +85,7 @@ class _File:
 class Study:
     """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
 
+    ``motor`` is the name or file of the motor of both joints, or a tuple of several from which each design has one.
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
@@ -93,7 +95,7 @@ class Study:
     name: str
     description: str
     case: str | None
-    motor: str
+    motor: str | tuple[str, ...]
     calibration: str
     rules: RuleSet = "paper"
     evaluations: int
@@ -107,6 +109,11 @@ class Study:
     strength: bool = False
     gear_list: bool = False
     algorithm: AlgorithmSettings
+
+    @property
+    def motors(self) -> tuple[str, ...]:
+        """Names or files of all motors."""
+        return (self.motor,) if isinstance(self.motor, str) else self.motor
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -173,11 +180,16 @@ def load_study(
             weighted search, or no readable TOML.
     """
     values = read_toml(path, what="study file", error=StudyError)
+
     # Paths in a study file are relative to that file, so that a folder with both can be moved.
+    def resolved(name: Any) -> Any:
+        file = isinstance(name, str) and name.endswith(".toml")
+        return str((path.parent / name).resolve()) if file else name
+
     for key in ("motor", "calibration"):
-        name = values.get(key)
-        if isinstance(name, str) and name.endswith(".toml"):
-            values[key] = str((path.parent / name).resolve())
+        if key in values:
+            given = values[key]
+            values[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
     if evaluations is not None:
         values["evaluations"] = evaluations
     if seed is not None:
@@ -215,7 +227,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         name=file.name,
         description=file.description,
         case=file.case,
-        motor=file.motor,
+        motor=_motor(file.motor, source),
         calibration=file.calibration,
         rules=rules,
         evaluations=file.evaluations,
@@ -228,11 +240,33 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         audit=file.audit,
         strength=file.strength,
         gear_list=file.gear_list,
-        algorithm=_algorithm(file.algorithm, corner, source),
+        algorithm=_algorithm(file, corner, source),
     )
 
 
-def _algorithm(table: Mapping[str, Any], corner: ReferencePoint, source: str) -> AlgorithmSettings:
+_LONGEST_NAME = 1000
+"""Of a motor, or of the path to its file; longer ones are errors of typing."""
+
+
+def _motor(given: Any, source: str) -> str | tuple[str, ...]:
+    names = given if isinstance(given, list | tuple) else [given]
+    if not all(isinstance(name, str) and 0 < len(name) <= _LONGEST_NAME for name in names):
+        allowed = f"the name of a motor or its TOML file, of at most {_LONGEST_NAME} letters, or a list of such names"
+        raise StudyError(f"{source}: {complaint('motor', given, allowed, 'correct it')}")
+    if isinstance(given, str):
+        return given
+    if len(names) < 2:
+        cure = f"give the name alone: motor = {json.dumps(names[0])}" if names else "name the motors to choose from"
+        raise StudyError(f"{source}: {complaint('motor', list(names), 'a list of at least two motors', cure)}")
+    for place, name in enumerate(names):
+        if name.lower() in [other.lower() for other in names[:place]]:
+            allowed = "a list of different motors"
+            raise StudyError(f"{source}: {complaint('motor', list(names), allowed, f'name {name!r} once')}")
+    return tuple(names)
+
+
+def _algorithm(file: _File, corner: ReferencePoint, source: str) -> AlgorithmSettings:
+    table = file.algorithm
     if not table:
         return DEFAULT_ALGORITHM
     name = table.get("name")
@@ -247,12 +281,17 @@ def _algorithm(table: Mapping[str, Any], corner: ReferencePoint, source: str) ->
                 allowed = f"one of {', '.join(NAMES)}"
                 raise StudyError(f"{source}: {complaint('variable in algorithm.start', key, allowed, 'correct it')}")
             _number(f"{source}: algorithm.start.{key}", key, value)
-        _check_weighted(corner, source)
+        _check_weighted(file, corner, source)
     return settings
 
 
-def _check_weighted(corner: ReferencePoint, source: str) -> None:
-    """Refuse what the weighted search cannot weigh: three objectives, or a scale of zero."""
+def _check_weighted(file: _File, corner: ReferencePoint, source: str) -> None:
+    """Refuse what the weighted search cannot do: a choice of motor, three objectives, or a scale of zero."""
+    if not isinstance(file.motor, str):
+        raise StudyError(
+            f"{source}: motor = {list(file.motor)}: weighted_cmaes searches with one motor, because a normal "
+            "distribution has no place for a choice; name one, or choose another algorithm"
+        )
     if len(corner.values) != 2:
         raise StudyError(
             f"{source}: objectives: weighted_cmaes weighs two, {len(corner.values)} are named; drop one, or choose "

@@ -15,6 +15,7 @@ from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
 from pareto_monoped.study.algorithm_settings import EvolutionSettings
+from pareto_monoped.study.categories import MotorPM, MotorSBX
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 from pareto_monoped.study.random_state import generator_state, set_generator_state
 from pareto_monoped.study.seen import Seen, drawn
@@ -129,12 +130,14 @@ def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen)
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.algorithms.moo.sms import SMSEMOA
 
+    crossover = {"prob": settings.crossover_probability, "eta": settings.crossover_eta}
+    mutation = {"eta": settings.mutation_eta}
     kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
     # pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
     return kind(
         pop_size=settings.population,
-        crossover=SBX(prob=settings.crossover_probability, eta=settings.crossover_eta),
-        mutation=PM(eta=settings.mutation_eta),
+        crossover=MotorSBX(space, **crossover) if space.motors else SBX(**crossover),
+        mutation=MotorPM(space, **mutation) if space.motors else PM(**mutation),
         repair=_Snap(space),
         eliminate_duplicates=_Unseen(seen),
         seed=seed,

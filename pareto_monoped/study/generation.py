@@ -26,6 +26,7 @@ class Generation:
         hypervolume: of all trials up to here.
         seconds: running time up to here, over all sessions.
         started, ended: when these designs were simulated.
+        motors: name of each design's motor; empty where the study has one.
     """
 
     number: int
@@ -39,3 +40,4 @@ class Generation:
     seconds: float
     started: datetime
     ended: datetime
+    motors: tuple[str, ...] = ()

@@ -32,9 +32,10 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
     Returns:
         Four designs. The front's design that reaches the height of the paper's is left out if there is none.
     """
+    several = len(data.study.motors) > 1
     evaluations = Evaluator(data.actuator_map, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
-        label=f"paper's Case {CASE.name}, simulated here",
+        label=f"paper's Case {CASE.name}, simulated here" + (f" with {data.motor.name}" if several else ""),
         height_m=float(evaluations.height_m[0]),
         energy_j=float(evaluations.energy_j[0]),
     )
@@ -44,13 +45,13 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
         wanted = MinHeight(height_m=simulated.height_m)
         chosen.append(("front: at least that height", pick(front, wanted, objectives).trial))
     chosen.append(("front: knee", knee_trial))
-    jumps = front.set_index("trial")[["height_m", "energy_j"]]
+    jumps = front.set_index("trial")
     return (
         Competitor(label=f"paper's Case {CASE.name}, as published", height_m=CASE.height_m, energy_j=CASE.energy_j),
         simulated,
         *(
             Competitor(
-                label=f"{label}, trial {trial}",
+                label=f"{label}, trial {trial}" + (f", {jumps.loc[trial, 'motor']}" if several else ""),
                 height_m=float(jumps.loc[trial, "height_m"]),
                 energy_j=float(jumps.loc[trial, "energy_j"]),
             )

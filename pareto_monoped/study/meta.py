@@ -16,17 +16,22 @@ Number = StrictFloat | None
 # Strict types, because a stored "3" in place of 3 is damage.
 
 
+def motor_keys(count: int) -> tuple[str, ...]:
+    """Keys of a study's motors in ``StudyMeta.contents`` and ``files``: ``motor``, or ``motor_1``, ``motor_2``, ..."""
+    return ("motor",) if count == 1 else tuple(f"motor_{number}" for number in range(1, count + 1))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyMeta:
     """The table ``monoped_meta`` without its format number: key and value of each row are name and value of a field.
 
     Attributes:
         study: the settings, as ``Study.as_dict`` gives them.
-        motor: name of the motor, or path of its file, as the study gives it.
+        motor: name of the motor, or path of its file, as the study gives it; several with commas between them.
         calibration: name and version.
         seed: of the search.
-        contents: every value of the ``motor`` and of the ``calibration``; the study simulates with these.
-        files: texts of the user's own ``motor`` and ``calibration`` files, for the record; None for shipped ones.
+        contents: every value of the motors (``motor_keys``) and of the ``calibration``; the study simulates with these.
+        files: texts of the user's own motor and ``calibration`` files, for the record; None for shipped ones.
         versions: of the packages that decide the results.
         environment: Python, system and machine, for the record.
         hash: SHA-256 of everything that decides the results.

@@ -10,7 +10,7 @@ import optuna
 
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.algorithm_settings import OptunaSettings
-from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
+from pareto_monoped.study.protocol import MOTOR, Floats, Proposal, Scores, Space
 from pareto_monoped.study.seen import Seen, drawn
 
 _KNOWN = 20
@@ -30,12 +30,8 @@ class OptunaSampler:
         self._seed = seed
         self._space = space
         self._generation = 0
-        self._distributions: dict[str, optuna.distributions.BaseDistribution] = {
-            name: optuna.distributions.IntDistribution(int(low), int(high))
-            if name in space.gears
-            else optuna.distributions.FloatDistribution(low, high)
-            for name, low, high in zip(space.names, space.lower.tolist(), space.upper.tolist(), strict=True)
-        }
+        self._distributions = _distributions(space)
+        self._motors = [motor.name for motor in space.motors]
         self._asked: list[optuna.trial.Trial] = []
         self._seen = Seen()
         with _quiet():
@@ -68,21 +64,39 @@ class OptunaSampler:
             self._study.enqueue_trial(self._params(row))
 
     def _params(self, row: list[float]) -> dict[str, Any]:
-        return {
-            name: int(value) if name in self._space.gears else value
-            for name, value in zip(self._distributions, row, strict=True)
-        }
+        values: dict[str, Any] = dict(zip(self._distributions, row, strict=True))
+        for name in self._space.gears:
+            values[name] = int(values[name])
+        if self._space.motors:
+            values[MOTOR] = self._motors[int(values[MOTOR])]
+        return values
 
     def _row(self, trial: optuna.trial.Trial) -> list[float]:
-        return [float(trial.params[name]) for name in self._distributions]
+        if not self._space.motors:
+            return [float(trial.params[name]) for name in self._distributions]
+        numbers = trial.params | {MOTOR: self._motors.index(trial.params[MOTOR])}
+        point: list[float] = self._space.snap(np.array([[float(numbers[name]) for name in self._distributions]]))[
+            0
+        ].tolist()
+        return point
 
     def tell(self, scores: Scores) -> None:
         """Complete the trials of the last ``ask``; the violation becomes Optuna's constraint."""
+        rows = np.array([self._row(trial) for trial in self._asked])
         with _quiet():
-            for trial, values, violation in zip(self._asked, _values(scores), scores.violation.tolist(), strict=True):
-                trial.set_constraint("violation", violation)
-                self._study.tell(trial, values)
-        self._seen.add(np.array([self._row(trial) for trial in self._asked]))
+            if self._space.motors:
+                # Shares of a list of gearboxes have moved to those of their gearbox, and the sampler must learn from
+                # these, as it does after a restore. A trial that was asked for cannot change, so it ends as failed.
+                for trial in self._asked:
+                    self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
+                self._add(self._generation, rows, scores)
+            else:
+                for trial, values, violation in zip(
+                    self._asked, _values(scores), scores.violation.tolist(), strict=True
+                ):
+                    trial.set_constraint("violation", violation)
+                    self._study.tell(trial, values)
+        self._seen.add(rows)
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
@@ -124,6 +138,18 @@ class OptunaSampler:
         # Multivariate kernels around the few designs that TPE counts as good hold all variables together: after 300
         # jumps they no longer left the middle of the front, and fell behind random search.
         return optuna.samplers.TPESampler(seed=seed, multivariate=False, constant_liar=True)
+
+
+def _distributions(space: Space) -> dict[str, optuna.distributions.BaseDistribution]:
+    found: dict[str, optuna.distributions.BaseDistribution] = {}
+    for name, low, high in zip(space.names, space.lower.tolist(), space.upper.tolist(), strict=True):
+        if name in space.gears:
+            found[name] = optuna.distributions.IntDistribution(int(low), int(high))
+        elif name == MOTOR:
+            found[name] = optuna.distributions.CategoricalDistribution([motor.name for motor in space.motors])
+        else:
+            found[name] = optuna.distributions.FloatDistribution(low, high)
+    return found
 
 
 def _directions(objectives: Objectives) -> list[optuna.study.StudyDirection]:

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.study.coordinates import Coordinates
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
+from pareto_monoped.study.protocol import MOTOR
 from pareto_monoped.study.scoring import values_of
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
@@ -60,7 +61,7 @@ def _optuna_storage(path: Path) -> Any:
 class OptunaTables:
     """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
-    def __init__(self, path: Path, study_id: int, coordinates: Coordinates) -> None:
+    def __init__(self, path: Path, study_id: int, coordinates: AnyCoordinates) -> None:
         study = coordinates.study
         self._path = path
         self._study_id = study_id
@@ -76,6 +77,13 @@ class OptunaTables:
             )
             for name, (low, high) in limits.items()
         }
+        # Optuna stores the position of a category, and shows the category itself.
+        self._motors: tuple[str, ...] = ()
+        if isinstance(coordinates, MotorCoordinates):
+            self._motors = coordinates.motors
+            self._distributions[MOTOR] = json.dumps(
+                {"name": "CategoricalDistribution", "attributes": {"choices": self._motors}}
+            )
 
     def insert(self, connection: sqlite3.Connection, generation: Generation) -> None:
         """Insert a generation's rows within the transaction that the connection has open."""
@@ -100,9 +108,9 @@ class OptunaTables:
         executemany(
             "INSERT INTO trial_params (trial_id, param_name, param_value, distribution_json) VALUES (?, ?, ?, ?)",
             [
-                (i, NAMES[k], row[k], self._distributions[NAMES[k]])
-                for i, row in zip(ids, generation.designs.tolist(), strict=True)
-                for k in self._free
+                (i, name, value, self._distributions[name])
+                for k, i in enumerate(ids)
+                for name, value in self._parameters(generation, k, position=True).items()
             ],
         )
         objectives = zip(ids, failed, values_of(evaluations, self._objectives).tolist(), strict=True)
@@ -124,6 +132,15 @@ class OptunaTables:
             ],
         )
 
+    def _parameters(self, generation: Generation, k: int, *, position: bool = False) -> dict[str, Any]:
+        """Free variables of trial ``k``; its motor by name, or by its position as in the tables."""
+        row = generation.designs[k].tolist()
+        values: dict[str, Any] = {NAMES[i]: row[i] for i in self._free}
+        if self._motors:
+            name = generation.motors[k]
+            values[MOTOR] = float(self._motors.index(name)) if position else name
+        return values
+
     def add_by_optuna(self, generation: Generation) -> None:
         """Let Optuna write the trials into a schema that is not known here.
 
@@ -137,12 +154,11 @@ class OptunaTables:
             there = storage.get_n_trials(self._study_id)
             for k in range(max(0, there - generation.first_trial), len(generation.designs)):
                 bad = generation.judgement.state[k] == "failed"
-                row = generation.designs[k].tolist()
                 storage.create_new_trial(
                     self._study_id,
                     optuna.trial.create_trial(
                         state=optuna.trial.TrialState.FAIL if bad else optuna.trial.TrialState.COMPLETE,
-                        params={NAMES[i]: row[i] for i in self._free},
+                        params=self._parameters(generation, k),
                         distributions={
                             name: optuna.distributions.json_to_distribution(text)
                             for name, text in self._distributions.items()

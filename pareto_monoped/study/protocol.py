@@ -1,7 +1,8 @@
 """The interface between run loop and search algorithms: ask for designs, tell their scores, save, restore.
 
 An algorithm never simulates and never stores. It sees the free variables only, in their own units, and a list of
-gearboxes by position (``study.coordinates``).
+gearboxes by position (``study.coordinates``). A choice of motor is one more variable, whose values have no order
+(``study.motor_choice``).
 """
 
 from collections.abc import Iterable, Mapping
@@ -15,6 +16,9 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 Floats = NDArray[np.float64]
 
+MOTOR = "motor"
+"""The coordinate that chooses a motor; it stands last."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gear:
@@ -25,13 +29,34 @@ class Gear:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MotorKind:
+    """What a search knows of a motor that it may choose.
+
+    Attributes:
+        name: of the motor.
+        peak_torque_n_m, no_load_speed_rad_per_s: of the motor itself.
+        gears: the gearboxes of each variable that chooses one, by ascending ratio.
+    """
+
+    name: str
+    peak_torque_n_m: float
+    no_load_speed_rad_per_s: float
+    gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
     """What is searched, and for what.
+
+    With one motor, a variable that chooses a gearbox has the whole numbers from 0 to n - 1. With several, n differs
+    between motors. Such a variable then goes from 0, the first gearbox of whatever motor, to 1, its last one, and the
+    coordinate ``MOTOR`` has the whole numbers from 0 to the number of motors less 1.
 
     Attributes:
         names, lower, upper: names and bounds of the free variables, each of length d.
         objectives: two or three measures.
-        gears: the gearboxes of each variable that chooses one; its values are the whole numbers from 0 to n - 1.
+        gears: with one motor, the gearboxes of each variable that chooses one.
+        motors: what ``MOTOR`` chooses from; empty with one motor.
     """
 
     names: tuple[str, ...]
@@ -39,11 +64,12 @@ class Space:
     upper: Floats
     objectives: Objectives = HEIGHT_AND_ENERGY
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
+    motors: tuple[MotorKind, ...] = ()
 
     @property
     def whole(self) -> NDArray[np.bool_]:
         """Which variables are whole numbers, shape (d,)."""
-        return np.array([name in self.gears for name in self.names])
+        return np.array([name in self.gears or name == MOTOR for name in self.names])
 
     @property
     def edges(self) -> tuple[Floats, Floats]:
@@ -51,8 +77,38 @@ class Space:
         return self.lower - 0.5 * self.whole, self.upper + 0.5 * self.whole
 
     def snap(self, values: Floats) -> Floats:
-        """Values within the edges with whole numbers where they must be, shape (n, d); the others stay."""
-        return np.where(self.whole, np.clip(np.round(values), self.lower, self.upper), values)
+        """The nearest points of the space to values within the edges, shape (n, d).
+
+        Whole numbers are rounded, and shares of a motor's list of gearboxes moved to that of their gearbox, so that
+        equal designs have equal values. All other values stay.
+        """
+        snapped = np.where(self.whole, np.clip(np.round(values), self.lower, self.upper), values)
+        for name in self.listed:
+            last = self.last_gears(name)[self.motor_of(snapped)]
+            snapped[:, self.names.index(name)] = self.gear_of(name, snapped) / np.maximum(last, 1)
+        return snapped
+
+    @property
+    def listed(self) -> tuple[str, ...]:
+        """The variables that choose a gearbox from the list of the design's motor; none with one motor."""
+        return tuple(name for name in self.names if self.motors and name in self.motors[0].gears)
+
+    def motor_of(self, values: Floats) -> NDArray[np.intp]:
+        """Which of ``motors`` each of n points has, shape (n, d) -> (n,)."""
+        return np.asarray(values[:, self.names.index(MOTOR)], dtype=np.intp)
+
+    def gear_of(self, name: str, values: Floats) -> NDArray[np.intp]:
+        """Position of each point's gearbox in its motor's list, shape (n, d) -> (n,).
+
+        Every gearbox of a list owns an equal share of the values from 0 to 1.
+        """
+        last = self.last_gears(name)[self.motor_of(values)]
+        share = values[:, self.names.index(name)]
+        return np.minimum(np.floor(share * (last + 1)), last).astype(np.intp)
+
+    def last_gears(self, name: str) -> NDArray[np.intp]:
+        """Position of the last gearbox of each motor, shape (number of motors,)."""
+        return np.array([len(motor.gears[name]) - 1 for motor in self.motors], dtype=np.intp)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,7 @@
 """Read a study database: everything that report, CAD and command line need, by plain SELECTs."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import DEFAULTS
+from pareto_monoped.design import DEFAULTS, PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
@@ -18,13 +19,13 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.meta import StudyMeta, meta_of_rows
+from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.motors import Motor
     from pareto_monoped.actuator.search import ActuatorMap
     from pareto_monoped.jump.calibration import Calibration
-    from pareto_monoped.study.coordinates import Coordinates
+    from pareto_monoped.study.motor_choice import AnyCoordinates
 
 _DTYPES = {column.name: column.dtype for column in COLUMNS}
 _HISTORY = {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
@@ -63,15 +64,22 @@ class StudyData:
     checkpoint: Checkpoint
 
     @cached_property
-    def motor(self) -> "Motor":
-        """The motor that the study simulates with, as stored: the user's file may be gone or changed.
+    def motors(self) -> "tuple[Motor, ...]":
+        """The motors that the study simulates with, as stored: the user's files may be gone or changed.
 
         Raises:
             DatabaseError: the stored values are damaged.
         """
         from pareto_monoped.actuator.motors import stored_motor
 
-        return stored_motor(self.meta.contents.get("motor", {}), source=self._source, error=DatabaseError)
+        contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
+        return tuple(stored_motor(values, source=self._source, error=DatabaseError) for values in contents)
+
+    @property
+    def motor(self) -> "Motor":
+        """The motor of a study with one; of one with several that for the paper's designs: its own, or the first."""
+        papers = [motor for motor in self.motors if motor.name == PAPER_MOTOR]
+        return (papers or self.motors)[0]
 
     @cached_property
     def calibration(self) -> "Calibration":
@@ -85,19 +93,46 @@ class StudyData:
         return calibration_of(self.meta.contents.get("calibration", {}), source=self._source, error=DatabaseError)
 
     @cached_property
-    def actuator_map(self) -> "ActuatorMap":
-        """The gearboxes of ``motor`` under the study's rules."""
+    def actuator_maps(self) -> "dict[str, ActuatorMap]":
+        """Name of each motor -> its gearboxes under the study's rules."""
         from pareto_monoped.actuator.search import map_of
 
-        return map_of(self.motor, self.study.rules)
+        return {motor.name: map_of(motor, self.study.rules) for motor in self.motors}
+
+    @property
+    def actuator_map(self) -> "ActuatorMap":
+        """The gearboxes of ``motor``; where a study has several, its trials have those of ``map_of_trial``."""
+        return self.actuator_maps[self.motor.name]
+
+    def map_of_trial(self, trial: int) -> "ActuatorMap":
+        """The gearboxes of a trial's motor."""
+        return self.actuator_maps[self._motor_name(trial)]
+
+    def motor_of_trial(self, trial: int) -> "Motor":
+        """The motor of both joints of a trial."""
+        name = self._motor_name(trial)
+        return next(motor for motor in self.motors if motor.name == name)
+
+    def _motor_name(self, trial: int) -> str:
+        return str(self.trials.loc[self.trials["trial"] == trial, "motor"].iloc[0])
+
+    def motor_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[ActuatorMap, NDArray[np.intp]]]":
+        """The gearboxes of each motor that some of these trials have, and the positions of those trials."""
+        names = trials["motor"].to_numpy()
+        for name, actuator_map in self.actuator_maps.items():
+            rows = np.flatnonzero(names == name)
+            if len(rows):
+                yield actuator_map, rows
 
     @cached_property
-    def coordinates(self) -> "Coordinates":
+    def coordinates(self) -> "AnyCoordinates":
         """What the study searches."""
-        from pareto_monoped.study.coordinates import coordinates_of, plain_coordinates
+        from pareto_monoped.study.coordinates import plain_coordinates
+        from pareto_monoped.study.motor_choice import searched_coordinates
 
-        study = self.study
-        return coordinates_of(study, self.actuator_map) if study.gear_list else plain_coordinates(study)
+        if not self.study.gear_list and len(self.study.motors) == 1:
+            return plain_coordinates(self.study)
+        return searched_coordinates(self.study, list(self.actuator_maps.values()))
 
     @property
     def _source(self) -> str:
@@ -170,11 +205,26 @@ def read_study(db: Path) -> StudyData:
         db=db,
         study=study,
         meta=meta,
-        trials=trials,
+        trials=_with_motors(trials, study, meta, db),
         history=history,
         audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=checkpoint,
     )
+
+
+def _with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:
+    """The trials with the name of each one's motor, which the database leaves out where all have the same."""
+    contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
+    known = [str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)]
+    if len(known) == 1:
+        return trials.assign(motor=pd.array(known * len(trials), dtype="str"))
+    unknown = trials.loc[~trials["motor"].isin(known), "motor"]
+    if len(unknown):
+        raise DatabaseError(
+            f"study database {str(db)!r}: its trials are damaged (motor {unknown.iloc[0]!r} is not of the study); "
+            "restore a copy"
+        )
+    return trials
 
 
 def _frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
@@ -196,7 +246,7 @@ def _frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFr
 
 def _typed(values: tuple[Any, ...], dtype: str) -> Any:
     if dtype == "str":
-        return pd.array([str(value) for value in values], dtype="str")
+        return pd.array(["" if value is None else str(value) for value in values], dtype="str")
     if dtype == "int64":
         return np.array(values, dtype=np.int64)
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.study.protocol import Floats, Space
+from pareto_monoped.study.protocol import MOTOR, Floats, Space
 
 _DEGREE = 3
 """Of the polynomial. Our own choice: the third degree is what 2,000 jumps can determine, 220 terms of nine features."""
@@ -20,7 +20,9 @@ _LOGARITHMIC = ("stiffness_n_per_m", "torsional_stiffness_n_m_per_rad")
 class Features:
     """What the model sees of a point of the space: features scaled to -1 to 1, and their products of up to three.
 
-    A gearbox counts by its real ratio and its mass, a stiffness by log(1 + x), any other variable as it is.
+    A gearbox counts by its real ratio and its mass, a stiffness by log(1 + x), any other variable as it is. Where
+    designs choose from several motors, an actuator counts by its mass and by the logarithms of its greatest torque and
+    speed at the joint, which mean the same with every motor. Trials with one motor thus tell of designs with another.
 
     Attributes:
         space: that is searched.
@@ -46,12 +48,7 @@ class Features:
 
 def features_of(space: Space) -> Features:
     """The features of a space."""
-    corners = np.vstack((space.lower, space.upper))
-    most = max((len(gears) for gears in space.gears.values()), default=1)
-    every = np.repeat(corners[:1], most, axis=0)
-    for name, gears in space.gears.items():
-        every[:, space.names.index(name)] = np.arange(most) % len(gears)
-    raw = _raw(space, np.vstack((corners, every)))
+    raw = _raw(space, _extremes(space))
     lower, upper = raw.min(axis=0), raw.max(axis=0)
     factors = list(combinations_with_replacement(range(len(lower) + 1), _DEGREE))
     return Features(
@@ -62,6 +59,23 @@ def features_of(space: Space) -> Features:
     )
 
 
+def _extremes(space: Space) -> Floats:
+    """Points of a space among which every feature has its least and its greatest value, shape (n, d)."""
+    corners = np.vstack((space.lower, space.upper))
+    if space.motors:
+        most = max((len(gears) for motor in space.motors for gears in motor.gears.values()), default=1)
+        every = np.repeat(corners[:1], most * len(space.motors), axis=0)
+        every[:, space.names.index(MOTOR)] = np.repeat(np.arange(len(space.motors)), most)
+        for name in space.listed:
+            every[:, space.names.index(name)] = np.tile(np.linspace(0.0, 1.0, most), len(space.motors))
+        return np.vstack((corners, every))
+    most = max((len(gears) for gears in space.gears.values()), default=1)
+    every = np.repeat(corners[:1], most, axis=0)
+    for name, gears in space.gears.items():
+        every[:, space.names.index(name)] = np.arange(most) % len(gears)
+    return np.vstack((corners, every))
+
+
 def _raw(space: Space, values: Floats) -> Floats:
     """Features before scaling, shape (n, d) -> (n, f)."""
     columns = []
@@ -69,9 +83,30 @@ def _raw(space: Space, values: Floats) -> Floats:
         if name in space.gears:
             table = np.array([[gear.ratio, gear.mass_kg] for gear in space.gears[name]])
             columns += list(table[column.astype(np.intp)].T)
+        elif name in space.listed:
+            columns += list(_actuators(space, name, values).T)
+        elif name == MOTOR:
+            # The actuators tell the motors apart, unless all their ratios are fixed.
+            columns += [] if space.listed else list(_motors(space)[space.motor_of(values)].T)
         else:
             columns.append(np.log1p(column) if name in _LOGARITHMIC else column)
     return np.column_stack(columns)
+
+
+def _motors(space: Space) -> Floats:
+    """Logarithms of greatest torque and speed of each motor, shape (number of motors, 2)."""
+    return np.log([[motor.peak_torque_n_m, motor.no_load_speed_rad_per_s] for motor in space.motors])
+
+
+def _actuators(space: Space, name: str, values: Floats) -> Floats:
+    """Features of the actuators that ``name`` chooses, shape (n, d) -> (n, 3)."""
+    lists = [motor.gears[name] for motor in space.motors]
+    first = np.cumsum([0, *(len(gears) for gears in lists[:-1])])
+    table = np.array([[np.log(gear.ratio), gear.mass_kg] for gears in lists for gear in gears])
+    motors = space.motor_of(values)
+    ratio, mass = table[first[motors] + space.gear_of(name, values)].T
+    torque, speed = _motors(space)[motors].T
+    return np.column_stack((torque + ratio, speed - ratio, mass))
 
 
 def fitted(terms: Floats, targets: Floats, weights: Floats) -> Floats:

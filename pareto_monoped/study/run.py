@@ -141,7 +141,7 @@ def _meta(study: Study, simulator: Simulator) -> StudyMeta:
     decisive = provenance.decisive(study, simulator.contents, versions)
     return StudyMeta(
         study=study.as_dict(),
-        motor=study.motor,
+        motor=", ".join(study.motors),
         calibration=simulator.calibration.label,
         seed=study.seed,
         contents=simulator.contents,

@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.pareto.at_height import AtHeight, best_at_height
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
+from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
+from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
 from pareto_monoped.study.protocol import Algorithm, Scores
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.scoring import judge, missed, scores, values_of
@@ -58,7 +60,7 @@ class Session:
         store: Store,
         budget: int,
         progress: Callable[[Progress], None],
-        coordinates: Coordinates | None = None,
+        coordinates: AnyCoordinates | None = None,
     ) -> None:
         self._study = study
         self._evaluate = evaluate
@@ -85,7 +87,7 @@ class Session:
                 f"study database {str(store.path)!r}: its checkpoint is damaged ({error}); restore a copy"
             ) from None
         # Trials of a generation that the last budget cut short; the algorithm does not know their scores yet.
-        self._designs, self._scores = _rows(data, data.checkpoint.evaluations, len(data.trials))
+        self._designs, self._motors, self._scores = _rows(data, data.checkpoint.evaluations, len(data.trials))
 
     @property
     def elapsed(self) -> float:
@@ -131,18 +133,20 @@ class Session:
         if proposal is None:
             return None
         designs = self._coordinates.designs(proposal.values)
+        motors = self._motors_of(proposal.values)
         there = len(self._designs)
-        if not np.array_equal(designs[:there], self._designs):
+        if not np.array_equal(designs[:there], self._designs) or motors[:there] != self._motors:
             raise DatabaseError(
                 f"study database {str(self._store.path)!r}: trials {self.total - there} to {self.total - 1} do not "
                 "follow from its checkpoint; it is damaged, restore a copy"
             )
         missing = designs[there : there + self._budget - self.total]
+        their_motors = motors[there : there + len(missing)]
         started = datetime.now(UTC)
-        evaluations = self._evaluate(missing)
+        evaluations = self._evaluated(missing, their_motors)
         objectives = self._study.objectives
         judgement = judge(evaluations, self._study.constraints, objectives)
-        self._designs = np.vstack((self._designs, missing))
+        self._designs, self._motors = np.vstack((self._designs, missing)), (*self._motors, *their_motors)
         self._scores = _joined(self._scores, scores(evaluations, judgement, objectives))
         feasible = judgement.state == "feasible"
         self._add_to_front(values_of(evaluations, objectives)[feasible])
@@ -153,7 +157,7 @@ class Session:
             self._algorithm.tell(self._scores)
             state = self._algorithm.state()
             self._generation += 1
-            self._designs, self._scores = self._designs[:0], _joined(self._scores, None)
+            self._designs, self._motors, self._scores = self._designs[:0], (), _joined(self._scores, None)
         volume = hypervolume(self._front, self._study.reference_point)
         self._volumes.append((self.total, volume))
         return Generation(
@@ -168,7 +172,21 @@ class Session:
             seconds=self._seconds_before + self.elapsed,
             started=started,
             ended=datetime.now(UTC),
+            motors=their_motors,
         )
+
+    def _motors_of(self, values: NDArray[np.float64]) -> tuple[str, ...]:
+        """Names of the designs' motors; empty where the study has one."""
+        where = self._coordinates
+        if not isinstance(where, MotorCoordinates):
+            return ()
+        return tuple(where.motors[k] for k in where.motors_of(values))
+
+    def _evaluated(self, designs: NDArray[np.float64], motors: tuple[str, ...]) -> Evaluations:
+        where = self._coordinates
+        if not isinstance(where, MotorCoordinates):
+            return self._evaluate(designs)
+        return self._evaluate(designs, [where.motors.index(name) for name in motors])
 
     def _add_to_front(self, points: NDArray[np.float64]) -> None:
         points = np.vstack((self._front, points))
@@ -194,25 +212,31 @@ class Session:
             self._progress(writing.result())
 
 
-def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Scores]:
+def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], tuple[str, ...], Scores]:
+    """Designs, names of their motors where the study has several, and scores."""
     rows, study = data.trials.iloc[first:end], data.study
+    motors = tuple(rows["motor"]) if len(study.motors) > 1 else ()
     measures = {limit.measure: rows[limit.measure].to_numpy() for limit in study.constraints.limits}
-    return rows[list(NAMES)].to_numpy(dtype=np.float64), Scores(
+    known = Scores(
         objectives=study.objectives,
         values=rows[list(study.objectives.names)].to_numpy(dtype=np.float64),
         violation=rows["violation"].to_numpy(),
         constraints=missed(study.constraints, measures, (rows["state"] == "failed").to_numpy()),
     )
+    return rows[list(NAMES)].to_numpy(dtype=np.float64), motors, known
 
 
-def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:
+def _history(data: StudyData, coordinates: AnyCoordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:
     """Coordinates and scores of every complete generation, in order."""
     numbers = data.trials["generation"].to_numpy()[: data.checkpoint.evaluations]
     edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.evaluations]
     for first, end in pairwise(edges):
         if first < end:
-            designs, known = _rows(data, first, end)
-            yield coordinates.values(designs), known
+            designs, motors, known = _rows(data, first, end)
+            if isinstance(coordinates, MotorCoordinates):
+                yield coordinates.values(designs, motors), known
+            else:
+                yield coordinates.values(designs), known
 
 
 def _joined(before: Scores, new: Scores | None) -> Scores:

@@ -1,25 +1,27 @@
 """What a study simulates with, from the names in its study file or from what its database holds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source, motor_values
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
+from pareto_monoped.errors import StudyError
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.motor_fit import require_leg
-from pareto_monoped.study.coordinates import Coordinates, coordinates_of
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.meta import motor_keys
+from pareto_monoped.study.motor_choice import AnyCoordinates, searched_coordinates
 from pareto_monoped.study.reader import StudyData
 
-Evaluate = Callable[[NDArray[np.float64]], Evaluations]
-"""Designs, see ``design.complete``, to their evaluations, in order."""
+Evaluate = Callable[..., Evaluations]
+"""Designs, see ``design.complete``, to their evaluations, in order; the designs are followed by the positions of their
+motors where a study has several."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,33 +29,36 @@ class Simulator:
     """What a study simulates with.
 
     Attributes:
-        motor, calibration: what decides every jump.
-        evaluator: designs to evaluations, with the motor's actuator map and the calibration.
-        files: texts of the ``motor`` and the ``calibration`` file where the study names files of the user's, else None.
+        motors, calibration: what decides every jump.
+        evaluator: designs to evaluations, with the motors' actuator maps and the calibration.
+        files: texts of the motors' and the ``calibration`` file where the study names files of the user's, else None.
     """
 
-    motor: Motor
+    motors: tuple[Motor, ...]
     calibration: Calibration
     evaluator: Evaluator
     files: dict[str, str | None]
 
     @property
     def contents(self) -> dict[str, dict[str, Any]]:
-        """Every value of ``motor`` and ``calibration``, as JSON values."""
-        return {"motor": motor_values(self.motor), "calibration": calibration_values(self.calibration)}
+        """Every value of the motors and of ``calibration``, as JSON values."""
+        motors = zip(motor_keys(len(self.motors)), map(motor_values, self.motors), strict=True)
+        return {**dict(motors), "calibration": calibration_values(self.calibration)}
 
-    def coordinates(self, study: Study) -> Coordinates:
-        """What an algorithm searches in ``study``: lists of this motor's gearboxes where the study has them."""
-        return coordinates_of(study, self.evaluator.actuator_map)
+    def coordinates(self, study: Study) -> AnyCoordinates:
+        """What an algorithm searches in ``study``: lists of these motors' gearboxes where the study has them."""
+        return searched_coordinates(study, self.evaluator.actuator_maps)
 
     def probe(self) -> list[list[float | None]]:
         """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.
 
-        Code, compiler, library versions and processor all show in their last digits.
+        With several motors, of these eight designs with each of them. Code, compiler, library versions and processor
+        all show in their last digits.
         """
         paper = np.array([case.design.as_array() for case in PAPER_CASES.values()])
         drawn = np.random.default_rng(20250101).uniform(LOWER, UPPER, size=(4, len(LOWER)))
-        result = self.evaluator(np.vstack((paper, complete(drawn))))
+        eight, count = np.vstack((paper, complete(drawn))), len(self.motors)
+        result = self.evaluator(np.tile(eight, (count, 1)), np.repeat(np.arange(count), len(eight)))
         pairs = np.column_stack((result.height_m, result.energy_j))
         return [[value if np.isfinite(value) else None for value in row] for row in pairs.tolist()]
 
@@ -68,7 +73,7 @@ def load_simulator(study: Study, *, workers: int) -> Simulator:
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
     """
-    return _simulator(study, load_motor(study.motor), load_calibration(study.calibration), workers)
+    return _simulator(study, [load_motor(name) for name in study.motors], load_calibration(study.calibration), workers)
 
 
 def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simulator:
@@ -87,25 +92,48 @@ def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simul
         DatabaseError: the stored motor or calibration is damaged.
     """
 
-    def unchanged(key: str) -> bool:
-        named, text = getattr(study, key), _text(getattr(study, key))
-        same_name = text is not None or named.lower() == getattr(data.study, key).lower()
+    def unchanged(key: str, named: str, before: str) -> bool:
+        text = _text(named)
+        same_name = text is not None or named.lower() == before.lower()
         return same_name and text == data.meta.files.get(key)
 
-    motor = data.motor if unchanged("motor") else load_motor(study.motor)
-    calibration = data.calibration if unchanged("calibration") else load_calibration(study.calibration)
-    return _simulator(study, motor, calibration, workers)
+    motors = (
+        [load_motor(name) for name in study.motors]
+        if len(study.motors) != len(data.study.motors)
+        else [
+            stored if unchanged(key, named, before) else load_motor(named)
+            for key, stored, named, before in zip(
+                motor_keys(len(study.motors)), data.motors, study.motors, data.study.motors, strict=True
+            )
+        ]
+    )
+    same = unchanged("calibration", study.calibration, data.study.calibration)
+    return _simulator(study, motors, data.calibration if same else load_calibration(study.calibration), workers)
 
 
-def _simulator(study: Study, motor: Motor, calibration: Calibration, workers: int) -> Simulator:
-    source = motor_source(study.motor)
-    actuator_map = map_of(motor, study.rules, source=source)
-    require_leg(actuator_map, source)
+def _simulator(study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int) -> Simulator:
+    names = [motor.name for motor in motors]
+    for name in names:
+        if names.count(name) > 1:
+            raise StudyError(
+                f"motor = {list(study.motors)}: must be a list of different motors, {name!r} is the name of "
+                f"{names.count(name)}; drop one, or give the motor in its file another name"
+            )
+    maps = [
+        map_of(motor, study.rules, source=motor_source(named))
+        for motor, named in zip(motors, study.motors, strict=True)
+    ]
+    for actuator_map, named in zip(maps, study.motors, strict=True):
+        require_leg(actuator_map, motor_source(named))
+    keys = motor_keys(len(motors))
     return Simulator(
-        motor=motor,
+        motors=tuple(motors),
         calibration=calibration,
-        evaluator=Evaluator(actuator_map, calibration, workers=workers),
-        files={"motor": _text(study.motor), "calibration": _text(study.calibration)},
+        evaluator=Evaluator(maps[0], calibration, workers=workers, others=maps[1:]),
+        files={
+            **dict(zip(keys, map(_text, study.motors), strict=True)),
+            "calibration": _text(study.calibration),
+        },
     )
 
 
@@ -115,10 +143,11 @@ def stored_simulator(data: StudyData, *, workers: int) -> Simulator:
     Raises:
         DatabaseError: the stored motor or calibration is damaged.
     """
+    first, *others = data.actuator_maps.values()
     return Simulator(
-        motor=data.motor,
+        motors=data.motors,
         calibration=data.calibration,
-        evaluator=Evaluator(data.actuator_map, data.calibration, workers=workers),
+        evaluator=Evaluator(first, data.calibration, workers=workers, others=others),
         files=dict(data.meta.files),
     )
 

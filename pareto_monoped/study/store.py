@@ -13,11 +13,12 @@ from typing import Any
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import replacing
 from pareto_monoped.study.columns import COLUMNS, LATER
-from pareto_monoped.study.coordinates import Coordinates, plain_coordinates
+from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.meta import StudyMeta, strict_json
+from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.optuna_tables import KNOWN_SCHEMAS, OptunaTables, create_tables
 
 _OUR_TABLES = """
@@ -73,7 +74,7 @@ class Store:
         path: Path,
         study: Study,
         *,
-        coordinates: Coordinates | None = None,
+        coordinates: AnyCoordinates | None = None,
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
     ) -> None:
         """Open an existing study for writing.
@@ -102,7 +103,7 @@ class Store:
                 self._connection.close()
                 raise
 
-    def _open(self, coordinates: Coordinates, known_schemas: Sequence[str]) -> None:
+    def _open(self, coordinates: AnyCoordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
         connection.execute("PRAGMA trusted_schema = OFF")
         check(connection, self.path)

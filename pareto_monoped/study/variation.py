@@ -6,7 +6,8 @@ from pymoo.operators.mutation.pm import mut_pm
 
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, Standing
-from pareto_monoped.study.protocol import Floats, Space
+from pareto_monoped.study.categories import exchanged, mutated
+from pareto_monoped.study.protocol import MOTOR, Floats, Space
 
 _PARENTS = 100
 """Fewest parents. A small front is filled up with the designs nearest to it. Our own choice: 2.5 populations."""
@@ -30,8 +31,11 @@ def spread(space: Space, count: int, generator: np.random.Generator, on_bound: f
     lower, upper = space.edges
     strata = np.argsort(generator.random((count, len(lower))), axis=0)
     place = (strata + generator.random(strata.shape)) / count
-    inside = space.snap(lower + np.clip((place - on_bound) / (1.0 - 2.0 * on_bound), 0.0, 1.0) * (upper - lower))
-    return np.where(place < on_bound, space.lower, np.where(place > 1.0 - on_bound, space.upper, inside))
+    # The first motor of a list and the last are no bounds.
+    share = np.where([name == MOTOR for name in space.names], 0.0, on_bound)
+    inside = space.snap(lower + np.clip((place - share) / (1.0 - 2.0 * share), 0.0, 1.0) * (upper - lower))
+    spread_out = np.where(place < share, space.lower, np.where(place > 1.0 - share, space.upper, inside))
+    return space.snap(spread_out) if space.motors else spread_out
 
 
 def offspring(
@@ -57,16 +61,20 @@ def offspring(
     pairs = np.vstack((generator.choice(parents, (count, 2)), np.column_stack((line[first], line[second]))))
     lower, upper = archive.space.edges
     each = np.ones((len(pairs), 1))
+    parents_of = archive.values[pairs.T]
     children = cross_sbx(
-        archive.values[pairs.T],
+        parents_of,
         lower,
         upper,
         settings.crossover_eta * each,
         _EXCHANGED * each,
         _EXCHANGED * each,
         random_state=generator,
-    ).reshape(-1, len(lower))
-    mutated = mut_pm(
+    )
+    if archive.space.motors:
+        children[:, :, -1] = exchanged(parents_of[:, :, -1], generator)
+    children = children.reshape(-1, len(lower))
+    varied = mut_pm(
         children,
         lower,
         upper,
@@ -75,7 +83,9 @@ def offspring(
         at_least_once=False,
         random_state=generator,
     )
-    return archive.space.snap(mutated)
+    if archive.space.motors:
+        varied[:, -1] = mutated(children[:, -1], len(archive.space.motors), 1.0 / len(lower), generator)
+    return archive.space.snap(varied)
 
 
 def small_steps(space: Space, values: Floats, count: int, generator: np.random.Generator) -> Floats:
@@ -92,12 +102,27 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
     steps = length * generator.standard_normal(start.shape) * (upper - lower)
     steps[generator.random(start.shape) < _EXCHANGED] = 0.0
     if space.whole.any():
-        steps = np.where(space.whole, _other_gears(start, lower, upper, generator), steps)
-    return np.asarray(np.clip(start + steps, lower, upper))
+        steps = np.where(space.whole, _other_gears(start, lower, upper, len(lower), generator), steps)
+    near = np.asarray(np.clip(start + steps, lower, upper))
+    return _other_choices(space, start, near, generator) if space.motors else near
 
 
-def _other_gears(start: Floats, lower: Floats, upper: Floats, generator: np.random.Generator) -> Floats:
-    """Steps to other whole numbers, 0 for most, shape (n, d)."""
-    chance = generator.random(start.shape) * len(lower)
+def _other_choices(space: Space, start: Floats, near: Floats, generator: np.random.Generator) -> Floats:
+    """``near`` with gearboxes and motors chosen from ``start``, where each motor has its own lists, shape (n, d)."""
+    dimensions = len(space.names)
+    for name in space.listed:
+        gear = space.gear_of(name, start).astype(np.float64)
+        last = space.last_gears(name)[space.motor_of(start)].astype(np.float64)
+        step = _other_gears(gear, np.zeros(len(gear)), last, dimensions, generator)
+        near[:, space.names.index(name)] = np.clip(gear + step, 0.0, last) / np.maximum(last, 1.0)
+    near[:, -1] = mutated(start[:, -1], len(space.motors), 1.0 / dimensions, generator)
+    return space.snap(near)
+
+
+def _other_gears(
+    start: Floats, lower: Floats, upper: Floats, dimensions: int, generator: np.random.Generator
+) -> Floats:
+    """Steps to other whole numbers, 0 for most, of the shape of ``start``; one of ``dimensions`` is another one."""
+    chance = generator.random(start.shape) * dimensions
     any_one = np.floor(lower + generator.random(start.shape) * (upper - lower + 1.0)) - start
     return np.select([chance < 0.25, chance < 0.5, chance < 1.0], [-1.0, 1.0, any_one], 0.0)

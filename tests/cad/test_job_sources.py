@@ -26,6 +26,7 @@ def data():
         trials=trials,
         front=lambda: trials.set_index("trial", drop=False).loc[[7, 2, 5, 4, 0]].reset_index(drop=True),
         motor=load_motor("U8"),
+        motor_of_trial=lambda trial: load_motor("U8"),
         calibration=load_calibration("ideal"),
         study=SimpleNamespace(strength=False, name="mine", rules="iso6336"),
         meta=SimpleNamespace(created="2025-03-04T05:06:07+00:00"),

@@ -5,8 +5,10 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.design import VARIABLES
-from pareto_monoped.report.card import best_of_weights, study_card
+from pareto_monoped.report.card import MapPlace, best_of_weights, study_card
 from pareto_monoped.study.reader import read_study
+
+PLACES = {"VT8020": MapPlace(number=0, first_gearbox=0)}
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +52,9 @@ def test_the_card_counts_states_and_reasons_of_failure(source):
     trials = source.data.trials.copy()
     trials["state"] = pd.array(["failed"] * 3 + ["infeasible"] * 2 + ["feasible"] * (len(trials) - 5), dtype="str")
     trials.loc[:2, "status"] = ["no_take_off", "no_gearbox", "no_take_off"]
-    card = study_card(replace(source, data=replace(source.data, trials=trials)), "label", len(trials), 0, 0, VARIABLES)
+    card = study_card(
+        replace(source, data=replace(source.data, trials=trials)), "label", len(trials), PLACES, VARIABLES
+    )
     assert card.counts == {"feasible": len(trials) - 5, "infeasible": 2, "failed": 3, "total": len(trials)}
     assert card.reasons == {"no_take_off": 2, "no_gearbox": 1}
     assert card.trials.state[:6] == "xxxiif"
@@ -75,5 +79,5 @@ def test_a_calibrations_own_foot_is_on_the_card(source):
     mass = replace(source.data.calibration.mass, foot_mass_kg=0.123, foot_radius_m=0.021)
     data = replace(source.data)
     data.__dict__["calibration"] = replace(source.data.calibration, mass=mass)
-    card = study_card(replace(source, data=data), "label", 10, 0, 0, VARIABLES)
+    card = study_card(replace(source, data=data), "label", 10, PLACES, VARIABLES)
     assert (card.foot_mass_kg, card.foot_radius_m) == (0.123, 0.021)

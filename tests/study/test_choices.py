@@ -30,6 +30,7 @@ def fronts(tmp_path, monkeypatch):
     from pareto_monoped.study.reader import StudyData
 
     # The contents of a made study name no motor.
+    monkeypatch.setattr(StudyData, "actuator_maps", {"VT8020": map_for("VT8020")})
     monkeypatch.setattr(StudyData, "actuator_map", map_for("VT8020"))
     mechanical = stored(tmp_path / "a.db", [10.0, 15.0, 22.0], [25.0, 36.0, 55.0])
     battery = stored(tmp_path / "b.db", [12.0, 17.0, 24.0], [20.0, 30.0, np.nan], objectives=BATTERY, evaluations=80)

@@ -17,15 +17,15 @@ def simulated():
     return simulate(PAPER_CASES["C"].design, map_for("U8"), load_calibration("ideal")).measures
 
 
-def study(*front):
-    """A study with this front of trial, height and energy."""
-    table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"])
+def study(*front, motors=("U8",)):
+    """A study with this front of trial, height and energy, all with the last motor."""
+    table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"]).assign(motor=motors[-1])
     return SimpleNamespace(
         front=lambda: table,
-        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY),
+        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, motors=motors),
         actuator_map=map_for("U8"),
         calibration=load_calibration("ideal"),
-        motor=None,
+        motor=SimpleNamespace(name="U8"),
     )
 
 
@@ -43,3 +43,12 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
 def test_a_front_below_the_papers_height_has_no_design_for_it():
     labels = [row.label for row in headline(study((7, 0.7, 10.0)), 7)]
     assert labels[2:] == ["front: knee, trial 7"]
+
+
+def test_with_several_motors_every_design_names_its_own(simulated):
+    labels = [row.label for row in headline(study((7, 0.7, 10.0), motors=("U8", "U10")), 7)]
+    assert labels == [
+        "paper's Case C, as published",
+        "paper's Case C, simulated here with U8",
+        "front: knee, trial 7, U10",
+    ]

@@ -72,6 +72,25 @@ def test_killed_with_three_objectives_and_a_constraint(tmp_path):
     assert (data.front()["mass_kg"] <= 4.6).all()
 
 
+MOTORS = 'motor = ["VT8020", "U8", "MN8014"]\n'
+EVERY = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
+
+
+def test_killed_with_motors_three_objectives_and_a_constraint(tmp_path):
+    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20', SURROGATE], evaluations=240, kills=3, top=MOTORS + THREE)
+    data = read_study(tmp_path / "1" / "killed.db")
+    assert data.trials["motor"].nunique() == 3
+    assert (data.trials["mass_kg"] > 4.6).any()
+
+
+@pytest.mark.long
+def test_every_algorithm_with_motors_killed_five_times(tmp_path):
+    for number, top in enumerate((MOTORS, MOTORS + THREE)):
+        place = tmp_path / str(number)
+        place.mkdir()
+        killed(place, [f'name = "{name}"' for name in EVERY], evaluations=400, kills=5, top=top)
+
+
 @pytest.mark.long
 def test_three_objectives_killed_five_times(tmp_path):
     names = ("nsga2", "age_moea2", "optuna_nsga2", "optuna_tpe", "random", "surrogate")

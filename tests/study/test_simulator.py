@@ -45,7 +45,7 @@ def test_stored_contents_give_the_same_motor_and_calibration_to_the_last_bit(dat
     first = load_simulator(made_study(motor=motor, calibration=calibration), workers=1)
     again = stored_simulator(stored(data, first), workers=1)
     # All their values are numbers, text and None; repr() tells any two floats apart.
-    assert repr(again.motor) == repr(first.motor)
+    assert repr(again.motors) == repr(first.motors)
     assert repr(again.calibration) == repr(first.calibration)
     assert json.dumps(again.contents) == json.dumps(first.contents)
     assert again.evaluator.actuator_map is first.evaluator.actuator_map
@@ -88,7 +88,7 @@ def test_what_the_user_has_not_changed_is_as_stored(data, tmp_path, shipped):
     before = with_stored_inertia(replace(data, study=study), load_simulator(study, workers=1))
     again = continued_simulator(before, study, workers=1)
     assert again.contents == before.meta.contents
-    assert again.motor.rotor_inertia_kg_m2 == 1e-3
+    assert again.motors[0].rotor_inertia_kg_m2 == 1e-3
 
 
 @pytest.mark.parametrize("change", ["another shipped motor", "another file", "the file's text", "from name to file"])
@@ -108,7 +108,7 @@ def test_what_the_user_has_changed_is_read_again(data, tmp_path, change):
     else:
         study = made_study(motor=str(own))
     again = continued_simulator(before, study, workers=1)
-    assert again.motor == load_simulator(study, workers=1).motor
+    assert again.motors == load_simulator(study, workers=1).motors
     assert again.contents != before.meta.contents
 
 
@@ -120,7 +120,7 @@ def test_a_strangers_file_name_leads_nowhere(data, tmp_path, monkeypatch, name):
     study = replace(data.study, motor=name, calibration=name)
     meta = replace(bent.meta, motor=name, calibration=name, files={"motor": "x = ", "calibration": "x = "})
     simulator = stored_simulator(replace(bent, study=study, meta=meta), workers=1)
-    assert (simulator.motor.name, simulator.calibration.name) == ("VT8020", "reference")
+    assert (simulator.motors[0].name, simulator.calibration.name) == ("VT8020", "reference")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -51,11 +51,12 @@ def test_status_reads_the_same(name):
 def test_the_front_reads_the_same(name):
     data = read_study(DATA / f"{name}.db")
     front, wanted = data.front(), expected(name)["front"]
-    # What came later: optional variables at their defaults, measures without a value.
+    # What came later: optional variables at their defaults, the motor, measures without a value.
     later = front.drop(columns=wanted["columns"])
     assert tuple(later.columns) == tuple(column.name for column in LATER if column.name not in wanted["columns"])
     assert all((later[column] == DEFAULTS[column]).all() for column in later if column in DEFAULTS)
-    assert all(later[column].isna().all() for column in later if column not in DEFAULTS)
+    assert set(later["motor"]) == {data.motor.name}
+    assert all(later[column].isna().all() for column in later if column not in (*DEFAULTS, "motor"))
     front = front.drop(columns=later.columns)
     assert front.columns.tolist() == wanted["columns"]
     assert [str(dtype) for dtype in front.dtypes] == wanted["dtypes"]

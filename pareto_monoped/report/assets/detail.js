@@ -10,7 +10,8 @@ function showSubject(chosen) {
   }
   const several = page.studies.length > 1 ? `, ${chosen.study.label}` : "";
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
-  box.append(make("span", {}, chosen.why));
+  const motor = chosen.study.trials.columns.motor ? `${page.maps[chosen.map].motor}; ` : "";
+  box.append(make("span", {}, `${motor}${chosen.why}`));
   for (const name of new Set([...page.goals, "mass_kg"])) {
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
   }
@@ -79,6 +80,7 @@ function showGears(chosen) {
   const widest = Math.max(...[hip, knee].flatMap((g) => [g.motor_diameter_mm, g.module_mm * g.ring_teeth + 6]));
   box.append(make("div", { class: "gearpair" }, gearDrawing(hip, widest), gearDrawing(knee, widest)));
   const rows = [
+    ["motor", (g) => g.motor],
     ["family", (g) => g.family],
     ["teeth sun/planet/ring", (g) => `${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth}`],
     ["module", (g) => `${g.module_mm} mm`],
@@ -156,8 +158,9 @@ function quoted(word) { return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.r
 
 function commandsOf(chosen) {
   const settings = Object.entries(chosen.values).map(([name, value]) => `--set ${name}=${value}`).join(" ");
-  const simulate = `pareto-monoped simulate ${settings} --motor ${quoted(chosen.study.motor_name)} --calibration ${quoted(chosen.study.calibration_name)}`;
-  if (chosen.kind === "case") return [`pareto-monoped simulate --case ${chosen.name} --motor ${quoted(chosen.study.motor_name)} --calibration ${quoted(chosen.study.calibration_name)}`];
+  const motor = quoted(chosen.study.motor_names[chosen.map]);
+  const simulate = `pareto-monoped simulate ${settings} --motor ${motor} --calibration ${quoted(chosen.study.calibration_name)}`;
+  if (chosen.kind === "case") return [`pareto-monoped simulate --case ${chosen.name} --motor ${motor} --calibration ${quoted(chosen.study.calibration_name)}`];
   if (chosen.at < 0) return [simulate];
   const db = quoted(chosen.study.database);
   return [`pareto-monoped pick ${db} --trial ${chosen.number}`, `pareto-monoped export ${db} --trial ${chosen.number} -o cad/trial_${chosen.number}`, simulate];

@@ -93,6 +93,7 @@ function hoverText(study, row) {
   const named = PAPERS_OWN ? page.goals.filter((name) => !page.objectives.includes(name)) : page.goals;
   for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, columns[name][row])}`);
   for (const variable of page.variables) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
+  if (columns.motor) lines.push(`motor ${plain(motorOf(card, row))}`);
   return lines.join("<br>");
 }
 
@@ -113,7 +114,7 @@ function rowsOf(study, rows) {
 function traces() {
   points = [];
   const list = [];
-  const ranged = Object.keys(state.ranges).length > 0;
+  const ranged = filtered();
   const several = page.studies.length > 1;
   let drawn = 0, within = 0;
   const each = [...state.visible];
@@ -146,8 +147,12 @@ function traces() {
     if (!show.front) continue;
     const tint = studyColour(study);
     const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
-    const symbol = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"][study % 6];
-    const marker = { size: 7.5, symbol, color: tint, opacity, line: { width: 0.8, color: colour("card") } };
+    const marker = { size: 7.5, symbol: MARKS[study % 6], color: tint, opacity, line: { width: 0.8, color: colour("card") } };
+    if (card.trials.columns.motor) {
+      // Motors differ in colour and in mark: a third objective takes the colour.
+      const motors = card.front.map((row) => motorTint(mapOf(card, row)));
+      Object.assign(marker, { symbol: motors.map((k) => MARKS[k]), color: motors.map((k) => colour(`c${k}`)) });
+    }
     const third = tinted();
     if (third) Object.assign(marker, colourOf(study, third, list));
     // A line of steps joins designs that hold until the next one is reached; on other axes than its own a front is none.
@@ -183,7 +188,7 @@ function traces() {
     const entries = [];
     for (const study of each) {
       const card = page.studies[study];
-      const key = `${card.motor} ${card.calibration}`;
+      const key = `${card.case_motor} ${card.calibration}`;
       if (seen.has(key)) continue;
       seen.add(key);
       for (const c of card.cases) {
@@ -193,7 +198,7 @@ function traces() {
         entries.push({
           x: across, y: up, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
           tint: seen.size === 1 ? colour("paper") : studyColour(study),
-          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.across], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.motor)}, calibration ${plain(card.calibration)}`,
+          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.across], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.case_motor)}, calibration ${plain(card.calibration)}`,
         });
       }
     }
@@ -308,6 +313,7 @@ function startFront() {
     if (event.key === "ArrowLeft") moveAlongFront(-1);
   });
   startAxes();
+  startMotorSwitches();
   on("selection", () => { placeRing(); describeFront(); });
   on("view", drawFront);
   charts.push(drawFront);
@@ -351,6 +357,33 @@ function redrawView() {
   if (key === lastView) return;
   lastView = key;
   drawFront();
+}
+
+// One of six colours and marks for a motor, by the number of its map.
+const MARKS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"];
+function motorTint(map) { return MOTORS.indexOf(map) % MARKS.length; }
+
+const MARK_SHAPES = [
+  '<circle cx="7" cy="7" r="4"/>', '<path d="M3 3H11V11H3Z"/>', '<path d="M7 2L12 7L7 12L2 7Z"/>',
+  '<path d="M7 3L12 11H2Z"/>', '<path d="M7 11L2 3H12Z"/>', '<path d="M7 2L12 6L10 12H4L2 6Z"/>',
+];
+
+// A switch for each motor that designs choose from: without it, its designs are out of range everywhere.
+function startMotorSwitches() {
+  const box = byId("motors");
+  box.hidden = MOTORS.length === 0;
+  for (const map of MOTORS) {
+    const input = make("input", { type: "checkbox", "data-motor": map });
+    input.checked = true;
+    input.addEventListener("change", () => {
+      if (input.checked) state.withoutMotors.delete(map);
+      else state.withoutMotors.add(map);
+      tell("view");
+    });
+    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true", fill: `var(--c${motorTint(map)})` });
+    symbol.innerHTML = MARK_SHAPES[motorTint(map)]; // constant text from above
+    box.append(make("label", {}, input, symbol, page.maps[map].motor));
+  }
 }
 
 const SYMBOLS = {

@@ -17,7 +17,7 @@ function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18,
   for (const one of series) {
     if (one.mark) {
       one.x.forEach((value, i) => {
-        if (one.y[i] !== null) svg.append(marker(one.mark[i], toX(value), toY(one.y[i]), one.colour, one.opacity ? one.opacity[i] : 1));
+        if (one.y[i] !== null) svg.append(marker(one.mark[i], toX(value), toY(one.y[i]), one.colours?.[i] ?? one.colour, one.opacity ? one.opacity[i] : 1));
       });
     } else {
       const d = one.x.map((value, i) => `${toX(value).toFixed(1)} ${toY(one.y[i]).toFixed(1)}`).join("L");
@@ -125,6 +125,7 @@ function drawAlong() {
       return {
         x: front.map((row) => trials.columns[FIRST][row] * quantity[FIRST].scale), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
         mark: front.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), opacity: front.map((row) => (inRanges(i, row) ? 0.8 : 0.12)),
+        colours: trials.columns.motor ? front.map((row) => `var(--c${motorTint(mapOf(page.studies[i], row))})`) : null,
         colour: several ? `var(--c${i % 6})` : "var(--c0)",
       };
     });
@@ -147,6 +148,7 @@ function drawAlong() {
 
 // The ratio from which on all gearboxes are external; null if all are of one family.
 function switchRatio() {
+  if (current().trials.columns.motor) return null; // each motor has its own
   const points = page.maps[current().map].points.filter((p) => p.gearbox !== null);
   const at = points.findLastIndex((p) => page.gearboxes[p.gearbox].family === "ISSPG");
   return at >= 0 && at < points.length - 1 ? points[at + 1].ratio_low : null;

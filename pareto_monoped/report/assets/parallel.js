@@ -84,12 +84,14 @@ function drawLines() {
   context.setTransform(scale, 0, 0, scale, 0, 0);
   context.clearRect(0, 0, par.width, par.height);
   const kept = (list) => list.filter(([study, row]) => inRanges(study, row));
-  const ranged = Object.keys(state.ranges).length > 0;
+  const ranged = filtered();
   if (show.cloud) stroke(context, kept(par.lines.clouds), colour("cloud"), 1, ranged ? 0.3 : 0.09);
   const several = page.studies.length > 1;
   for (const i of state.visible) {
     const own = par.lines.fronts.filter(([study]) => study === i);
-    stroke(context, kept(own), several ? studyColour(i) : colour("c0"), 1.2, 0.55);
+    if (page.studies[i].trials.columns.motor) {
+      for (const map of MOTORS) stroke(context, kept(own).filter(([, row]) => mapOf(page.studies[i], row) === map), colour(`c${motorTint(map)}`), 1.2, 0.55);
+    } else stroke(context, kept(own), several ? studyColour(i) : colour("c0"), 1.2, 0.55);
   }
   context.globalAlpha = 1;
 }
@@ -137,9 +139,8 @@ function setRange(name, range, final = true) {
 }
 
 function describeRanges() {
-  const names = Object.keys(state.ranges);
   const note = byId("brush-note");
-  if (!names.length) {
+  if (!filtered()) {
     const { every } = par.lines;
     note.textContent = every > 1 ? `Drawn are the whole front and one in ${every} of the other feasible trials.` : "";
     return;
@@ -154,8 +155,13 @@ function describeRanges() {
   }
   note.textContent = `Within the ranges: ${front} of ${fronts} designs on the front, ${all} of ${total} feasible trials on this page. `;
   const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all ranges");
-  clear.addEventListener("click", () => { state.ranges = {}; setRange(AXES[0], null); });
+  clear.addEventListener("click", () => { state.ranges = {}; allMotors(); setRange(AXES[0], null); });
   note.append(clear);
+}
+
+function allMotors() {
+  state.withoutMotors.clear();
+  for (const input of document.querySelectorAll("[data-motor]")) input.checked = true;
 }
 
 function fillFields() {

@@ -58,14 +58,16 @@ function inUnit(name, values) { return values.map((value) => (value === null ? n
 function drawMap(node) {
   const list = [];
   const style = { ISSPG: [colour("c1"), "circle"], ESSPG: [colour("c0"), "diamond"] };
+  const many = page.maps.length > 2; // colours then tell motors apart, filled symbols only one
   page.maps.forEach((map, k) => {
-    for (const [family, [tint, symbol]] of Object.entries(style)) {
+    for (const [family, [own, symbol]] of Object.entries(style)) {
+      const tint = many ? colour(`c${k % 6}`) : own;
       const rows = map.points.filter((p) => p.family_mass_kg[family] !== undefined);
       const best = (p) => p.gearbox !== null && page.gearboxes[p.gearbox].family === family;
       list.push({
         type: "scatter", mode: "markers", name: `${family}${page.maps.length > 1 ? `, ${plain(map.motor)}` : ""}`,
         x: rows.map((p) => p.ratio_low), y: rows.map((p) => p.family_mass_kg[family]),
-        marker: { size: 7, symbol: rows.map((p) => (k ? `${symbol}-open` : symbol)), color: tint, opacity: rows.map((p) => (best(p) ? 1 : 0.35)) },
+        marker: { size: 7, symbol: rows.map((p) => (k && !many ? `${symbol}-open` : symbol)), color: tint, opacity: rows.map((p) => (best(p) ? 1 : 0.35)) },
         text: rows.map((p) => {
           const g = best(p) ? page.gearboxes[p.gearbox] : null;
           const teeth = g ? `<br>${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth}, module ${g.module_mm} mm, ${g.planets} planets` : "<br>not the lighter family here";
@@ -79,7 +81,7 @@ function drawMap(node) {
     showlegend: true, legend: { x: 0, y: 1, bgcolor: "rgba(0,0,0,0)" },
   }), CONFIG);
   describe(node, `Actuator mass over gear ratio; ${page.maps.map((m) => m.points.filter((p) => p.gearbox !== null).length).join(" and ")} intervals of ${page.maps[0].ratio_step} have a gearbox`);
-  byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of ${page.maps[0].ratio_step}${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
+  byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of ${page.maps[0].ratio_step}${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : many ? "; circles: ISSPG, diamonds: ESSPG" : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
 }
 
 function drawLinks(node) {

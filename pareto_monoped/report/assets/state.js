@@ -1,6 +1,6 @@
 // What is selected, and which studies, axes and ranges are shown; everything else listens to it.
 
-const state = { across: SECOND, study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {} };
+const state = { across: SECOND, study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {}, withoutMotors: new Set() };
 const listeners = { selection: [], view: [], time: [] };
 
 function on(event, listener) { listeners[event].push(listener); }
@@ -38,8 +38,20 @@ function moveAlongFront(steps) {
   select(state.study, front[Math.min(Math.max(at + steps, 0), front.length - 1)]);
 }
 
+// Number of the stage 1 map of a trial's motor.
+function mapOf(study, row) { return study.trials.columns.motor?.[row] ?? study.map; }
+
+function motorOf(study, row) { return page.maps[mapOf(study, row)].motor; }
+
+// The maps of the motors that the designs of some study choose from; none where each study has one motor.
+const MOTORS = [...new Set(page.studies.flatMap((study) => (study.trials.columns.motor ? Object.keys(study.motor_names).map(Number) : [])))];
+
+// Whether something keeps designs out: a range of an axis, or a motor that is not wanted.
+function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
+
 function inRanges(study, row) {
   const columns = page.studies[study].trials.columns;
+  if (columns.motor && state.withoutMotors.has(columns.motor[row])) return false;
   for (const [name, [low, high]] of Object.entries(state.ranges)) {
     const value = columns[name][row];
     if (value === null || value < low || value > high) return false;
@@ -60,7 +72,7 @@ function subject() {
     const values = published.design;
     return {
       kind: "case", study, name: made.name, values, measures: { ...made.measures, ...made }, more: {}, jump: made.jump, status: made.status,
-      hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
+      map: study.map, hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
       why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
     };
   }
@@ -80,7 +92,7 @@ function subject() {
   else if (ill) why = "taken off the front by its audit";
   else if (at < 0) why = { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[letter];
   return {
-    kind: "trial", study, number, row, values, measures, more, at, why, letter,
+    kind: "trial", study, number, row, values, measures, more, at, why, letter, map: mapOf(study, row),
     jump: study.jumps[number] ?? null, audit: study.audits[number] ?? null, model: study.models[number] ?? null,
     hip: page.gearboxes[columns.hip_gearbox[row]] ?? null, knee: page.gearboxes[columns.knee_gearbox[row]] ?? null,
   };
