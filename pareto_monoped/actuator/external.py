@@ -78,7 +78,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
         _output_screw(output).countersunk + _HEAD_RIM_MM,
     )
     spline = data.spline.external
-    teeth = at.gears.sun(data.gears.backlash_mm)
+    teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
     return (
         Part(
             name="sun",

@@ -53,7 +53,7 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
     """
     data = settings.parts.gears
     gears = at.gears
-    shape = gears.planet(data.backlash_mm)
+    shape = gears.planet(settings.tooth_thinning_mm(gears.module_mm))
     bore = 0.5 * settings.planet_bore_mm
     hub = bore + data.planet_hub_wall_mm
     rim = shape.root_radius_mm - _RIM_TOOTH_DEPTHS * (ADDENDUM + DEDENDUM) * gears.module_mm
@@ -105,7 +105,7 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 ),
             ),
             teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
-            note=_planet_note(gears.planet(data.gears.backlash_mm), settings),
+            note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
             fits=planet_fits(settings),
             joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
             if settings.planet_bearing == "bushes"
@@ -156,14 +156,16 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             role=Role.GEAR,
             visibility=Visibility.INSIDE,
             material=materials.gear_steel,
-            prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(data.gears.backlash_mm)),
+            prisms=slab(
+                at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(settings.tooth_thinning_mm(gears.module_mm))
+            ),
             process="machined",
             group=Group.HOUSING,
             grade=gear_grade(settings, settings.gear_steels.ring),
             fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
             accuracy_class=gear_accuracy(settings),
             teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
-            note=gear_note(gears.ring(data.gears.backlash_mm), settings),
+            note=gear_note(gears.ring(settings.tooth_thinning_mm(gears.module_mm)), settings),
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
         ),
     )

@@ -103,7 +103,7 @@ class GearSet:
         """Radius of the ring's pitch circle."""
         return 0.5 * self.module_mm * self.ring_teeth
 
-    def sun(self, backlash_mm: float = 0.0) -> ExternalGear:
+    def sun(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
         """Cross-section of the sun, a tooth on the x axis."""
         return ExternalGear(
             teeth=self.sun_teeth,
@@ -113,7 +113,7 @@ class GearSet:
             tip_shortening=self.tip_shortening,
         )
 
-    def planet(self, backlash_mm: float = 0.0) -> ExternalGear:
+    def planet(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
         """Cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
         return ExternalGear(
             teeth=self.planet_teeth,
@@ -124,7 +124,7 @@ class GearSet:
             tip_shortening=self.tip_shortening,
         )
 
-    def ring(self, backlash_mm: float = 0.0) -> InternalGear:
+    def ring(self, backlash_mm: Numbers = 0.0) -> InternalGear:
         """Toothed hole of the ring, with a space where the first planet has a tooth."""
         return InternalGear(
             teeth=self.ring_teeth,

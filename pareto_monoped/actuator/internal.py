@@ -84,7 +84,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
     coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
     z_hub = shell.z_coupling - coupling.thickness_mm
     dowels = _bell_dowel_holes(settings)
-    teeth = at.gears.sun(data.gears.backlash_mm)
+    teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
     return (
         Part(
             name="sun",

@@ -40,7 +40,7 @@ class RatingData:
         flank_finish_factor: Z_L Z_v Z_R.
         flank_roughness_um: greatest Rz of the flanks, for which it holds.
         root_roughness_um: Rz of the fillets.
-        reversed_bending_factor: on sigma_F,lim of the planets, whose teeth bend both ways.
+        reversed_bending_factor: Y_M of the planets, whose teeth bend both ways in every turn.
         second_carrier: what ties it to the first: the planets' ``pins`` alone, which tilt under load, or ``webs``
             between the planets as well, where the gaps have room for them.
         planet_bearing: what the planets turn on: ``bushes``, or rows of ``needles``.
@@ -84,6 +84,7 @@ class DutyData:
     Attributes:
         jumps: how many the gears shall last.
         torque_shares: torque over the motor's peak torque, one value per level; above 1 where a stop is struck.
+        reversed: whether the torque of a level loads the back flanks, one value per level; none does if empty.
         output_angles_rad: angle through which the output turns at that torque in each jump, one value per level.
     """
 
@@ -92,6 +93,22 @@ class DutyData:
     jumps: Positive
     torque_shares: tuple[Annotated[float, Field(gt=0.0, le=10.0)], ...]
     output_angles_rad: tuple[Positive, ...]
+    reversed: tuple[bool, ...] = ()
+
+    @property
+    def forward_levels(self) -> tuple[tuple[float, float], ...]:
+        """Torque share and angle of the levels that load the front flanks."""
+        return self._levels(back=False)
+
+    @property
+    def reversed_levels(self) -> tuple[tuple[float, float], ...]:
+        """Torque share and angle of the levels that load the back flanks."""
+        return self._levels(back=True)
+
+    def _levels(self, *, back: bool) -> tuple[tuple[float, float], ...]:
+        sides = self.reversed or (False,) * len(self.torque_shares)
+        levels = zip(self.torque_shares, self.output_angles_rad, sides, strict=True)
+        return tuple((share, angle) for share, angle, side in levels if side == back)
 
     @property
     def mean_share(self) -> float:
@@ -105,6 +122,11 @@ class DutyData:
             raise ValueError(
                 f"torque_shares and output_angles_rad have {len(self.torque_shares)} and "
                 f"{len(self.output_angles_rad)} values: must be one per level each; correct them"
+            )
+        if self.reversed and len(self.reversed) != len(self.torque_shares):
+            raise ValueError(
+                f"reversed and torque_shares have {len(self.reversed)} and {len(self.torque_shares)} values: "
+                "must be one per level each; correct them"
             )
 
 

@@ -90,9 +90,10 @@ def _teeth_min(sets: CandidateSets) -> Numbers:
 
 
 def _tip_thickness(sets: CandidateSets) -> Numbers:
-    backlash, least = sets.settings.parts.gears.backlash_mm, sets.settings.parts.rating.tip_thickness_modules
+    least = sets.settings.parts.rating.tip_thickness_modules
 
     def margin(gears: GearSet) -> Numbers:
+        backlash = sets.settings.tooth_thinning_mm(gears.module_mm)
         thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
         return thinnest - least * gears.module_mm
 
@@ -100,9 +101,8 @@ def _tip_thickness(sets: CandidateSets) -> Numbers:
 
 
 def _root_fillet(sets: CandidateSets) -> Numbers:
-    backlash = sets.settings.parts.gears.backlash_mm
-
     def margin(gears: GearSet) -> Numbers:
+        backlash = sets.settings.tooth_thinning_mm(gears.module_mm)
         shapes = (gears.sun(backlash), gears.planet(backlash), gears.ring(backlash))
         return reduce(np.minimum, (shape.root_radius_mm * fillet_room_rad(shape) for shape in shapes))
 

@@ -13,6 +13,8 @@ from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.geometry.gears import ExternalGear
+from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES, RATED_SERIES
 from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -58,6 +60,7 @@ class GearData:
     factor_of_safety: Positive
     service_factor: Positive
     backlash_mm: Annotated[float, Field(ge=0.0)]
+    backlash_modules: Annotated[float, Field(ge=0.0)]
     ring_width_internal_mm: Positive
     ring_width_external_mm: Positive
     ring_rim_modules: Positive
@@ -276,6 +279,15 @@ class ActuatorSettings:
     def gear_steels(self) -> GearSteels:
         """Steel grades of the gears under ``iso6336``."""
         return chosen_steels(self.parts.rating) if self.steels is None else self.steels
+
+    def tooth_thinning_mm(self, module_mm: Numbers) -> Numbers:
+        """By how much each tooth is drawn thinner on the reference circle; the paper's gears all by the same."""
+        return self.parts.gears.backlash_mm if self.rules == "paper" else self.parts.gears.backlash_modules * module_mm
+
+    @property
+    def thickness_series(self) -> int:
+        """Series of DIN 3967 for the tolerance of the gears' tooth thickness."""
+        return GENERAL_SERIES if self.rules == "paper" else RATED_SERIES
 
     @property
     def second_carrier(self) -> SecondCarrier:

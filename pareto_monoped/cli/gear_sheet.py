@@ -17,8 +17,9 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
     """Print a rating; at most 80 columns wide."""
     data, duty = settings.parts.rating, settings.parts.duty
     levels = ", ".join(
-        f"{100.0 * share:g} % over {angle:g} rad"
-        for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
+        f"{100.0 * share:g} % over {angle:g} rad{way}"
+        for levels, way in ((duty.forward_levels, ""), (duty.reversed_levels, " reversed"))
+        for share, angle in levels
     )
     steels = {one.gear: one for one in rating.gears}
     console.print()

@@ -110,7 +110,7 @@ def allowed_by_iso6336(motor, family, gears, width):
         ring.tip >= hypot(ring.base, iso6336.line_of_action(planet, ring, distance)) - 1e-9,
     ]
     for gear in (sun, planet):
-        thinned = gear.thickness(gear.tip) * module - 0.04 * gear.tip / (gear.teeth / 2)
+        thinned = gear.thickness(gear.tip) * module - 0.03 * module * gear.tip / (gear.teeth / 2)
         rules += [gear.teeth + worth * gear.x >= 18 - 1e-9, thinned >= 0.4 * module - 1e-9]
     rules.append(module * (sun.teeth / 2 + sun.x - 1.25) >= 3.0 - 1e-9)
     if family == "ISSPG":
@@ -123,7 +123,7 @@ def allowed_by_iso6336(motor, family, gears, width):
     # What is left of the ring's space at the fillets' centres, or of the gap between teeth.
     spaces = 0.38 * module
     centre = ring.teeth / 2 + ring.x + 1.25 - 0.38
-    room_left = ring.thickness(centre) * module / 2 + 0.04 * centre / ring.teeth - spaces * centre / ring.base
+    room_left = ring.thickness(centre) * module / 2 + 0.03 * module * centre / ring.teeth - spaces * centre / ring.base
     return room_left >= -1e-9
 
 

@@ -106,8 +106,9 @@ def test_without_a_shift_all_teeth_are_thick_at_their_tips_and_leave_room_for_fi
     data = ActuatorSettings().parts
     for module in ActuatorSettings().modules_mm:
         teeth = np.arange(12, 400)
-        outer = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=data.gears.backlash_mm)
-        inner = InternalGear(teeth=teeth[24:], module_mm=module, backlash_mm=data.gears.backlash_mm)
+        thinning = ActuatorSettings().tooth_thinning_mm(module)
+        outer = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
+        inner = InternalGear(teeth=teeth[24:], module_mm=module, backlash_mm=thinning)
         assert (outer.tip_thickness_mm >= data.rating.tip_thickness_modules * module).all()
         assert (fillet_room_rad(outer) > 0.0).all()
         assert (fillet_room_rad(inner) > 0.0).all()

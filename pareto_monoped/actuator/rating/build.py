@@ -29,8 +29,14 @@ from pareto_monoped.actuator.rating.life import (
     equivalent_cycles,
     highest_share,
     passes_per_rad,
+    reversal_ratio,
 )
-from pareto_monoped.actuator.rating.root import root_limit_mpa, root_load_n_per_mm, static_root_limit_mpa
+from pareto_monoped.actuator.rating.root import (
+    mean_stress_factor,
+    root_limit_mpa,
+    root_load_n_per_mm,
+    static_root_limit_mpa,
+)
 from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
 from pareto_monoped.actuator.service.planets import planet_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -38,6 +44,7 @@ from pareto_monoped.actuator.sharing import load_sharing
 from pareto_monoped.actuator.webs import webs_of
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.tooth_thickness import RATED_SERIES, thickness_tolerance_mm
 from pareto_monoped.materials import GearGrade
 
 
@@ -56,7 +63,7 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
         steel=steels.planet,
         rim_factor=planet_rim,
         passes=planet_passes,
-        bending_factor=data.reversed_bending_factor,
+        idler=True,
         settings=settings,
     )
     meshed = partial(
@@ -175,19 +182,21 @@ def _member(
     rim_factor: Numbers,
     passes: Numbers,
     settings: ActuatorSettings,
-    bending_factor: float = 1.0,
+    idler: bool = False,
 ) -> Member:
     """One gear in one mesh; ``internal`` says whether the mesh is the ring's."""
     data, duty = settings.parts.rating, settings.parts.duty
-    form = tooth_form(shape, contact_ratio)
+    thinning = settings.tooth_thinning_mm(module_mm) + thickness_tolerance_mm(module_mm * shape.teeth, RATED_SERIES)
+    form = tooth_form(shape, contact_ratio, thinning)
     flank_curve, root_curve = FLANK_CURVES[steel.treatment], ROOT_CURVES[steel.treatment]
-    flank_cycles = equivalent_cycles(passes, duty, flank_curve.exponent, flank=True)
-    root_cycles = equivalent_cycles(passes, duty, root_curve.exponent, flank=False)
+    flank_cycles = equivalent_cycles(passes, duty, flank_curve.exponent, flank=True, both_ways=idler)
+    root_cycles = equivalent_cycles(passes, duty, root_curve.exponent, flank=False, both_ways=idler)
     flank_life, root_life = flank_curve.factor(flank_cycles), root_curve.factor(root_cycles)
     # Stresses are those at the peak torque. A duty that goes beyond it leaves so much less for them.
     highest = highest_share(duty)
     flank = flank_limit_mpa(steel, mate, flank_life, data.flank_finish_factor) / np.sqrt(highest)
-    root = root_limit_mpa(steel, form, root_life, roughness_um=data.root_roughness_um, bending_factor=bending_factor)
+    bending = data.reversed_bending_factor if idler else mean_stress_factor(steel, form, reversal_ratio(duty))
+    root = root_limit_mpa(steel, form, root_life, roughness_um=data.root_roughness_um, bending_factor=bending)
     root = root / highest
     over_flank = float(flank_limit_mpa(steel, mate, flank_curve.static_factor, 1.0))
     over_root = static_root_limit_mpa(steel, form, root_curve.static_factor)
@@ -209,7 +218,7 @@ def _member(
         root_cycles=root_cycles,
         flank_life=flank_life,
         root_life=root_life,
-        bending_factor=bending_factor,
+        bending_factor=bending,
         work_hardening=work_hardening_factor(steel, mate),
         flank_limit_mpa=flank,
         root_limit_mpa=root,

@@ -85,7 +85,16 @@ class ToothForm:
     notch: Numbers
 
 
-def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> ToothForm:
+def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Numbers:
+    """x_E, the shift at which the rack generates teeth that are thinner by ``thinning_mm`` on the reference circle.
+
+    x_E = x - A / (2 m tan(alpha)) (ISO 21771), with x as the standard counts it: in a ring, inwards.
+    """
+    sign = -1.0 if isinstance(gear, InternalGear) else 1.0
+    return gear.shift * sign - 0.5 * thinning_mm / (gear.module_mm * _TANGENT)
+
+
+def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinning_mm: Numbers = 0.0) -> ToothForm:
     """Y_F and Y_S by method B (ISO 6336-3:2006, clauses 6.2 and 7.2).
 
     The critical section lies where the fillet's tangent makes 30 degrees with the tooth's centre line, 60 degrees in an
@@ -93,13 +102,17 @@ def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> Too
     the ring is cut by wire or with a large cutter. Lengths in modules. At contact ratios above 2, the point of loading,
     one base pitch after the beginning of contact, is the inner point of triple pair contact, as the standard asks.
 
+    Thinned teeth are those of the generating profile shift x_E, which also makes their roots deeper. ISO 6336-3 lets
+    one take x instead up to a thinning of 0.05 modules (clause 6.2; cited from memory). Here x_E is taken always.
+
     Args:
         gear: sun, planet or ring.
         contact_ratio: of the mesh in which the tooth is loaded.
+        thinning_mm: by how much the tooth is thinner than without backlash, on the reference circle.
     """
     internal = isinstance(gear, InternalGear)
     sign = -1.0 if internal else 1.0
-    z, shift = np.asarray(gear.teeth, dtype=np.float64) * sign, gear.shift * sign
+    z, shift = np.asarray(gear.teeth, dtype=np.float64) * sign, thinned_shift(gear, thinning_mm)
     # Distance of the centre of the rack's tip rounding from the middle of its tooth (E), and below the pitch line (G).
     distance = (
         0.25 * np.pi - DEDENDUM * _TANGENT - (1.0 - np.sin(PRESSURE_ANGLE_RAD)) * FILLET / np.cos(PRESSURE_ANGLE_RAD)

@@ -60,7 +60,17 @@ def highest_share(duty: DutyData) -> float:
     return max(1.0, *duty.torque_shares)
 
 
-def equivalent_cycles(passes_per_rad: Numbers, duty: DutyData, stress_exponent: float, *, flank: bool) -> Numbers:
+def reversal_ratio(duty: DutyData) -> float:
+    """The highest torque of the less loaded direction over that of the other, from 0 to 1."""
+    highest = [
+        max((share for share, _ in levels), default=0.0) for levels in (duty.forward_levels, duty.reversed_levels)
+    ]
+    return min(highest) / max(highest)
+
+
+def equivalent_cycles(
+    passes_per_rad: Numbers, duty: DutyData, stress_exponent: float, *, flank: bool, both_ways: bool = False
+) -> Numbers:
     """Load cycles at ``highest_share`` that do the damage of the whole spectrum (Miner; ISO 6336-6, annex A).
 
     A level of share s of the highest torque and n cycles counts as n s^p cycles at that torque. p is the slope of the
@@ -71,17 +81,26 @@ def equivalent_cycles(passes_per_rad: Numbers, duty: DutyData, stress_exponent: 
     Joints swing to and fro over the same few teeth. A tooth in the middle of the swing is loaded a whole number of
     times in each swing, so that passes are rounded up.
 
+    Levels of reversed torque load the back flanks of sun and ring. Front and back have a spectrum each, of which the
+    worse counts. Planets mesh with the ring on the flanks that the sun leaves free: all levels load both.
+
     Args:
         passes_per_rad: load cycles of a tooth per rad of the output.
         duty: the spectrum.
         stress_exponent: of the life curve.
         flank: whether contact stress is meant, or else bending stress.
+        both_ways: whether all levels load either side, as in a planet.
     """
     slope, highest = (0.5 if flank else 1.0) / stress_exponent, highest_share(duty)
-    cycles: Numbers = 0.0
-    for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True):
-        cycles = cycles + np.ceil(np.round(passes_per_rad * angle, 9)) * (share / highest) ** slope
-    return duty.jumps * cycles
+
+    def cycles(levels: tuple[tuple[float, float], ...]) -> Numbers:
+        found = np.zeros(np.shape(passes_per_rad))[()]
+        for share, angle in levels:
+            found = found + np.ceil(np.round(passes_per_rad * angle, 9)) * (share / highest) ** slope
+        return found
+
+    front, back = cycles(duty.forward_levels), cycles(duty.reversed_levels)
+    return duty.jumps * (front + back if both_ways else np.maximum(front, back))
 
 
 def passes_per_rad(gears: GearSet) -> tuple[Numbers, Numbers, Numbers]:

@@ -10,6 +10,10 @@ SPECIMEN_FACTOR = 2.0
 """Y_ST, stress correction of the standard test gear (ISO 6336-3, clause 5.3)."""
 SIZE_FACTOR = 1.0
 """Y_X: 1 up to a module of 5 mm (ISO 6336-3, clause 14)."""
+_COMPRESSION = 1.2
+"""Compression of the root behind a loaded tooth over the tension in front of it (ISO 6336-3, annex B)."""
+_SENSITIVITY = 0.3
+"""M of steels that are nitrided or not surface-hardened (ISO 6336-3, annex B)."""
 _TEST_NOTCH = 2.5
 """q_sT, notch parameter of the standard test gear."""
 
@@ -52,8 +56,23 @@ def roughness_factor(steel: GearGrade, roughness_um: float) -> float:
     return float(1.674 - 0.529 * (roughness_um + 1.0) ** 0.1)
 
 
+def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: float) -> Numbers:
+    """Y_M = 1 / (1 - R (1 - M) / (1 + M)), with R = -1.2 times ``ratio`` (ISO 6336-3, annex B; cited from memory).
+
+    A load on one flank compresses the root of the other 1.2 times as much as it stretches its own. The standard gives
+    this for idlers whose flanks carry different loads. The same stresses act where a torque changes its direction.
+
+    Args:
+        steel: of the tooth.
+        form: of its root.
+        ratio: load on the less loaded flank over that on the other.
+    """
+    sensitivity = 0.8 - 0.15 * form.stress_correction if steel.treatment == "case_hardened" else _SENSITIVITY
+    return 1.0 / (1.0 + _COMPRESSION * ratio * (1.0 - sensitivity) / (1.0 + sensitivity))
+
+
 def root_limit_mpa(
-    steel: GearGrade, form: ToothForm, life_factor: Numbers, *, roughness_um: float, bending_factor: float
+    steel: GearGrade, form: ToothForm, life_factor: Numbers, *, roughness_um: float, bending_factor: Numbers
 ) -> Numbers:
     """sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M, the stress at a safety of 1.
 

@@ -187,7 +187,7 @@ def _planet_gap_mm(gears: GearSet) -> Numbers:
 
 def _drawn(stage: Stage, gear: str) -> ExternalGear | InternalGear:
     """A gear with the backlash that it is drawn with."""
-    thinning = stage.settings.parts.gears.backlash_mm
+    thinning = stage.settings.tooth_thinning_mm(stage.gears.module_mm)
     if gear == "ring":
         return stage.gears.ring(thinning)
     return stage.gears.sun(thinning) if gear == "sun" else stage.gears.planet(thinning)

@@ -23,7 +23,6 @@ from pareto_monoped.actuator.service.stiffness import (
 )
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,6 +66,7 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
     """
     service = service or settings.service
     gears, materials = actuator.gears, settings.materials
+    thinning_mm = float(settings.tooth_thinning_mm(gears.module_mm))
     at = layout(actuator.motor, actuator.family, gears, actuator.face_width_mm, settings)
     bearings = bearing_services(actuator, at, settings, service)
     # The main bearing turns once; at the knee it carries more than at the hip.
@@ -88,8 +88,8 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
             efficiency_churning=1.0 - churning_loss(turning, actuator.peak_torque_n_m, service),
         ),
         stiffness=stiffness(actuator, at, settings),
-        backlash_arcmin=backlash_arcmin(gears, settings.parts.gears.backlash_mm),
-        greatest_backlash_arcmin=greatest_backlash_arcmin(gears, settings.parts.gears.backlash_mm, GENERAL_SERIES),
+        backlash_arcmin=backlash_arcmin(gears, thinning_mm),
+        greatest_backlash_arcmin=greatest_backlash_arcmin(gears, thinning_mm, settings.thickness_series),
     )
 
 

@@ -19,6 +19,7 @@ from pareto_monoped.geometry.making import ToothMaking
 from pareto_monoped.geometry.tooth_thickness import (
     GENERAL_SERIES,
     LARGEST_PITCH_DIAMETER_MM,
+    RATED_SERIES,
     thickness_tolerance_mm,
 )
 
@@ -69,11 +70,14 @@ def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -
     return float(centres * (np.cos(0.5 * np.pi / z) if z % 2 else 1.0) - pin_mm)
 
 
-def measure(gear: ExternalGear | InternalGear, *, hole: bool = False, play_mm: float = 0.0) -> Span:
+def measure(
+    gear: ExternalGear | InternalGear, *, series: int = GENERAL_SERIES, hole: bool = False, play_mm: float = 0.0
+) -> Span:
     """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
 
     Args:
         gear: its teeth.
+        series: of the tolerance of their thickness, DIN 3967.
         hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
         play_mm: by how much the spaces of such a hole are at least wider than drawn.
 
@@ -83,7 +87,7 @@ def measure(gear: ExternalGear | InternalGear, *, hole: bool = False, play_mm: f
     diameter = 2.0 * float(gear.pitch_radius_mm)
     if diameter > LARGEST_PITCH_DIAMETER_MM:
         raise ValueError(f"pitch diameter {diameter:g} mm: must be at most {LARGEST_PITCH_DIAMETER_MM:g} mm")
-    tolerance = float(thickness_tolerance_mm(diameter, GENERAL_SERIES))
+    tolerance = float(thickness_tolerance_mm(diameter, series))
     play = float(gear.backlash_mm)
     if isinstance(gear, ExternalGear):
         count = spanned_teeth(int(gear.teeth), gear.pressure_angle_rad, float(gear.shift))
@@ -115,7 +119,9 @@ def gear_rows(
     spline = hole and isinstance(gear, ExternalGear)
     play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
     grade = accuracy_class if making is None else making.accuracy_class
-    span = measure(gear, hole=spline, play_mm=play)
+    series = RATED_SERIES if (accuracy_class if making is None else making.quality) else GENERAL_SERIES
+    loss = _loss_mm(gear, making, series) if making else 0.0
+    span = measure(gear, series=series, hole=spline, play_mm=play)
     kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
     limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
     measured = (
@@ -134,18 +140,18 @@ def gear_rows(
         ("Tip diameter", number(2.0 * float(gear.tip_radius_mm))),
         ("Root diameter", number(2.0 * float(gear.root_radius_mm))),
         measured,
-        ("Tooth thickness tolerance", "DIN 3967, series 24"),
+        ("Tooth thickness tolerance", f"DIN 3967, series {series}"),
         ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
         ("Backlash of the pair, at least", number(play)),
-        *([("Backlash of the pair, at most", number(round(play + _loss_mm(gear, making), 3)))] if making else ()),
+        *([("Backlash of the pair, at most", number(round(play + loss, 3)))] if making else ()),
         *(_making_rows(making, hardness) if making is not None else ()),
     ]
 
 
-def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking) -> float:
+def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking, series: int) -> float:
     """By how much a pair's backlash grows where both thicknesses are at the end of their tolerance; the worst mate."""
-    mates = (thickness_tolerance_mm(diameter, GENERAL_SERIES) for diameter in making.mates_mm)
-    return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), GENERAL_SERIES) + max(mates))
+    mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
+    return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
 
 
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:

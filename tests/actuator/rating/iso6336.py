@@ -26,6 +26,10 @@ STATIC_LIFE = {
 }
 
 
+# DIN 3967, series 23: tolerance of the tooth's thickness up to a reference diameter.
+THINNER = ((10.0, 0.008), (50.0, 0.012), (125.0, 0.016), (280.0, 0.020))
+
+
 def inv(angle):
     return tan(angle) - angle
 
@@ -135,7 +139,7 @@ class Fillet:
         wanted = pi / 3.0 if self.internal else pi / 6.0
         # At the first shift the rounding's centre is below the pitch point; its normal then points down the space.
         half = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
-        shift = bisect(lambda s: self.tangent_to_axis(s) - wanted, -half, -half + 2.0)
+        shift = bisect(lambda s: self.tangent_to_axis(s) - wanted, -half, -half + 3.0)
         step = 1e-4
         (x0, y0), (x1, y1), (x2, y2) = (self.point(shift + k * step)[0] for k in (-1, 0, 1))
         dx, dy, ddx, ddy = (x2 - x0) / 2, (y2 - y0) / 2, x2 - 2 * x1 + x0, y2 - 2 * y1 + y0
@@ -155,8 +159,22 @@ def contact_ratio(pinion, wheel, distance):
     return (end - begin) / (pi * cos(ALPHA))
 
 
-def form_and_notch(gear, mate, distance):
-    """Y_F, Y_S and q_s of a gear."""
+def thinning(teeth, module):
+    """By how much a tooth of a rated gear may be thinner than without backlash, in mm: drawn, and by tolerance."""
+    return 0.03 * module + next(tolerance for largest, tolerance in THINNER if teeth * module <= largest)
+
+
+def generated(gear, thinner):
+    """The gear whose teeth are thinner (ring: whose spaces are wider) on the reference circle, by shift alone."""
+    change = thinner if gear.internal else -thinner
+    wanted = gear.thickness(gear.teeth / 2.0) + change
+    x = bisect(lambda one: Gear(gear.teeth, one).thickness(gear.teeth / 2.0) - wanted, gear.x - 1.0, gear.x + 1.0)
+    return Gear(gear.teeth, x, internal=gear.internal)
+
+
+def form_and_notch(gear, mate, distance, thinner=0.0):
+    """Y_F, Y_S and q_s of a gear whose teeth are thinner by so many modules; tips and contact as without backlash."""
+    made = generated(gear, thinner)
     pitch = pi * cos(ALPHA)
     if gear.internal:
         begin, end = on_path(mate, gear, distance)
@@ -167,8 +185,8 @@ def form_and_notch(gear, mate, distance):
         begin, end = on_path(gear, mate, distance)
         curvature = begin + pitch
     angle = atan2(curvature, gear.base)
-    half_thickness, height, radius = Fillet(gear.teeth, gear.internal, gear.x).critical()
-    half_tooth = (pi / 2.0 + (-2.0 if gear.internal else 2.0) * gear.x * tan(ALPHA)) / gear.teeth
+    half_thickness, height, radius = Fillet(made.teeth, made.internal, made.x).critical()
+    half_tooth = (pi / 2.0 + (-2.0 if gear.internal else 2.0) * made.x * tan(ALPHA)) / gear.teeth
     if gear.internal:
         force_angle = angle + (half_tooth - inv(ALPHA) + inv(angle))
         arm = height - gear.base / cos(force_angle)
@@ -408,7 +426,8 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
         for which, gear in enumerate(members):
             steel, mate = mesh["steels"][which], mesh["steels"][1 - which]
             own, other = (mesh["pinion"], mesh["wheel"]) if which == 0 else (mesh["wheel"], mesh["pinion"])
-            form, notch_stress, notch = form_and_notch(own, other, sets["distance"])
+            thinner = thinning(own.teeth, module) / module
+            form, notch_stress, notch = form_and_notch(own, other, sets["distance"], thinner)
             if gear == "ring":
                 rim = ring_wall / module
                 y_b = 1.0 if rim >= 3.5 else 1.15 * log(8.324 / rim)
@@ -434,13 +453,44 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
     return safety, loads
 
 
+def haigh(sensitivity, lower_over_upper):
+    """Upper stress that is endured at a stress ratio, over the one at a ratio of 0.
+
+    The endured amplitude falls by ``sensitivity`` per unit of mean stress, along a straight line.
+    """
+    reversed_amplitude = 0.5 + sensitivity * 0.5  # of the line through amplitude 0.5 at mean 0.5
+
+    def spare(upper):
+        lower = lower_over_upper * upper
+        return reversed_amplitude - sensitivity * (upper + lower) / 2.0 - (upper - lower) / 2.0
+
+    return bisect(spare, 0.01, 2.0)
+
+
+def mean_stress(steel, notch_stress, levels, back):
+    """Y_M of a gear that turns to and fro; loads on the other flank compress the root 1.2 times as much."""
+    sides = [
+        max([share for (share, _), side in zip(levels, back, strict=True) if side is way], default=0.0)
+        for way in (False, True)
+    ]
+    sensitivity = 0.8 - 0.15 * notch_stress if steel.treatment == "case_hardened" else 0.3
+    return haigh(sensitivity, -1.2 * min(sides) / max(sides))
+
+
 def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
     """sigma_HG, sigma_FG, and both against static failure."""
     levels = list(zip(duty.torque_shares, duty.output_angles_rad, strict=True))
     kind = steel.treatment
     highest = max(1.0, max(duty.torque_shares))
-    z_nt = life(kind, "flank", damage_cycles(passes, levels, kind, "flank", duty.jumps, highest)) / sqrt(highest)
-    y_nt = life(kind, "root", damage_cycles(passes, levels, kind, "root", duty.jumps, highest)) / highest
+    back = duty.reversed or [False] * len(levels)
+    # A flank of sun or ring sees one direction, one of a planet both: from the sun, or from the ring.
+    seen = [[level for level, side in zip(levels, back, strict=True) if side is way] for way in (False, True)]
+    seen = [levels] if gear == "planet" else seen
+
+    def used(what):
+        return max(damage_cycles(passes, some, kind, what, duty.jumps, highest) for some in seen)
+
+    z_nt, y_nt = life(kind, "flank", used("flank")) / sqrt(highest), life(kind, "root", used("root")) / highest
     soft = kind == "through_hardened" and mate.treatment != "through_hardened"
     z_w = 1.2 - (steel.hardness_hv - 130.0) / 1700.0 if soft else 1.0
     support = (1.0 + sqrt(steel.slip_layer_mm * 0.2 * (1.0 + 2.0 * notch))) / (
@@ -448,7 +498,7 @@ def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
     )
     rough = data.root_roughness_um + 1.0
     rough = 4.299 - 3.259 * rough**0.0058 if kind == "nitrided" else 1.674 - 0.529 * rough**0.1
-    reversal = data.reversed_bending_factor if gear == "planet" else 1.0
+    reversal = data.reversed_bending_factor if gear == "planet" else mean_stress(steel, notch_stress, levels, back)
     if kind == "case_hardened":
         static = 0.44 * notch_stress + 0.12
     elif kind == "nitrided":

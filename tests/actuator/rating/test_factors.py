@@ -13,6 +13,7 @@ from pareto_monoped.actuator.rating import load
 from pareto_monoped.actuator.rating.build import build_stage, load_sharing
 from pareto_monoped.actuator.rating.flank import elasticity_factor, work_hardening_factor
 from pareto_monoped.actuator.rating.geometry import (
+    ToothForm,
     external_rim_factor,
     internal_rim_factor,
     single_contact_factors,
@@ -26,7 +27,7 @@ from pareto_monoped.actuator.rating.life import (
     highest_share,
     passes_per_rad,
 )
-from pareto_monoped.actuator.rating.root import roughness_factor
+from pareto_monoped.actuator.rating.root import mean_stress_factor, roughness_factor
 from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
@@ -93,6 +94,35 @@ def test_equivalent_cycles_by_hand():
     expected = 1e4 * (1.0 + 2.0 * 0.5**8.738)
     found = equivalent_cycles(0.6, duty, ROOT_CURVES["case_hardened"].exponent, flank=False)
     assert found == pytest.approx(expected, rel=1e-5)
+
+
+def test_reversed_levels_load_the_other_flank_of_sun_and_ring_and_both_of_a_planet():
+    """One pass at 1.0, two at 0.5 forward and four at 0.5 backward; slope 8.738."""
+    duty = DutyData(
+        jumps=1e4, torque_shares=(1.0, 0.5, 0.5), output_angles_rad=(1.0, 2.0, 4.0), reversed=(False, False, True)
+    )
+    exponent, half = ROOT_CURVES["case_hardened"].exponent, 0.5**8.738
+    one_side = equivalent_cycles(1.0, duty, exponent, flank=False)
+    assert one_side == pytest.approx(1e4 * (1.0 + 2.0 * half), rel=1e-5)
+    both = equivalent_cycles(1.0, duty, exponent, flank=False, both_ways=True)
+    assert both == pytest.approx(1e4 * (1.0 + 6.0 * half), rel=1e-5)
+    turned = replace(duty, reversed=(True, True, False))
+    assert equivalent_cycles(1.0, turned, exponent, flank=False) == pytest.approx(one_side)
+
+
+@pytest.mark.parametrize(
+    ("steel", "ratio", "expected"),
+    [
+        ("nitrided_31crmov9", 0.0, 1.0),
+        ("nitrided_31crmov9", 0.25, 0.861),  # 1 / (1 + 0.3 x 0.7 / 1.3)
+        ("nitrided_31crmov9", 1.0, 0.607),
+        ("case_hardened_18crnimo7_6", 0.25, 0.909),  # M = 0.5 at Y_S = 2: 1 / (1 + 0.3 / 3)
+        ("case_hardened_18crnimo7_6", 1.0, 0.714),  # close to the 0.7 of idlers (ISO 6336-5)
+    ],
+)
+def test_mean_stress_factor_by_hand(steel, ratio, expected):
+    form = ToothForm(form_factor=1.3, stress_correction=2.0, notch=2.0)
+    assert mean_stress_factor(GEAR_GRADES[steel], form, ratio) == pytest.approx(expected, abs=5e-4)
 
 
 def test_a_stop_struck_in_each_jump_is_the_level_that_counts():
@@ -213,6 +243,8 @@ def test_roughness_of_the_test_gear_changes_nothing():
 def test_levels_of_the_duty_need_an_angle_each():
     with pytest.raises(ValueError, match="2 and 1 values: must be one per level"):
         DutyData(jumps=1.0, torque_shares=(1.0, 0.5), output_angles_rad=(1.0,))
+    with pytest.raises(ValueError, match=r"reversed and torque_shares have 1 and 2 values"):
+        DutyData(jumps=1.0, torque_shares=(1.0, 0.5), output_angles_rad=(1.0, 1.0), reversed=(True,))
 
 
 def test_unknown_rules_are_refused():

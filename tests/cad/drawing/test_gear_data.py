@@ -14,7 +14,6 @@ from pareto_monoped.cad.drawing.gear_data import (
 from pareto_monoped.cad.shape.curves import Contour, Spline, polygon
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
-from pareto_monoped.geometry.tooth_thickness import thickness_tolerance_mm
 
 EXTERNAL = [
     (18, 0.5, 0.0, 0.0),
@@ -118,10 +117,18 @@ def test_limits_leave_at_least_the_drawn_backlash():
     assert inner.greatest_mm > inner.least_mm
 
 
-def test_thickness_tolerance_is_that_of_the_size():
-    assert [thickness_tolerance_mm(d, 24) for d in (10.0, 10.1, 50.0, 125.0)] == [0.012, 0.020, 0.020, 0.025]
+def test_a_gear_beyond_the_table_of_tolerances_is_refused():
     with pytest.raises(ValueError, match="at most 280 mm"):
-        measure(ExternalGear(teeth=300, module_mm=1.0))
+        measure(InternalGear(teeth=300, module_mm=1.0))
+
+
+def test_rated_gears_have_the_finer_series_and_splines_the_other():
+    gear = ExternalGear(teeth=30, module_mm=0.5, backlash_mm=0.015)
+    for accuracy_class, series, tolerance in ((6, 23, 0.012), (None, 24, 0.020)):
+        rows = dict(gear_rows(gear, accuracy_class=accuracy_class))
+        assert rows["Tooth thickness tolerance"] == f"DIN 3967, series {series}"
+        least, greatest = map(float, rows["Base tangent length W over 4 teeth"].split(" to "))
+        assert greatest - least == pytest.approx(tolerance * np.cos(np.radians(20.0)), abs=1.1e-3)
 
 
 def test_the_table_names_what_a_gear_cutter_needs():
@@ -131,4 +138,4 @@ def test_the_table_names_what_a_gear_cutter_needs():
     assert rows["Pressure angle"] == "20°"
     assert rows["Accuracy of the teeth"] == "ISO 1328-1 class 6"
     assert rows["Backlash of the pair, at least"] == "0.08"
-    assert rows["Base tangent length W over 4 teeth"] == "5.320 to 5.339"
+    assert rows["Base tangent length W over 4 teeth"] == "5.327 to 5.339"
