@@ -132,7 +132,9 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
     for name, note in {
         "base_near_cheek": "6 mm sheet",
         "knee_bumper_flexion": "FKM 75 Shore A, round bar 28 mm, cut to 28 mm",
-        "knee_striker_bolt": "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together",
+        "knee_striker_bolt": (
+            "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together"
+        ),
         "base_far_cheek": "8 mm plate",
         "base_bearing": "6804, 20 x 32 x 7 mm (ISO 15)",
         "base_rod": "10 mm tube; the test stand's carriage clamps to the rods",
