@@ -100,9 +100,12 @@ def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
 def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "ServiceData") -> list[str]:
     """The duty that the lives belong to, and the bearings and bushes that it asks too much of."""
     duty, overload = settings.parts.duty, settings.parts.rating.overload_factor
-    levels = " and ".join(
-        f"{angle:g} rad at {share:g}" for share, angle in zip(duty.torque_shares, duty.output_angles_rad, strict=True)
+    turned = duty.reversed or (False,) * len(duty.torque_shares)
+    *first, last = (
+        f"{angle:g} rad at {share:g}{' (reversed)' if back else ''}"
+        for share, angle, back in zip(duty.torque_shares, duty.output_angles_rad, turned, strict=True)
     )
+    levels = f"{', '.join(first)} and {last}" if first else last
     lines = [
         f"Duty: {service.jumps_per_minute:g} jumps per minute, each {levels} of the peak torque.",
         f"Overload: {overload:g} times the peak torque, or the foot force in the push-off.",

@@ -31,6 +31,7 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.remarks import bound_lines
 from pareto_monoped.study.weighted_cost import weighted_cost
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
@@ -112,6 +113,7 @@ def study_card(
             name: list(data.coordinates.limits(name)) if isinstance(value, Bounds) else [value, value]
             for name, value in study.variables.items()
         },
+        at_bounds=bound_lines(data, front),
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
         trials=trial_columns(

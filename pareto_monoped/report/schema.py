@@ -181,6 +181,7 @@ class StudyCard:
         objectives: of the study, which decide what is on its front.
         group: equal for studies that are runs of one study with several seeds.
         bounds: variable -> [lower, upper], equal for a fixed one.
+        at_bounds: which bounds limit the front, and in which part of it; one sentence each.
         front, ill_conditioned: rows of ``trials``.
         more: columns of the front alone, in its order: the other measures, and masses of the bodies.
         audits: trial number -> measures of its audit.
@@ -214,6 +215,7 @@ class StudyCard:
     hypervolume_unit: str
     reference: str
     bounds: Mapping[str, Sequence[float]]
+    at_bounds: Sequence[str]
     summary: Sequence[str]
     notes: Sequence[str]
     trials: Trials

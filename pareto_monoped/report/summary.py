@@ -11,7 +11,7 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.schema import Case
 from pareto_monoped.study.definition import NO_STRENGTH
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.remarks import remarks
+from pareto_monoped.study.remarks import warnings
 
 if TYPE_CHECKING:
     from pareto_monoped.report.resimulation import Resimulation
@@ -108,7 +108,7 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
             f"Heights simulated again for this page differ by up to {1000.0 * again.drift_m:.1f} mm from those stored: "
             "the code, a library version or the machine is not the one that the study ran with."
         )
-    lines += [f"{line[0].upper()}{line[1:]}." for line in remarks(data)]
+    lines += [f"{line[0].upper()}{line[1:]}." for line in warnings(data, data.front())]
     if not data.study.strength:
         lines.append(f"{NO_STRENGTH[0].upper()}{NO_STRENGTH[1:]}.")
     return lines

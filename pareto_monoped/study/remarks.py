@@ -16,7 +16,7 @@ from pareto_monoped.study.weighted_budget import sweep_evaluations
 
 _AT = 0.005
 """Share of its range within which a variable is at its bound. Our own choice: 1 N/m of K's 195."""
-_WORTH_TELLING = 0.05
+_WORTH_TELLING = 0.1
 """Least share of the front that is told. Our own choice."""
 _GAP = 0.1
 """Share of the front's extent in its first objective over which a part of it must be missing to divide it in two."""
@@ -42,19 +42,26 @@ class AtBound:
 
 
 def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
-    """One line per remark; none if there is nothing to say.
+    """One line per remark, warnings first; none if there is nothing to say.
 
     Args:
         data: the study.
         front: its front, if it is at hand.
     """
     front = data.front() if front is None else front
+    return [*warnings(data, front), *bound_lines(data, front)]
+
+
+def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
+    """What keeps a study from its result: no feasible design, or a budget that ended too early."""
     if len(data.trials) == 0:
         return []
-    if len(front) == 0:
-        return [_why_not_feasible(data)]
-    lines = [_bound_line(data, found) for found in at_bounds(data, front)]
-    return [*_unfinished_sweep(data), *lines]
+    return _unfinished_sweep(data) if len(front) else [_why_not_feasible(data)]
+
+
+def bound_lines(data: StudyData, front: pd.DataFrame) -> list[str]:
+    """One line per bound that limits the front, see ``at_bounds``."""
+    return [_bound_line(data, found) for found in at_bounds(data, front)] if len(front) else []
 
 
 def _unfinished_sweep(data: StudyData) -> list[str]:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from pareto_monoped.report.summary import notes, sentences
-from pareto_monoped.study.remarks import remarks
 from tests.report.conftest import cut
 
 
@@ -42,9 +41,7 @@ def test_a_low_front_says_how_high_it_gets(data, resimulation):
 def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, resimulation):
     *others, last = notes(data, resimulation)
     assert last.startswith("Strength was not asked for")
-    bounds = [n for n in others if " bound of " in n]
-    assert bounds == [f"{line[0].upper()}{line[1:]}." for line in remarks(data)]
-    assert [n for n in others if "audit" in n] == [n for n in others if n not in bounds]
+    assert all("audit" in n for n in others)
     less = cut(data, np.arange(len(data.trials)) < 50)
     audits = data.audits.iloc[:2].copy()
     audits["well_conditioned"] = False
