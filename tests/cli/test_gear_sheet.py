@@ -184,7 +184,7 @@ def test_teeth_and_spaces_of_a_ring_make_its_pitch_on_the_tip_circle():
 @pytest.mark.parametrize(
     ("motor", "words"),
     [
-        ("U8", ("assumed, 1.44 times the continuous one", "rated by maker", "17.9 s from cold", "7.91 N m")),
+        ("U8", ("assumed, 1.44 times the continuous one", "rated by maker", "17.9 s from cold", "7.83 N m")),
         ("VT8020", ("published", "rated by maker", "time not known")),
     ],
 )

@@ -10,7 +10,7 @@ import pytest
 from pareto_monoped.study.reader import read_study
 
 ROOT = Path(__file__).parents[2]
-WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 30'
+WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 15'
 NSGA2 = 'name = "nsga2"\npopulation = 20'
 SURROGATE = 'name = "surrogate"\npopulation = 20\ndrawn_generations = 2'
 

@@ -8,6 +8,7 @@ Lengths in mm, forces in N, stresses in MPa.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from math import atan2, ceil, cos, hypot, log, pi, sin, sqrt, tan
 
 import numpy as np
@@ -47,7 +48,7 @@ def bisect(function, low, high):
     return 0.5 * (low + high)
 
 
-@dataclass
+@dataclass(frozen=True)
 class Gear:
     """A gear of module 1.
 
@@ -172,6 +173,7 @@ def generated(gear, thinner):
     return Gear(gear.teeth, x, internal=gear.internal)
 
 
+@cache  # loops over face widths ask again and again
 def form_and_notch(gear, mate, distance, thinner=0.0):
     """Y_F, Y_S and q_s of a gear whose teeth are thinner by so many modules; tips and contact as without backlash."""
     made = generated(gear, thinner)
@@ -244,9 +246,18 @@ def damage_cycles(passes, levels, treatment, kind, jumps, highest):
     return total * allowed(1.0)
 
 
-def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices=20000):
-    """Of one web in N/mm: a beam guided at both ends, its section cut into rings around the carrier's axis."""
-    data, carrier = settings.parts.webs, settings.parts.carrier
+def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length):
+    """Of one web in N/mm: a beam guided at both ends."""
+    area, second = web_section(planets, r_pin, planet_tip, ring_tip, settings.parts.webs, settings.parts.carrier)
+    if area == 0.0:
+        return 0.0
+    aluminium, shear = 70e3, 70e3 / 2.66
+    return 1.0 / (length**3 / (12.0 * aluminium * second) + 1.2 * length / (shear * area))
+
+
+@cache
+def web_section(planets, r_pin, planet_tip, ring_tip, data, carrier, slices=20000):
+    """Area and second moment of one web, cut into rings around the carrier's axis; 0, 0 where there is none."""
     half = pi / planets
     x_pin, y_pin = r_pin * cos(half), r_pin * sin(half)
     keep = planet_tip + data.clearance_mm
@@ -265,22 +276,21 @@ def web_stiffness(planets, r_pin, planet_tip, ring_tip, settings, length, slices
         return y_pin - sqrt(max(keep**2 - (x - x_pin) ** 2, 0.0))
 
     if planets < 3 or free(outer) <= 0.0:
-        return 0.0
+        return 0.0, 0.0
     inner = max(min(outer - data.depth_mm, outer * cos(free(outer)) - data.depth_mm / 2.0), x_pin)
     if gap(inner) < data.neck_mm < gap(outer):
         inner = bisect(lambda x: gap(x) - data.neck_mm, inner, outer)
     hole = 1.25 + data.screw_wall_mm
     middle = outer - hole
     if min(hypot(middle - x_pin, y_pin) - keep, middle - inner) < hole:
-        return 0.0
+        return 0.0, 0.0
     edges = np.linspace(inner, outer, slices + 1)
     rings = 0.5 * (edges[1:] + edges[:-1])
     width = edges[1] - edges[0]
     reach = np.array([min(free(radius), float(np.arccos(inner / radius))) for radius in rings])
     area = float(np.sum(2.0 * rings * reach) * width)
     second = float(np.sum(rings**3 * (reach - np.sin(reach) * np.cos(reach))) * width)
-    aluminium, shear = 70e3, 70e3 / 2.66
-    return 1.0 / (length**3 / (12.0 * aluminium * second) + 1.2 * length / (shear * area))
+    return area, second
 
 
 def pin_tilt(force, width, gap, diameter, stiffness, web):
@@ -453,6 +463,7 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
     return safety, loads
 
 
+@cache
 def haigh(sensitivity, lower_over_upper):
     """Upper stress that is endured at a stress ratio, over the one at a ratio of 0.
 
