@@ -77,43 +77,55 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Planets with their bearings, pins and the pins' screws, ring."""
-    data, materials = settings.parts, settings.materials
-    carrier, gears = data.carrier, at.gears
+    return (
+        _planet(at, settings),
+        *planet_bearing_parts(at, settings),
+        *_pins(at, settings),
+        _ring(at, settings),
+    )
+
+
+def _planet(at: Layout, settings: ActuatorSettings) -> Part:
+    materials, gears = settings.materials, at.gears
+    return Part(
+        name="planet",
+        role=Role.GEAR,
+        visibility=Visibility.INSIDE,
+        material=materials.gear_steel,
+        prisms=planet_prisms(at, settings),
+        process="machined",
+        group=Group.PLANET,
+        grade=gear_grade(settings, settings.gear_steels.planet),
+        accuracy_class=gear_accuracy(settings),
+        features=(
+            bored(
+                Circle(radius_mm=0.5 * settings.planet_bore_mm),
+                at.z_gear_back,
+                at.z_gear_front,
+                enters="both",
+                pressed=settings.planet_bearing == "bushes",
+            ),
+        ),
+        teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
+        note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
+        fits=planet_fits(settings),
+        joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
+        if settings.planet_bearing == "bushes"
+        else None,
+        count=gears.planets,
+        pitch_radius_mm=at.r_pins,
+    )
+
+
+def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
+    """The planets' pins, and the screws that hold the second carrier on them."""
+    materials, carrier, gears = settings.materials, settings.parts.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     pin_tap = pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM
     pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
     needles = settings.planet_bearing == "needles"
     return (
-        Part(
-            name="planet",
-            role=Role.GEAR,
-            visibility=Visibility.INSIDE,
-            material=materials.gear_steel,
-            prisms=planet_prisms(at, settings),
-            process="machined",
-            group=Group.PLANET,
-            grade=gear_grade(settings, settings.gear_steels.planet),
-            accuracy_class=gear_accuracy(settings),
-            features=(
-                bored(
-                    Circle(radius_mm=0.5 * settings.planet_bore_mm),
-                    at.z_gear_back,
-                    at.z_gear_front,
-                    enters="both",
-                    pressed=settings.planet_bearing == "bushes",
-                ),
-            ),
-            teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
-            note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
-            fits=planet_fits(settings),
-            joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
-            if settings.planet_bearing == "bushes"
-            else None,
-            count=gears.planets,
-            pitch_radius_mm=at.r_pins,
-        ),
-        *planet_bearing_parts(at, settings),
         Part(
             name="planet_pin",
             role=Role.PIN,
@@ -151,23 +163,27 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.OUTPUT,
             note="holds the secondary carrier on its pin",
         ),
-        Part(
-            name="ring",
-            role=Role.GEAR,
-            visibility=Visibility.INSIDE,
-            material=materials.gear_steel,
-            prisms=slab(
-                at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(settings.tooth_thinning_mm(gears.module_mm))
-            ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=gear_grade(settings, settings.gear_steels.ring),
-            fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
-            accuracy_class=gear_accuracy(settings),
-            teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
-            note=gear_note(gears.ring(settings.tooth_thinning_mm(gears.module_mm)), settings),
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
+    )
+
+
+def _ring(at: Layout, settings: ActuatorSettings) -> Part:
+    materials, gears = settings.materials, at.gears
+    return Part(
+        name="ring",
+        role=Role.GEAR,
+        visibility=Visibility.INSIDE,
+        material=materials.gear_steel,
+        prisms=slab(
+            at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(settings.tooth_thinning_mm(gears.module_mm))
         ),
+        process="machined",
+        group=Group.HOUSING,
+        grade=gear_grade(settings, settings.gear_steels.ring),
+        fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
+        accuracy_class=gear_accuracy(settings),
+        teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
+        note=gear_note(gears.ring(settings.tooth_thinning_mm(gears.module_mm)), settings),
+        joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
     )
 
 

@@ -15,7 +15,6 @@ from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf
 from pareto_monoped.cad.write.folder import safe, write
-from pareto_monoped.cad.write.glb import glb
 from pareto_monoped.cad.write.jump_record import jump_record, replay_script
 from pareto_monoped.cad.write.stand import stand_files
 from pareto_monoped.cad.write.visuals import METRES, Visual, colliders
@@ -44,7 +43,7 @@ def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[
         printed = [unique for unique in product.unique if unique.part.process == "3D printed"]
         made |= {f"print/{safe(unique.name)}.3mf": triangles.threemf(unique.mesh, unique.name) for unique in printed}
     if "glb" in formats:
-        made["assembly.glb"] = glb(product)
+        made["assembly.glb"] = triangles.glb(product)
     return made | {
         f"model/meshes/{safe(visual.name)}.stl": triangles.stl(visual.mesh, scale=METRES) for visual in shown
     }

@@ -1,10 +1,11 @@
-"""STL and 3MF from the meshes, as bytes: an export checks them (``check.watertight``) before it writes them."""
+"""STL, 3MF and GLB from the meshes, as bytes: an export checks them (``check.watertight``) before it writes them."""
 
 import io
 import zipfile
 
 import numpy as np
 
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # the zip format's first date: a real one would make each export differ
@@ -56,3 +57,32 @@ def threemf(mesh: Mesh, name: str) -> bytes:
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, text)
     return stream.getvalue()
+
+
+def glb(product: Product) -> bytes:
+    """The assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored once."""
+    import trimesh  # here, because it takes longer to import than all other files to write
+
+    scene = trimesh.Scene(base_frame="world")
+    metres = np.diag([1e-3, 1e-3, 1e-3, 1.0])
+    upright = np.array([[0.0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])  # x forward, y left, z up to that
+    for kind in product.unique:
+        mesh = trimesh.Trimesh(kind.mesh.points_mm.astype(np.float32), kind.mesh.triangles, process=False)
+        material = trimesh.visual.material.PBRMaterial(
+            name=kind.part.material.name,
+            baseColorFactor=[*(round(255 * c) for c in kind.part.material.colour), 255],
+            metallicFactor=0.2,
+            roughnessFactor=0.6,
+        )
+        mesh.visual = trimesh.visual.TextureVisuals(material=material)
+        scene.geometry[kind.name] = mesh
+    for instance, kind in product.placed():
+        scene.graph.update(
+            frame_from="world",
+            frame_to=instance.name,
+            matrix=upright @ metres @ instance.world,
+            geometry=kind.name,
+        )
+    data = scene.export(file_type="glb")
+    assert isinstance(data, bytes)
+    return data
