@@ -40,8 +40,10 @@ def main(rounds: int) -> None:
     """Print one line per batch size; ``of raw`` is against ``mujoco.rollout``, ``of loop`` against the Python loop."""
     calibration, actuators = load_calibration("reference"), map_for("VT8020")
     one, two = Evaluator(actuators, calibration, 1), Evaluator(actuators, calibration, 2)
-    heads = ("batch", "steps", "us/step", "of raw", "of loop", "x naive", "2 threads", "us/step", "of raw")
-    print(" ".join(f"{head:>9}" for head in heads))
+    heads = ("us per step, one core", "of raw", "of a Python loop", "x naive", "gain by a second core")
+    built = ("us per step, robots built", "of raw, robots built")
+    print(f"| batch | {' | '.join((*heads, *built))} |")
+    print("|---:" * 8 + "|")
     for size in (1, 8, 40, 200):
         designs = np.random.default_rng(size).uniform(LOWER, UPPER, (size, len(LOWER)))
         robots = robot_arrays(designs, actuators, calibration.mass)
@@ -82,7 +84,7 @@ def main(rounds: int) -> None:
             statistics.median(cpu["built"]) / steps * 1e6,
             _ratio(cpu["raw"], cpu["built"]),
         )
-        print(f"{size:9d} {steps:9d} " + " ".join(f"{cell:9.2f}" for cell in cells))
+        print(f"| {size} | {' | '.join(f'{cell:.3g}' for cell in cells)} |")
 
 
 class Raw:

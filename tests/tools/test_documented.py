@@ -1,0 +1,74 @@
+"""The script that makes documented figures again: numbers follow the commands, words stay."""
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("documented", ROOT / "tools" / "documented.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    yield module
+    sys.modules.pop("documented", None)
+
+
+def test_a_marked_table_gets_the_rows_that_its_command_prints(script):
+    command = "printf '| a | b |\\n|---|---|\\n| 0 | 0 |\\n\\n| x | y |\\n|---|---|\\n| 3 | 4 |\\n| 5 | 6 |\\n'"
+    page = f"Text.\n\n<!-- made by: {command} -->\n| x | y |\n|---|---:|\n| 1 | 2 |\n\nMore.\n"
+    new, missed = script.with_tables(page)
+    assert new == page.replace("| 1 | 2 |", "| 3 | 4 |\n| 5 | 6 |")
+    assert missed == []
+
+
+def test_a_table_that_the_command_does_not_print_is_named_and_kept(script):
+    page = "<!-- made by: echo nothing -->\n| x | y |\n|---|---|\n| 1 | 2 |\n"
+    new, (fault,) = script.with_tables(page)
+    assert new == page
+    assert "echo nothing" in fault
+    assert "x | y" in fault
+
+
+def test_outputs_get_the_numbers_of_today_and_keep_blanks_and_gaps(script, tmp_path):
+    command = "printf 'mass 5.1 kg\\nother\\n\\nheight   1.25 m\\nend 7\\n'"
+    page = f"```console\n$ {command}\nmass 4 kg\n...\n\nheight 1 m\n...\n```\n"
+    new, missed = script.with_outputs(page, tmp_path)
+    shown = new.split("\n", 2)[2]
+    assert shown == "mass 5.1 kg\n...\n\nheight   1.25 m\n...\n```\n"
+    assert missed == []
+
+
+def test_a_line_whose_words_are_gone_is_named_and_kept(script, tmp_path):
+    page = "```console\n$ printf 'weight 5 kg\\n'\nmass 4 kg\n```\n"
+    new, (fault,) = script.with_outputs(page, tmp_path)
+    assert new == page
+    assert "mass 4 kg" in fault
+
+
+def test_after_a_gap_the_line_with_the_closest_numbers_is_taken(script):
+    new, missed = script.like(["...", "row 20", "..."], ["row 1", "row 2", "row 21", "row 300"])
+    assert new == ["...", "row 21", "..."]
+    assert missed == []
+
+
+def test_lines_between_gaps_stay_together(script):
+    new, _ = script.like(["...", "head", "row 5"], ["head", "other", "head", "row 6"])
+    assert new == ["...", "head", "row 6"]
+
+
+def test_a_command_that_fails_stops_the_script(script, tmp_path):
+    with pytest.raises(SystemExit, match="'false' exits 1"):
+        script.with_outputs("```console\n$ false\n```\n", tmp_path)
+
+
+def test_every_table_that_names_its_maker_names_a_script_that_is_there():
+    makers = [made for page in PAGES for made in re.findall(r"<!-- made by: python (\S+)", page.read_text("utf-8"))]
+    assert makers
+    assert [made for made in makers if not (ROOT / made).exists()] == []

@@ -1,0 +1,179 @@
+"""Make the figures of README and docs again, once a change of the machine has moved them.
+
+A table that stands below a comment ``<!-- made by: COMMAND -->`` gets the rows of the table with the same titles that
+the command prints. In a block that starts with ```console, each line below ``$ command`` gets the numbers that the
+command prints now. Words are never changed: a line whose words are printed no more is named, and is yours to mend.
+
+    python tools/documented.py [--tables | --outputs] [PAGE ...]
+"""
+
+import argparse
+import functools
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from pareto_monoped.files import write_text
+
+ROOT = Path(__file__).parents[1]
+TABLE = re.compile(r"(<!-- made by: (.+?) -->\n)((?:\|.*\n)+)")
+CONSOLE = re.compile(r"(?<=^```console\n).*?(?=^```)", re.S | re.M)
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+@functools.cache
+def printed(command: str, folder: Path) -> str:
+    """What a command prints on stdout; it runs once per folder, with this interpreter and checkout.
+
+    Raises:
+        SystemExit: the command fails.
+    """
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "COLUMNS": "80", "PYTHONPATH": str(ROOT)}
+    print(f"$ {command}", file=sys.stderr)
+    done = subprocess.run(
+        command, shell=True, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True, check=False
+    )
+    if done.returncode:
+        sys.exit(f"error: '{command}' exits {done.returncode}; mend it first")
+    return done.stdout
+
+
+def with_tables(page: str) -> tuple[str, list[str]]:
+    """The page with the rows of today in its marked tables, and what could not be made again."""
+    faults: list[str] = []
+
+    def again(found: re.Match[str]) -> str:
+        comment, command, table = found.groups()
+        titles = _cells(table.splitlines()[0])
+        for other in re.findall(r"(?:^\|.*\n)+", printed(command, ROOT), re.M):
+            if _cells(other.splitlines()[0]) == titles:
+                kept = table.splitlines()[:2]
+                return str(comment) + "\n".join([*kept, *other.splitlines()[2:]]) + "\n"
+        faults.append(f"'{command}' prints no table with the titles {' | '.join(titles)}")
+        return str(found.group())
+
+    return TABLE.sub(again, page), faults
+
+
+def with_outputs(page: str, folder: Path) -> tuple[str, list[str]]:
+    """The page with the numbers of today in its console blocks, and the lines that are printed no more."""
+    faults = []
+
+    def again(found: re.Match[str]) -> str:
+        lines: list[str] = []
+        for command, shown in _commands(found.group()):
+            lines.append(f"$ {command}")
+            if command.startswith("make "):
+                lines += shown
+                continue
+            new, missed = like(shown, [line for line in printed(command, folder).splitlines() if line.strip()])
+            lines += new
+            faults.extend(f"'{command}' no longer prints: {line}" for line in missed)
+        return "\n".join(lines) + "\n"
+
+    return CONSOLE.sub(again, page), faults
+
+
+def like(shown: list[str], printed: list[str]) -> tuple[list[str], list[str]]:
+    """The lines shown, as they are printed now, and those whose words are not printed.
+
+    Lines between two ``...`` follow each other. After a ``...`` they stand where the words agree and the numbers are
+    closest to those shown.
+    """
+    new: list[str] = []
+    missed: list[str] = []
+    position, free = 0, False
+    for piece in _pieces(shown):
+        if piece == ["..."]:
+            new, free = [*new, "..."], True
+            continue
+        texts = [line for line in piece if line.strip()]
+        last = len(printed) - len(texts) if free else position
+        places = [
+            at
+            for at in range(position, last + 1)
+            if len(printed) - at >= len(texts)
+            and all(_words(a) == _words(b) for a, b in zip(texts, printed[at:], strict=False))
+        ]
+        if not places:
+            new, missed = new + piece, missed + texts[:1]
+            continue
+        at = min(places, key=lambda at: sum(_apart(a, b) for a, b in zip(texts, printed[at:], strict=False)))
+        found = iter(printed[at : at + len(texts)])
+        new += [next(found).rstrip() if line.strip() else line for line in piece]
+        position, free = at + len(texts), False
+    return new, missed
+
+
+def _pieces(lines: list[str]) -> Iterator[list[str]]:
+    piece: list[str] = []
+    for line in lines:
+        if line.strip() == "...":
+            if piece:
+                yield piece
+            yield ["..."]
+            piece = []
+        else:
+            piece.append(line)
+    if piece:
+        yield piece
+
+
+def _commands(block: str) -> list[tuple[str, list[str]]]:
+    found: list[tuple[str, list[str]]] = []
+    for line in block.splitlines():
+        if line.startswith("$ "):
+            found.append((line[2:], []))
+        else:
+            found[-1][1].append(line)
+    return found
+
+
+def _cells(row: str) -> list[str]:
+    return [cell.strip() for cell in row.strip().strip("|").split("|")]
+
+
+def _words(line: str) -> list[str]:
+    return NUMBER.sub("#", line).split()
+
+
+def _apart(shown: str, printed: str) -> float:
+    """Sum of the relative differences of two lines' numbers."""
+    pairs = zip(map(float, NUMBER.findall(shown)), map(float, NUMBER.findall(printed)), strict=True)
+    return sum(abs(a - b) / max(abs(a), abs(b), 1e-12) for a, b in pairs)
+
+
+def main() -> None:
+    """Rewrite the pages; exit 1 if something could not be made again."""
+    parser = argparse.ArgumentParser(description="Make the figures of README and docs again.")
+    parser.add_argument("pages", nargs="*", type=Path, help="default: README.md and docs/*.md")
+    only = parser.add_mutually_exclusive_group()
+    only.add_argument("--tables", action="store_true", help="only the marked tables")
+    only.add_argument("--outputs", action="store_true", help="only what commands print")
+    asked = parser.parse_args()
+    faults = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for page in asked.pages or [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+            folder = Path(scratch) / page.stem
+            shutil.copytree(ROOT / "studies", folder / "studies", ignore=shutil.ignore_patterns("*.db*"))
+            (folder / "reports").mkdir()
+            text = page.read_text(encoding="utf-8")
+            if not asked.outputs:
+                text, missed = with_tables(text)
+                faults += [f"{page.name}: {fault}" for fault in missed]
+            if not asked.tables:
+                text, missed = with_outputs(text, folder)
+                faults += [f"{page.name}: {fault}" for fault in missed]
+            write_text(page, text)
+    print("\n".join(faults))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
