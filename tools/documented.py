@@ -63,7 +63,7 @@ def with_tables(page: str) -> tuple[str, list[str]]:
 
 def with_outputs(page: str, folder: Path) -> tuple[str, list[str]]:
     """The page with the numbers of today in its console blocks, and the lines that are printed no more."""
-    faults = []
+    faults: list[str] = []
 
     def again(found: re.Match[str]) -> str:
         lines: list[str] = []
