@@ -1,23 +1,12 @@
 """The script that makes documented figures again: numbers follow the commands, words stay."""
 
-import importlib.util
 import re
-import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("documented", ROOT / "tools" / "documented.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    yield module
-    sys.modules.pop("documented", None)
 
 
 def test_a_marked_table_gets_the_rows_that_its_command_prints(script):

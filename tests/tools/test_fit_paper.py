@@ -1,26 +1,14 @@
 """The script that fits the literal model changes at most four numbers, which its file marks as fitted."""
 
-import importlib.util
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ROOT / "pareto_monoped" / "data" / "calibrations" / "paper.toml"
-
-
-@pytest.fixture(scope="module")
-def script():
-    spec = importlib.util.spec_from_file_location("fit_paper", ROOT / "tools" / "fit_paper.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    yield module
-    sys.modules.pop("fit_paper", None)
 
 
 def test_at_most_four_numbers_are_fitted_and_the_file_marks_them(script):
