@@ -3,12 +3,10 @@
 from pareto_monoped.actuator.external_layout import ExternalLayout
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
-    RING_GROOVE_MM,
     SPIGOT_MM,
     casing_dowel_holes,
     casing_holes,
     motor_holes,
-    note_with,
     slab,
     spigot,
     tube,
@@ -47,6 +45,9 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
     """The ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
     casing, materials = settings.parts.casing, settings.materials
     z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
+    ring = at.bore_ring
+    # The bearing presses the ring backwards; the groove's play is on its other side, under the bearing.
+    z_groove = z_groove_back + ring.groove_width_mm
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
     dowels = casing_dowel_holes(at, settings)
     return (
@@ -58,8 +59,8 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels),
                 *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount, dowels),
                 *tube(at.z_bearing_front, -casing.plate_mm, shell.r_boss, at.r_open),
-                *tube(at.z_bearing_back, at.z_bearing_front, shell.r_boss, at.r_seat),
-                *tube(z_groove_back, at.z_bearing_back, shell.r_boss, at.r_seat + RING_GROOVE_MM),
+                *tube(z_groove, at.z_bearing_front, shell.r_boss, at.r_seat),
+                *tube(z_groove_back, z_groove, shell.r_boss, ring.r_groove),
                 *tube(z_seat_back, z_groove_back, shell.r_boss, at.r_seat),
                 *tube(z_seat_back, -casing.plate_mm, shell.r_tube, shell.r_tube_in),
                 *tube(at.z_gear_front, z_seat_back, shell.r_tube, at.r_ring - casing.ring_lip_mm),
@@ -73,21 +74,24 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
                 Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"),
+                Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
             ),
             features=(
                 tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
                 bored(Circle(radius_mm=at.r_ring), z_flange, at.z_gear_front, enters="low"),
             ),
+            note=ring.groove_note,
         ),
         Part(
             name="bore_retaining_ring",
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
             material=materials.steel,
-            prisms=tube(z_groove_back, at.z_bearing_back, at.r_seat + RING_GROOVE_MM, at.r_open),
+            prisms=tube(z_groove_back, at.z_bearing_back, ring.r_groove, ring.r_free),
             process="bought",
             group=Group.HOUSING,
-            note=note_with("DIN 472 for {} mm, in the ring housing's groove behind the main bearing", 2.0 * at.r_seat),
+            catalogue_mass_kg=ring.mass_kg,
+            note=ring.name and f"{ring.name}, in the ring housing's groove behind the main bearing",
         ),
     )
 

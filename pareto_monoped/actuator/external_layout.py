@@ -4,17 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.layout import BORE_GROOVE_WALL_MM, Layout
 from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.sun_shaft import SunNeck, sun_neck
 from pareto_monoped.geometry.screws import LENGTHS_MM, screw_for
 from pareto_monoped.geometry.shapes import Numbers
 
-_BORE_RING_MM = 1.5
-"""Thickness of the retaining ring behind the main bearing: DIN 472 has 1.5 to 2.5 mm in the range used."""
-_GROOVE_WALL_MM = 1.0
-"""What is left of the bearing's seat behind that ring's groove; our own choice."""
 _FLANGE_WIDTH_MM = 6.0
 """Of the flange between ring housing and casing: 2.8 mm outside the bolt circle, a hexagon head's inner radius."""
 _FLANGE_BOLTS_MM = 3.2
@@ -60,14 +56,14 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
     z_coupling = at.z_secondary_back - casing.motor_carrier_clearance_mm
     z_motor = z_coupling - coupling_mm
     z_plate = z_motor - motor.framed.length_mm
-    z_groove_back = at.z_bearing_back - _BORE_RING_MM
+    z_groove_back = at.z_bearing_back - at.bore_ring.thickness_mm
     z_flange = at.z_gear_back + _RING_STEP_MM
     r_boss = at.r_seat + casing.seat_wall_mm
     r_tube = np.maximum(at.r_ring + casing.ring_wall_mm, r_boss)
     r_flange = r_tube + _FLANGE_WIDTH_MM
     return ExternalLayout(
         z_groove_back=z_groove_back,
-        z_seat_back=z_groove_back - _GROOVE_WALL_MM,
+        z_seat_back=z_groove_back - BORE_GROOVE_WALL_MM,
         z_flange=z_flange,
         z_web=z_flange - casing.flange_mm,
         z_coupling=z_coupling,

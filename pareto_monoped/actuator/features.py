@@ -16,8 +16,6 @@ from pareto_monoped.materials import GearGrade, Material
 
 SPIGOT_MM = 1.5
 """Height of the backplate's step that centres it in the casing; our own choice."""
-RING_GROOVE_MM = 1.0
-"""Depth of a retaining ring's groove: DIN 471 and DIN 472 have 1.0 to 1.5 mm in the range used."""
 END_PLAY_MM = 0.5
 """From the end of the sun's shaft to the output face; our own choice."""
 MOTOR_CLEARANCE_HOLE_MM = 0.5

@@ -3,18 +3,16 @@
 import numpy as np
 
 from pareto_monoped.actuator.features import (
-    RING_GROOVE_MM,
     bought_bearing,
     gear_accuracy,
     gear_grade,
     gear_note,
-    note_with,
     output_dowel_holes,
     output_holes,
     slab,
     tube,
 )
-from pareto_monoped.actuator.layout import RETAINING_RING_MM, Layout
+from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.tooth_making import made, rated_teeth
@@ -42,8 +40,8 @@ _RACEWAY_CASE = 0.1
 housings)."""
 _RIM_TOOTH_DEPTHS = 1.2
 """Least rim under the planet's roots, in tooth depths (AGMA 2001-D04, rim thickness factor 1)."""
-_RING_HEIGHT_MM = 2.0
-"""How far the retaining ring stands out of the carrier: drawn 3 mm wide, of which 1 mm lies in the groove."""
+_PIN_TO_GROOVE_MM = 0.1
+"""Least axial distance of the pins' ends from the retaining ring's groove, of wide grooves; our own choice."""
 
 
 def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
@@ -123,7 +121,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
     pin_tap = pin_low + _PIN_THREAD_MM + _PIN_SPARE_MM
-    pin_front = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
+    pin_front = z_pin_front(at, settings)
     needles = settings.planet_bearing == "needles"
     return (
         Part(
@@ -211,9 +209,15 @@ def _raceway(diameter_mm: float, zone: str) -> str:
     return raceway_note(found.upper_mm - found.lower_mm)
 
 
-def z_pin_front(thread_depth_mm: float, diaphragm_mm: float) -> float:
-    """Height of the pins' front ends: behind the carrier's diaphragm."""
-    return -(thread_depth_mm + diaphragm_mm)
+def z_pin_front(at: Layout, settings: ActuatorSettings) -> Numbers:
+    """Height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
+    carrier = settings.parts.carrier
+    return np.minimum(-(carrier.thread_depth_mm + carrier.diaphragm_mm), _z_groove(at) - _PIN_TO_GROOVE_MM)
+
+
+def _z_groove(at: Layout) -> Numbers:
+    """Height of the back of the retaining ring's groove; its play is on this side, under the bearing."""
+    return at.z_bearing_front - at.shaft_ring.play_mm
 
 
 def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
@@ -222,17 +226,17 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     carrier = data.carrier
     threads, dowels = output_holes(settings), output_dowel_holes(settings)
     z_diaphragm = -carrier.thread_depth_mm
-    z_pins = z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm)
+    z_pins, z_groove = z_pin_front(at, settings), _z_groove(at)
     pins = Pattern(radius_mm=0.5 * carrier.pin_diameter_mm, pitch_radius_mm=at.r_pins, count=at.gears.planets)
     seat = 0.5 * at.end_bearing.outer_diameter_mm
-    z_ring = at.z_bearing_front + RETAINING_RING_MM
-    r_groove = at.r_bore - RING_GROOVE_MM
+    ring = at.shaft_ring
+    z_ring = at.z_bearing_front + ring.thickness_mm
     body = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
-        *slab(z_diaphragm, z_ring, r_groove, seat, threads, dowels),
-        *slab(at.z_bearing_front, z_diaphragm, r_groove, seat - data.casing.lip_mm),
-        *slab(z_pins, at.z_bearing_front, at.r_bore, seat - data.casing.lip_mm),
+        *slab(z_diaphragm, z_ring, ring.r_groove, seat, threads, dowels),
+        *slab(z_groove, z_diaphragm, ring.r_groove, seat - data.casing.lip_mm),
+        *slab(z_pins, z_groove, at.r_bore, seat - data.casing.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
         *_web_prisms(at),
@@ -251,7 +255,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 Fit(diameter_mm=2.0 * seat, zone="J7", seat=True),
                 Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
                 Fit(diameter_mm=data.interface.output_dowel_mm, zone="H7"),
+                Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
             ),
+            note=ring.groove_note,
             features=(
                 tapped(M3, (threads,), z_diaphragm, 0.0, enters="high"),
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
@@ -266,10 +272,11 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
             material=materials.steel,
-            prisms=tube(at.z_bearing_front, z_ring, at.r_bore + _RING_HEIGHT_MM, r_groove),
+            prisms=tube(at.z_bearing_front, z_ring, ring.r_free, ring.r_groove),
             process="bought",
             group=Group.OUTPUT,
-            note=note_with("DIN 471 for {} mm, in the carrier's groove before the main bearing", 2.0 * at.r_bore),
+            catalogue_mass_kg=ring.mass_kg,
+            note=ring.name and f"{ring.name}, in the carrier's groove before the main bearing",
         ),
         bought_bearing(
             "main_bearing", materials.bearing_steel, at.bearing, at.z_bearing_front, Group.OUTPUT, "thin-section"

@@ -16,6 +16,7 @@ import numpy as np
 from pareto_monoped.actuator.bearings import Bearing, main_bearing, small_bearing
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import AIR_GAP_MM, Motor
+from pareto_monoped.actuator.retaining_rings import RetainingRing, retaining_ring
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import Webs, webs_of
 from pareto_monoped.geometry.shapes import Numbers
@@ -23,10 +24,14 @@ from pareto_monoped.geometry.shapes import Numbers
 Family = Literal["ISSPG", "ESSPG"]
 FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
 
-RETAINING_RING_MM = 1.75
-"""Thickness of the retaining ring in front of the main bearing: DIN 471 for 40 mm; 1.5 to 2.5 mm in the range used."""
-RING_GROOVE_WALL_MM = 0.75
-"""What is left of the carrier in front of that ring's groove; the flange before it carries the load."""
+SHAFT_GROOVE_WALL_MM = 0.75
+"""What is left of the carrier in front of a retaining ring's groove; our own choice. The rings keep the bearing in its
+place and carry no load of the leg. 1 kN along the axis bends the walls of a 50 mm shaft and a 65 mm bore with 54 and
+59 MPa."""
+BORE_GROOVE_WALL_MM = 0.6
+"""The same of the ring housing, behind the other ring's groove; our own choice."""
+_PLANET_TO_SEAT_MM = 0.2
+"""From that wall to the planets, which turn past it; our own choice."""
 END_BEARING_BORE_MM = 6.0
 """Bore of the bearing that carries the sun's end in the carrier; our own choice."""
 
@@ -40,6 +45,8 @@ class Layout:
     bearing: Bearing
     end_bearing: Bearing
     rear_bearing: Bearing
+    shaft_ring: RetainingRing  # in the carrier, before the main bearing
+    bore_ring: RetainingRing  # in the ring housing of the ESSPG, behind the main bearing
     webs: Webs
     # Radii.
     r_plate: float
@@ -58,7 +65,7 @@ class Layout:
     r_secondary_in: Numbers
     r_secondary_out: Numbers
     # Heights, from the front.
-    z_bearing_front: float
+    z_bearing_front: Numbers
     z_bearing_back: Numbers
     z_shoulder: Numbers
     z_gear_front: Numbers
@@ -103,9 +110,16 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
     if family == "ESSPG" and settings.rules == "iso6336":
         # The main bearing passes through the ring's shoulder.
         r_ring = np.maximum(r_ring, 0.5 * bearing.outer_diameter_mm + casing.ring_lip_mm)
-    z_bearing_front = -(carrier.flange_thickness_mm + RING_GROOVE_WALL_MM + RETAINING_RING_MM)
+    shaft_ring = retaining_ring("DIN 471", bearing.inner_diameter_mm)
+    bore_ring = retaining_ring("DIN 472", bearing.outer_diameter_mm)
+    z_bearing_front = -(carrier.flange_thickness_mm + SHAFT_GROOVE_WALL_MM + shaft_ring.thickness_mm)
     z_bearing_back = z_bearing_front - bearing.width_mm
-    z_shoulder = z_bearing_back - carrier.shoulder_thickness_mm
+    shoulder_mm: Numbers = carrier.shoulder_thickness_mm
+    if family == "ESSPG":
+        # The ring behind the bearing, and the wall behind its groove, end before the gears begin.
+        room_mm = bore_ring.thickness_mm + BORE_GROOVE_WALL_MM + _PLANET_TO_SEAT_MM
+        shoulder_mm = np.maximum(shoulder_mm, room_mm - settings.planet_clearance_mm)
+    z_shoulder = z_bearing_back - shoulder_mm
     z_gear_front = z_shoulder - settings.planet_clearance_mm
     z_gear_back = z_gear_front - face_width_mm
     z_secondary_front = z_gear_back - settings.planet_clearance_mm
@@ -117,6 +131,8 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         bearing=bearing,
         end_bearing=small_bearing(END_BEARING_BORE_MM),
         rear_bearing=small_bearing(2.0 * data.coupling.shaft_radius_mm),
+        shaft_ring=shaft_ring,
+        bore_ring=bore_ring,
         webs=webs,
         r_plate=r_motor + casing.flange_width_mm,
         r_casing=r_motor + casing.motor_clearance_mm,

@@ -7,7 +7,12 @@ from pareto_monoped.errors import DesignError
 
 _SIZES_MM = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)
 """Upper ends of the ranges of nominal sizes (ISO 286-1, table 1)."""
-_IT_UM = {6: (6, 8, 9, 11, 13, 16, 19, 22), 7: (10, 12, 15, 18, 21, 25, 30, 35)}
+_IT_UM = {
+    6: (6, 8, 9, 11, 13, 16, 19, 22),
+    7: (10, 12, 15, 18, 21, 25, 30, 35),
+    12: (100, 120, 150, 180, 210, 250, 300, 350),
+    13: (140, 180, 220, 270, 330, 390, 460, 540),
+}
 """Standard tolerances (ISO 286-1, table 1)."""
 _SHAFTS_UM = {
     "f": (-6, -10, -13, -16, -20, -25, -30, -36),
@@ -30,6 +35,8 @@ _HOLES_UM = {
 
 _R6_UM = (-10, -12, -16, -20, -24, -29)
 """Upper limits of holes R6 up to 50 mm (ISO 286-2), the seats of drawn cups."""
+_COARSE = ("h12", "h13", "H12", "H13")
+"""Of the grooves of retaining rings (DIN 471 and DIN 472)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +53,7 @@ def limits(diameter_mm: float, zone: str) -> Limits:
     Raises:
         DesignError: the size or the class is not in the tables.
     """
-    known = [f"{letter}7" for letter in _HOLES_UM] + [f"{letter}6" for letter in _SHAFTS_UM] + ["R6"]
+    known = [f"{letter}7" for letter in _HOLES_UM] + [f"{letter}6" for letter in _SHAFTS_UM] + ["R6", *_COARSE]
     if zone not in known:
         raise DesignError(f"tolerance class = {zone!r}: must be one of {', '.join(known)}; choose one of these")
     largest = _SIZES_MM[len(_R6_UM) - 1] if zone == "R6" else _SIZES_MM[-1]
@@ -56,7 +63,7 @@ def limits(diameter_mm: float, zone: str) -> Limits:
             "extend the tables of ISO 286"
         )
     row = bisect_left(_SIZES_MM, diameter_mm)
-    letter, wide = zone[0], _IT_UM[int(zone[1])][row]
+    letter, wide = zone[0], _IT_UM[int(zone[1:])][row]
     deviation = _R6_UM[row] if zone == "R6" else (_HOLES_UM if letter.isupper() else _SHAFTS_UM)[letter][row]
     # The fundamental deviation is the limit nearer to the nominal size.
     from_below = letter in "FGHkmnp"

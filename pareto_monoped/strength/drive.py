@@ -216,7 +216,7 @@ def planet_pins(s: Structure) -> tuple[float, float]:
     a, at, carrier = s.actuator, layout_of(s), s.settings.parts.carrier
     (pin,) = (part for part in a.parts if part.role is Role.PIN and part.group is Group.OUTPUT)
     seats_mm = (
-        z_pin_front(carrier.thread_depth_mm, carrier.diaphragm_mm) - float(at.z_shoulder),
+        float(z_pin_front(at, s.settings) - at.z_shoulder),
         carrier.pin_depth_mm,
     )
     span = float(at.z_shoulder - at.z_secondary_front)

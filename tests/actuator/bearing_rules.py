@@ -106,8 +106,11 @@ def output_holds(motor, gears, main, settings):
     service, duty, overload = settings.service, settings.parts.duty, settings.parts.rating.overload_factor
     torque = (1.0 + gears.ring_teeth / gears.sun_teeth) * motor.peak_torque_n_m
     pull = 1e3 * torque / service.chain_radius_mm
-    # From the chain back to the middle of the main bearing: flange 3, groove's wall 0.75, retaining ring 1.75.
-    back, front = service.chain_offset_mm + 3.0 + 0.75 + 1.75 + main[2] / 2.0, service.drive_support_mm
+    # From the chain back to the middle of the main bearing: flange 3, groove's wall 0.75, retaining ring (DIN 471).
+    ring = next(
+        s for last, s in ((26, 1.2), (35, 1.5), (48, 1.75), (63, 2.0), (82, 2.5), (100, 3.0)) if main[0] <= last
+    )
+    back, front = service.chain_offset_mm + 3.0 + 0.75 + ring + main[2] / 2.0, service.drive_support_mm
     near, far = pull * front / (back + front), pull * back / (back + front)
     bearing, support = rated_bearing(float(main[0])), roller_bearing(service.drive_support_bearing)
     ball_limit = 5.0 * bearing.static_rating_n / bearing.balls
