@@ -513,7 +513,40 @@ AUDIT_MEASURES: tuple[Measure, ...] = (
 )
 """Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
 
-_BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES)}
+_COARSE = f"step doubled and {_PERTURBED}"
+
+SCREEN_MEASURES: tuple[Measure, ...] = (
+    _measure(
+        "double_step_height_m",
+        "m",
+        "minimise",
+        "change of height with twice the step, of a perturbed design",
+        f"height, {_COARSE}",
+        2,
+        _MM,
+    ),
+    _measure(
+        "double_step_energy",
+        "1",
+        "minimise",
+        "relative change of energy with twice the step, of a perturbed design",
+        f"energy, {_COARSE}",
+        2,
+        _PERCENT,
+    ),
+    _measure(
+        "double_step_balance_error",
+        "1",
+        "minimise",
+        "what the energy balance of that jump leaves open, as a share of the joint work",
+        "energy balance open by, step doubled",
+        2,
+        _PERCENT,
+    ),
+)
+"""Every measure of the screen before an audit, in the order of the fields of ``jump.screen.Screened``."""
+
+_BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES)}
 
 
 def measure(name: str) -> Measure:

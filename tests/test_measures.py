@@ -6,7 +6,8 @@ import pytest
 
 from pareto_monoped.jump.audit import Audits
 from pareto_monoped.jump.evaluate import Evaluations
-from pareto_monoped.measures import AUDIT_MEASURES, MEASURE_NAMES, MEASURES, measure
+from pareto_monoped.jump.screen import Screened
+from pareto_monoped.measures import AUDIT_MEASURES, MEASURE_NAMES, MEASURES, SCREEN_MEASURES, measure
 from pareto_monoped.report.quantities import QUANTITIES
 
 UNITS = {
@@ -31,7 +32,11 @@ def test_audits_have_one_field_per_measure():
     assert [f.name for f in fields(Audits)] == ["status", "height_m", "energy_j", *names, "reason"]
 
 
-@pytest.mark.parametrize("entry", [*MEASURES, *AUDIT_MEASURES], ids=lambda entry: entry.name)
+def test_screens_have_one_field_per_measure():
+    assert [f.name for f in fields(Screened)] == [entry.name for entry in SCREEN_MEASURES]
+
+
+@pytest.mark.parametrize("entry", [*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES], ids=lambda entry: entry.name)
 def test_a_name_ends_in_its_unit(entry):
     suffix = max((end for end in UNITS if entry.name.endswith(end)), key=len, default=None)
     assert entry.unit == (UNITS[suffix] if suffix else "1")
@@ -67,7 +72,7 @@ def test_the_report_calls_measures_by_their_labels():
             entry.decimals,
             entry.scale,
         )
-    for entry in AUDIT_MEASURES:
+    for entry in (*AUDIT_MEASURES, *SCREEN_MEASURES):
         if entry.name in shown:
             assert (shown[entry.name].label, shown[entry.name].unit) == (entry.label, entry.shown_unit)
 

@@ -36,8 +36,11 @@ AUDIT = (
     "half_step_energy",
     "control_period_height_m",
     "control_period_energy",
+    "double_step_height_m",
+    "double_step_energy",
+    "double_step_balance_error",
 )
-"""Measures that the page shows of an audit."""
+"""Measures that the page shows of an audit, as far as it has them."""
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial; of designs on the front it has all."""

@@ -71,14 +71,19 @@ def front_columns(front: pd.DataFrame, bodies_kg: NDArray[np.float64]) -> dict[s
 
 
 def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
-    """Measures, verdict and reason of each audit, by trial number."""
+    """Measures, verdict and reason of each audit, by trial number; without the measures that an audit has not."""
     names = [name for name in AUDIT if name in audits.columns]
     # An infinite change (the perturbed design did not jump) becomes None; the reason says it in words.
     values = {name: column(audits[name]) for name in names}
+    there = {name: audits[name].notna().to_numpy() for name in names}
     reasons = audits["reason"].tolist() if "reason" in audits.columns else [""] * len(audits)
+    verdicts = [
+        {"good": bool(good), "reason": str(reason)}
+        for good, reason in zip(audits["well_conditioned"], reasons, strict=True)
+    ]
     return {
-        str(int(trial)): {name: values[name][i] for name in names} | {"good": bool(good), "reason": str(reasons[i])}
-        for i, (trial, good) in enumerate(zip(audits["trial"], audits["well_conditioned"], strict=True))
+        str(int(trial)): {name: values[name][i] for name in names if there[name][i]} | verdicts[i]
+        for i, trial in enumerate(audits["trial"])
     }
 
 

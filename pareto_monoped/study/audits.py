@@ -1,29 +1,37 @@
 """Audits of a study's front: whether each point is a property of its design or an accident of the simulation."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES
+from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.simulator import Simulator
 from pareto_monoped.study.store import Store
 
-_CHUNK = 64
-"""Designs that are audited and stored together; an interrupt loses at most this many audits."""
+if TYPE_CHECKING:
+    from pareto_monoped.jump.audit import Jumps
+
+_SCREENED, _AUDITED = 256, 64
+"""Designs that are screened together, and of these audited and stored together; an interrupt loses at most these."""
 
 
 def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
     """Audit every design on the front that has no audit yet, and store the audits.
 
     A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore
-    repeats until every design on the front has passed. It is a brief one: ``simulate --audit`` makes the full one.
+    repeats until every design on the front has passed. For most designs one coarse jump shows that they pass
+    (``jump.screen``). The others have a brief audit: ``simulate --audit`` makes the full one.
     """
-    from pareto_monoped.jump.audit import ONLY_IN_FULL, Jumps, audit
+    from pareto_monoped.jump.screen import screened
 
+    calibration, workers = simulator.calibration, simulator.evaluator.workers
     while True:
         data = read_study(db)
         front = data.front()
@@ -32,32 +40,56 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
             return
         notify(f"auditing {len(fresh)} designs of the front")
         for actuator_map, rows in _chunks(data, fresh):
-            audits = audit(
-                rows[list(NAMES)].to_numpy(),
-                actuator_map,
-                simulator.calibration,
-                workers=simulator.evaluator.workers,
-                known=Jumps(
-                    status=rows["status"].to_numpy(dtype=np.str_),
-                    height_m=rows["height_m"].to_numpy(dtype=np.float64),
-                    energy_j=rows["energy_j"].to_numpy(dtype=np.float64),
-                ),
-                brief=True,
-            )
-            columns = {
-                name: values.tolist() for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL
-            }
-            good = columns.pop("well_conditioned")
-            store.set_audits(
-                [
-                    (int(trial), bool(good[i]), {name: values[i] for name, values in columns.items()})
-                    for i, trial in enumerate(rows["trial"])
-                ]
-            )
+            found = screened(_designs(rows), actuator_map, calibration, _known(rows), workers=workers)
+            clear = found.clear
+            columns = {name: values[clear] for name, values in found.as_columns().items()}
+            _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
+            unclear = rows[~clear]
+            for first in range(0, len(unclear), _AUDITED):
+                _audit(store, unclear.iloc[first : first + _AUDITED], actuator_map, calibration, workers)
+
+
+def _audit(store: Store, rows: pd.DataFrame, actuator_map: ActuatorMap, calibration: Calibration, workers: int) -> None:
+    """Audit trials briefly, and store what was found."""
+    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
+
+    audits = audit(_designs(rows), actuator_map, calibration, workers=workers, known=_known(rows), brief=True)
+    columns = {name: values for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL}
+    good = columns.pop("well_conditioned")
+    _store(store, rows, good, columns)
+
+
+def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
+    return rows[list(NAMES)].to_numpy(dtype=np.float64)
+
+
+def _known(rows: pd.DataFrame) -> "Jumps":
+    """The jumps of trials, which need not be simulated again."""
+    from pareto_monoped.jump.audit import Jumps
+
+    return Jumps(
+        status=rows["status"].to_numpy(dtype=np.str_),
+        height_m=rows["height_m"].to_numpy(dtype=np.float64),
+        energy_j=rows["energy_j"].to_numpy(dtype=np.float64),
+    )
+
+
+def _store(
+    store: Store, rows: pd.DataFrame, good: NDArray[np.generic], columns: Mapping[str, NDArray[np.generic]]
+) -> None:
+    """Store the audits of trials: the verdicts, shape (n,), and columns of measures, each of shape (n,)."""
+    if len(rows):
+        values = {name: column.tolist() for name, column in columns.items()}
+        store.set_audits(
+            [
+                (int(trial), bool(good[i]), {name: column[i] for name, column in values.items()})
+                for i, trial in enumerate(rows["trial"])
+            ]
+        )
 
 
 def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[ActuatorMap, pd.DataFrame]]:
-    """Trials that are audited together, all with the same motor, and the gearboxes of that motor."""
+    """Trials that are screened together, all with the same motor, and the gearboxes of that motor."""
     for actuator_map, places in data.motor_rows(trials):
-        for first in range(0, len(places), _CHUNK):
-            yield actuator_map, trials.iloc[places[first : first + _CHUNK]]
+        for first in range(0, len(places), _SCREENED):
+            yield actuator_map, trials.iloc[places[first : first + _SCREENED]]

@@ -7,6 +7,7 @@ import numpy as np
 
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, Standing
+from pareto_monoped.study.one_thread import one_thread
 from pareto_monoped.study.prediction import Prediction
 from pareto_monoped.study.promise import ranked, unlike
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
@@ -65,7 +66,8 @@ class SurrogateSearch:
             chosen = offspring(self._archive, standing, self._settings, generator)
         chosen = chosen[self._seen.new(chosen)]
         if len(chosen) > size:
-            chosen = self._most_promising(chosen, standing, generator)
+            with one_thread():
+                chosen = self._most_promising(chosen, standing, generator)
         if len(chosen) == 0:
             chosen = drawn(self._space, self._seen, generator, size)
         self._asked = chosen

@@ -1,12 +1,12 @@
 from pareto_monoped.design import NAMES
-from pareto_monoped.measures import AUDIT_MEASURES, MEASURES, measure
+from pareto_monoped.measures import AUDIT_MEASURES, MEASURES, SCREEN_MEASURES, measure
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
 
 
 def test_every_variable_and_measure_is_shown_once():
     names = [q.name for q in QUANTITIES]
     assert sorted(names) == sorted((*NAMES, *(m.name for m in MEASURES), *AUDIT))
-    assert set(AUDIT) <= {m.name for m in AUDIT_MEASURES}
+    assert set(AUDIT) <= {m.name for m in (*AUDIT_MEASURES, *SCREEN_MEASURES)}
     assert set(EVERY_TRIAL) <= {m.name for m in MEASURES}
 
 

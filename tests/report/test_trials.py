@@ -32,6 +32,23 @@ def test_a_long_history_keeps_its_ends():
     assert columns["hypervolume"] == pytest.approx([0.01 * n for n in columns["evaluations"]], rel=1e-5)
 
 
+def test_a_design_has_only_the_measures_of_its_own_audit():
+    """Some designs are screened, others audited."""
+    audits = pd.DataFrame(
+        {
+            "trial": [7, 9],
+            "well_conditioned": [True, True],
+            "spread_height_m": [np.nan, 1e-4],
+            "double_step_height_m": [2e-4, np.nan],
+            "reason": ["", ""],
+        }
+    )
+    assert audit_records(audits) == {
+        "7": {"double_step_height_m": 2e-4, "good": True, "reason": ""},
+        "9": {"spread_height_m": 1e-4, "good": True, "reason": ""},
+    }
+
+
 def test_audits_come_with_verdict_and_reason():
     audits = pd.DataFrame(
         {"trial": [7, 9], "well_conditioned": [True, False], "spread_height_m": [1e-4, np.inf], "reason": ["", "fell"]}

@@ -14,6 +14,7 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError, StudyError
+from pareto_monoped.jump.screen import CLEAR
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
@@ -240,6 +241,19 @@ def test_infeasible_trials_are_kept_and_off_the_front(tmp_path):
     assert (data.front()["energy_j"] <= 25.0).all()
 
 
+def test_designs_that_the_screen_does_not_clear_are_audited(tmp_path, monkeypatch):
+    """With a stricter screen about half of the front: each design has the measures of one or the other."""
+    monkeypatch.setitem(CLEAR, "half_step_energy", 0.8)
+    path = tmp_path / "s.db"
+    run(made(audit=True, evaluations=60), path)
+    audits = read_study(path).audits
+    screened = audits["double_step_energy"].notna()
+    assert screened.any()
+    assert not screened.all()
+    assert (audits["spread_energy"].isna() == screened).all()
+    assert audits["well_conditioned"].all()
+
+
 def test_the_front_is_audited_at_the_end_and_only_once(tmp_path):
     path = tmp_path / "s.db"
     said = []
@@ -247,7 +261,7 @@ def test_the_front_is_audited_at_the_end_and_only_once(tmp_path):
     data = read_study(path)
     assert set(data.audits["trial"]) >= set(data.front()["trial"])
     assert data.front()["trial"].isin(data.audits.loc[data.audits["well_conditioned"], "trial"]).all()
-    assert "spread_energy" in data.audits.columns
+    assert (data.audits["double_step_energy"] > 0.0).all()
     assert len(said) >= 1
     said.clear()
     run(made(audit=True, evaluations=20), path, notify=said.append)
