@@ -20,6 +20,7 @@ _COMMANDS = {
     "run": "studies",
     "resume": "studies",
     "status": "studies",
+    "verify": "storage",
     "front": "fronts",
     "pick": "fronts",
     "export": "exports",

@@ -11,13 +11,15 @@ from pathlib import Path
 
 from pareto_monoped.errors import DatabaseError
 
-FORMAT = 1
-"""Version of our tables. Readers refuse later versions."""
+FORMAT = 2
+"""Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, had neither running hash nor
+kept front; a study gets both when it goes on."""
 
 READ_TIMEOUT_S = 10.0
 """How long a reader waits while another program has locked the whole file. A run locks it only for moments."""
 
 TABLES = ("monoped_meta", "monoped_checkpoint", "monoped_history", "monoped_trials", "monoped_audits")
+_SINCE_2 = ("monoped_seals", "monoped_front")
 _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
 
 
@@ -93,8 +95,8 @@ def _folder_writable(path: Path) -> bool:
     return os.access(path.resolve().parent, os.W_OK)
 
 
-def check(connection: sqlite3.Connection, path: Path) -> None:
-    """Check that a database is a study database of a known version.
+def check(connection: sqlite3.Connection, path: Path) -> int:
+    """Check that a database is a study database of a known version; returns the version of its format.
 
     Raises:
         DatabaseError: not a study, or of a newer version.
@@ -102,8 +104,7 @@ def check(connection: sqlite3.Connection, path: Path) -> None:
     kinds = connection.execute("SELECT type, name FROM sqlite_master").fetchall()
     tables = {name for kind, name in kinds if kind == "table"}
     active = [name for kind, name in kinds if kind in ("view", "trigger")]
-    missing = [name for name in (*_OPTUNA_TABLES, *TABLES) if name not in tables]
-    if missing:
+    if missing := [name for name in (*_OPTUNA_TABLES, *TABLES) if name not in tables]:
         hint = " (it is a study of Optuna, but not of this package)" if "studies" in tables else ""
         raise DatabaseError(
             f"study database {str(path)!r}: is not a study database, it lacks the table {missing[0]!r}{hint}; "
@@ -116,7 +117,7 @@ def check(connection: sqlite3.Connection, path: Path) -> None:
         )
     row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
     version = row[0] if row else None
-    if not isinstance(version, str) or not version.isascii() or not version.isdigit():
+    if not isinstance(version, str) or not version.isascii() or not version.isdigit() or version in ("0", ""):
         raise DatabaseError(
             f"study database {str(path)!r}: its format is {version!r}, must be a version number; it is damaged, "
             "restore a copy"
@@ -126,3 +127,8 @@ def check(connection: sqlite3.Connection, path: Path) -> None:
             f"study database {str(path)!r}: format {version} is newer than this version's {FORMAT}; "
             "update pareto-monoped"
         )
+    if int(version) >= 2 and (lost := [name for name in _SINCE_2 if name not in tables]):
+        raise DatabaseError(
+            f"study database {str(path)!r}: is damaged (it lacks the table {lost[0]!r}); restore a copy"
+        )
+    return int(version)

@@ -13,9 +13,41 @@ from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
 from pareto_monoped.study.protocol import MOTOR
 from pareto_monoped.study.scoring import values_of
+from pareto_monoped.study.seals import row_digest
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
 """Revisions of Optuna's schema that are written directly. For any other, Optuna writes its tables itself."""
+
+_WRITTEN = {
+    "trials": ("trial_id", "number", "study_id", "state", "datetime_start", "datetime_complete"),
+    "trial_params": ("trial_id", "param_name", "param_value", "distribution_json"),
+    "trial_values": ("trial_id", "objective", "value", "value_type"),
+    "trial_system_attributes": ("trial_id", "key", "value_json"),
+    "trial_user_attributes": ("trial_id", "key", "value_json"),
+}
+"""Optuna's tables that trials are written into, and the columns that are; the others are numbered by SQLite."""
+
+
+def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str:
+    """The digest that ``OptunaTables.insert`` gave of trials, of what is stored of them now.
+
+    Args:
+        connection: reads the database.
+        first: Optuna's number of the first trial.
+        count: how many trials.
+    """
+    rows = []
+    for table, columns in _WRITTEN.items():
+        names = ", ".join(f"{table}.{column}" for column in columns)
+        rows.append(
+            connection.execute(
+                f"SELECT {names} FROM {table} "
+                + ("" if table == "trials" else "JOIN trials USING (trial_id) ")
+                + f"WHERE trials.number >= ? AND trials.number < ? ORDER BY trials.trial_id, {table}.rowid",
+                (first, first + count),
+            ).fetchall()
+        )
+    return row_digest(rows)
 
 
 def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> None:
@@ -85,52 +117,50 @@ class OptunaTables:
                 {"name": "CategoricalDistribution", "attributes": {"choices": self._motors}}
             )
 
-    def insert(self, connection: sqlite3.Connection, generation: Generation) -> None:
-        """Insert a generation's rows within the transaction that the connection has open."""
-        executemany = connection.executemany
+    def insert(self, connection: sqlite3.Connection, generation: Generation) -> dict[str, dict[str, str]]:
+        """Insert a generation's rows within the transaction that the connection has open.
+
+        Returns:
+            What the running hash has of them: their digest, and Optuna's number of the first trial where it is not
+            ours, because an Optuna user has added trials.
+        """
+        rows, first = self._rows(connection, generation)
+        for table, columns in _WRITTEN.items():
+            connection.executemany(
+                f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({', '.join('?' * len(columns))})", rows[table]
+            )
+        key = str(generation.first_trial)
+        sealed = {"optuna": {key: row_digest([rows[table] for table in _WRITTEN])}}
+        return sealed if first == generation.first_trial else {**sealed, "optuna_first": {key: str(first)}}
+
+    def _rows(self, connection: sqlite3.Connection, generation: Generation) -> tuple[dict[str, list[Any]], int]:
+        """The rows of each table of ``_WRITTEN``, and Optuna's number of the first trial."""
         evaluations, judgement = generation.evaluations, generation.judgement
-        n = len(generation.designs)
-        numbers = range(generation.first_trial, generation.first_trial + n)
-        # With one study per file and no other writer, Optuna's primary key is the number of the trial plus one.
-        ids = [number + 1 for number in numbers]
+        # Optuna's numbers and primary keys are ours, and one more, unless an Optuna user has added trials.
+        first, last_id = connection.execute(
+            "SELECT coalesce(max(number) + 1, 0), coalesce(max(trial_id), 0) FROM trials"
+        ).fetchone()
+        ids = [last_id + 1 + k for k in range(len(generation.designs))]
         failed = (judgement.state == "failed").tolist()
         started, ended = (
             t.astimezone(UTC).replace(tzinfo=None).isoformat(" ") for t in (generation.started, generation.ended)
         )
-        executemany(
-            "INSERT INTO trials (trial_id, number, study_id, state, datetime_start, datetime_complete) "
-            "VALUES (?, ?, ?, ?, ?, ?)",
-            [
-                (i, number, self._study_id, "FAIL" if bad else "COMPLETE", started, ended)
-                for i, number, bad in zip(ids, numbers, failed, strict=True)
-            ],
-        )
-        executemany(
-            "INSERT INTO trial_params (trial_id, param_name, param_value, distribution_json) VALUES (?, ?, ?, ?)",
-            [
+        values = values_of(evaluations, self._objectives).tolist()
+        constraints = judgement.constraints.tolist()
+        rows: dict[str, list[Any]] = {table: [] for table in _WRITTEN}
+        for k, (i, bad) in enumerate(zip(ids, failed, strict=True)):
+            rows["trials"].append((i, first + k, self._study_id, "FAIL" if bad else "COMPLETE", started, ended))
+            rows["trial_params"] += [
                 (i, name, value, self._distributions[name])
-                for k, i in enumerate(ids)
                 for name, value in self._parameters(generation, k, position=True).items()
-            ],
-        )
-        objectives = zip(ids, failed, values_of(evaluations, self._objectives).tolist(), strict=True)
-        executemany(
-            "INSERT INTO trial_values (trial_id, objective, value, value_type) VALUES (?, ?, ?, 'FINITE')",
-            [(i, k, v) for i, bad, values in objectives if not bad for k, v in enumerate(values)],
-        )
-        # Both Optuna and its dashboard read the constraints as one list under this key.
-        executemany(
-            "INSERT INTO trial_system_attributes (trial_id, key, value_json) VALUES (?, 'constraints', ?)",
-            [(i, json.dumps(row)) for i, row in zip(ids, judgement.constraints.tolist(), strict=True)],
-        )
-        executemany(
-            "INSERT INTO trial_user_attributes (trial_id, key, value_json) VALUES (?, ?, ?)",
-            [
-                (i, key, json.dumps(value))
-                for k, i in enumerate(ids)
-                for key, value in _attributes(generation, k).items()
-            ],
-        )
+            ]
+            rows["trial_values"] += [] if bad else [(i, m, v, "FINITE") for m, v in enumerate(values[k])]
+            # Both Optuna and its dashboard read the constraints as one list under this key.
+            rows["trial_system_attributes"].append((i, "constraints", json.dumps(constraints[k])))
+            rows["trial_user_attributes"] += [
+                (i, key, json.dumps(value)) for key, value in _attributes(generation, k).items()
+            ]
+        return rows, first
 
     def _parameters(self, generation: Generation, k: int, *, position: bool = False) -> dict[str, Any]:
         """Free variables of trial ``k``; its motor by name, or by its position as in the tables."""

@@ -1,7 +1,7 @@
 """Read a study database: everything that report, CAD and command line need, by plain SELECTs."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,7 @@ from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
+from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.motors import Motor
@@ -53,6 +54,7 @@ class StudyData:
         history: one row per generation: generation, evaluations, hypervolume, seconds, all counted from the start.
         audits: one row per audited trial: trial, well_conditioned, the measures of the audit, reason.
         checkpoint: for resuming.
+        sealed: whether it has a running hash, against which everything above was checked.
     """
 
     db: Path
@@ -62,6 +64,7 @@ class StudyData:
     history: pd.DataFrame
     audits: pd.DataFrame
     checkpoint: Checkpoint
+    sealed: bool = True
 
     @cached_property
     def motors(self) -> "tuple[Motor, ...]":
@@ -170,46 +173,58 @@ class StudyData:
         return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
-def read_study(db: Path) -> StudyData:
+def read_study(db: Path, *, check: bool = True) -> StudyData:
     """Read a study database, finished or still growing.
+
+    Args:
+        db: the database.
+        check: whether to check everything against the running hash of the study.
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
     with reading(db) as connection:
-        meta_rows = connection.execute("SELECT key, value FROM monoped_meta").fetchall()
-        checkpoint_row = connection.execute("SELECT generation, told, state FROM monoped_checkpoint").fetchone()
+        sealed = has_seals(connection)
+        rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
         trials = _frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
-        history_rows = connection.execute(
-            f"SELECT {', '.join(_HISTORY)} FROM monoped_history ORDER BY generation"
-        ).fetchall()
-        audit_rows = connection.execute(
-            "SELECT trial, well_conditioned, measures FROM monoped_audits ORDER BY trial"
-        ).fetchall()
-    meta = meta_of_rows(meta_rows, db)
+        seals = read_seals(connection, db) if sealed and check else None
+    meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     try:
-        generation, evaluations, state = checkpoint_row
+        _, generation, evaluations, state = rows["checkpoint"][0]
         checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=json.loads(state))
         audits = [
             {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
-            for trial, good, measures in audit_rows
+            for trial, good, measures in rows["audits"]
         ]
-        history = pd.DataFrame(history_rows, columns=list(_HISTORY)).astype(_HISTORY)
-    except (KeyError, TypeError, ValueError) as error:
+        history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
+    except (IndexError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
+    named = _with_motors(trials, study, meta, db)
+    if seals is not None and (findings := seal_findings(seals, trials, rows)):
+        raise damaged(db, findings)
     return StudyData(
         db=db,
         study=study,
         meta=meta,
-        trials=_with_motors(trials, study, meta, db),
+        trials=named,
         history=history,
         audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=checkpoint,
+        sealed=sealed,
     )
+
+
+def seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
+    """What does not match the running hash of a study of which everything was read; ``rows`` as by ``seals.ROWS``."""
+    numbers = trials["trial"].to_numpy()
+    findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
+    if len(numbers) < seals.trials:
+        findings.append(f"{seals.trials - len(numbers)} trials are missing")
+    return findings + [line for table in rows for line in seals.row_findings(table, rows[table])]
 
 
 def _with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:

@@ -179,6 +179,16 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> No
         )
 
 
+def refuse_other_code(data: StudyData, simulator: Simulator) -> None:
+    """Refuse to repeat a study's jumps with code or a machine that would compute others.
+
+    Raises:
+        StudyError: the message shows the difference.
+    """
+    _refuse_changes(data, data.study, simulator, data.db)
+    _refuse_other_results(data, simulator, data.db)
+
+
 def _nothing_left(data: StudyData, study: Study, budget: int) -> bool:
     """Whether the study has ended and would end again at once."""
     same = data.meta.finished and study == data.study

@@ -17,9 +17,11 @@ from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
+from pareto_monoped.study.kept_front import FRONT, KeptFront
 from pareto_monoped.study.meta import StudyMeta, strict_json
 from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.optuna_tables import KNOWN_SCHEMAS, OptunaTables, create_tables
+from pareto_monoped.study.seals import ROWS, SEALS, Sealer, row_digests
 
 _OUR_TABLES = """
 CREATE TABLE monoped_meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -32,6 +34,7 @@ CREATE TABLE monoped_history (
 CREATE TABLE monoped_audits (trial INTEGER PRIMARY KEY, well_conditioned INTEGER NOT NULL, measures TEXT NOT NULL);
 CREATE TABLE monoped_trials ({columns});
 """
+_OUR_TABLES += SEALS + FRONT
 
 
 def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
@@ -61,6 +64,8 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
                 rows = [("format", strict_json(FORMAT)), *meta.as_rows()]
                 connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
                 connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
+                KeptFront(study.objectives).store(connection)
+                Sealer(connection).add({table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()})
                 connection.execute("COMMIT")
             finally:
                 connection.close()
@@ -89,6 +94,7 @@ class Store:
             DatabaseError: not a study, damaged, read-only, or of a newer version.
         """
         self.path = path
+        self._objectives = study.objectives
         # A file marked read-only is meant to stay as it is. SQLite would ask the system, which lets root write anyway.
         if not path.stat().st_mode & 0o222:
             raise DatabaseError(
@@ -106,7 +112,7 @@ class Store:
     def _open(self, coordinates: AnyCoordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
         connection.execute("PRAGMA trusted_schema = OFF")
-        check(connection, self.path)
+        version = check(connection, self.path)
         if connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
             raise sqlite3.DatabaseError("its pages contradict each other")
         rows = connection.execute("SELECT study_id FROM studies").fetchall()
@@ -118,6 +124,10 @@ class Store:
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
         self._add_later_columns()
+        self._sealer, self._front = Sealer(connection), KeptFront(self._objectives)
+        if version < FORMAT:
+            self._adopt()
+        self._front.load(connection)
         connection.execute("PRAGMA journal_mode = WAL")
         # What was acknowledged must survive a power cut too, not only a killed process.
         connection.execute("PRAGMA synchronous = FULL")
@@ -130,6 +140,32 @@ class Store:
             with _transaction(self._connection):
                 for column in missing:
                     self._connection.execute(f"ALTER TABLE monoped_trials ADD COLUMN {column.name} {column.sql}")
+
+    def _adopt(self) -> None:
+        """Give a study of format 1 what it lacks: running hash and kept front, over all that it holds now."""
+        execute = self._connection.execute
+        with _transaction(self._connection):
+            for statement in (SEALS, FRONT):
+                execute(statement)
+            execute("UPDATE monoped_meta SET value = ? WHERE key = 'format'", (strict_json(FORMAT),))
+            cursor = execute("SELECT * FROM monoped_trials ORDER BY trial")
+            names, rows = [entry[0] for entry in cursor.description], cursor.fetchall()
+            trials: dict[str, Any] = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {}
+            if rows:
+                if trials["trial"] != tuple(range(len(rows))):
+                    raise DatabaseError(
+                        f"study database {str(self.path)!r}: is damaged (its trials are not numbered from 0 to "
+                        f"{len(rows) - 1}); restore a copy"
+                    )
+                self._front.add(trials)
+            self._front.leave_out(self._connection, self._ill_conditioned())
+            self._front.store(self._connection)
+            written = {table: row_digests(execute(sql)) for table, sql in ROWS.items()}
+            self._sealer.add(written, 0, names if rows else (), trials)
+
+    def _ill_conditioned(self) -> set[int]:
+        rows = self._connection.execute("SELECT trial FROM monoped_audits WHERE NOT well_conditioned")
+        return {int(row[0]) for row in rows}
 
     def __enter__(self) -> "Store":
         return self
@@ -150,12 +186,18 @@ class Store:
         with translated(self.path), _transaction(self._connection):
             rows = [(key, strict_json(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
+            self._sealer.add({"meta": row_digests(rows)})
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
         """Store audits of trials: number of the trial, whether it is well-conditioned, measures of the audit."""
         with translated(self.path), _transaction(self._connection):
             rows = [(trial, int(good), json.dumps(dict(measures))) for trial, good, measures in audits]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_audits VALUES (?, ?, ?)", rows)
+            written = {"audits": row_digests(rows)}
+            if not all(good for _, good, _ in audits):
+                self._front.leave_out(self._connection, self._ill_conditioned())
+                written["front"] = row_digests([self._front.store(self._connection)])
+            self._sealer.add(written)
 
     def add(self, generation: Generation) -> None:
         """Store a generation. When this returns, its trials are safe.
@@ -167,27 +209,27 @@ class Store:
             if not self._direct:
                 self._optuna.add_by_optuna(generation)
             with _transaction(self._connection):
-                if self._direct:
-                    self._optuna.insert(self._connection, generation)
-                self._add_to_our_tables(generation)
+                written = self._optuna.insert(self._connection, generation) if self._direct else {}
+                self._add_to_our_tables(generation, written)
 
-    def _add_to_our_tables(self, generation: Generation) -> None:
+    def _add_to_our_tables(self, generation: Generation, written: dict[str, dict[str, str]]) -> None:
+        """Add a generation to our tables; ``written`` is what the running hash has of Optuna's."""
         execute, executemany = self._connection.execute, self._connection.executemany
-        names = ", ".join(column.name for column in COLUMNS)
+        values = {column.name: column.values(generation) for column in COLUMNS}
         executemany(
-            f"INSERT INTO monoped_trials ({names}) VALUES ({', '.join('?' * len(COLUMNS))})",
-            zip(*(column.values(generation) for column in COLUMNS), strict=True),
+            f"INSERT INTO monoped_trials ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",
+            zip(*values.values(), strict=True),
         )
         total = generation.first_trial + len(generation.designs)
-        execute(
-            "INSERT OR REPLACE INTO monoped_history VALUES (?, ?, ?, ?)",
-            (generation.number, total, generation.hypervolume, generation.seconds),
-        )
+        passed = (generation.number, total, float(generation.hypervolume), float(generation.seconds))
+        execute("INSERT OR REPLACE INTO monoped_history VALUES (?, ?, ?, ?)", passed)
+        self._front.add(values)
+        written |= {"history": row_digests([passed]), "front": row_digests([self._front.store(self._connection)])}
         if generation.state is not None:
-            execute(
-                "UPDATE monoped_checkpoint SET generation = ?, told = ?, state = ?",
-                (generation.number + 1, total, strict_json(generation.state)),
-            )
+            state = (1, generation.number + 1, total, strict_json(generation.state))
+            execute("INSERT OR REPLACE INTO monoped_checkpoint VALUES (?, ?, ?, ?)", state)
+            written["checkpoint"] = row_digests([state])
+        self._sealer.add(written, generation.first_trial, tuple(values), values)
 
 
 class _transaction:  # noqa: N801

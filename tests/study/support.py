@@ -1,5 +1,6 @@
 """Studies with plain numbers in place of jumps, for tests of storage that no physics matters to."""
 
+import sqlite3
 from datetime import UTC, datetime
 
 import numpy as np
@@ -119,3 +120,20 @@ def made_database(path, generations=None, study=None, **options):
         for generation in generations:
             store.add(generation)
     return study, generations
+
+
+def change(path, *statements):
+    """Change a database by SQL behind the package's back."""
+    connection = sqlite3.connect(path)
+    for statement in statements:
+        connection.execute(statement)
+    connection.commit()
+    connection.close()
+
+
+UNSEALED = (
+    "DROP TABLE monoped_seals",
+    "DROP TABLE monoped_front",
+    "UPDATE monoped_meta SET value = '1' WHERE key = 'format'",
+)
+"""Statements that make a study one of format 1, which has no running hash: what else refuses it is then seen."""

@@ -26,6 +26,7 @@ from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
 from pareto_monoped.study.status import status
 from pareto_monoped.study.store import Store
+from tests.study.support import UNSEALED, change
 
 ROOT = Path(__file__).parents[2]
 
@@ -204,14 +205,9 @@ def test_stops_on_wall_time_over_all_sessions(tmp_path):
 
 def test_wall_time_counts_earlier_sessions(tmp_path):
     """With an hour on the clock from earlier sessions, a limit of half an hour is used up and one of two is not."""
-    import sqlite3
-
     path, hour = tmp_path / "s.db", 3600.0
     run(made(), path, evaluations=20)
-    connection = sqlite3.connect(path)
-    connection.execute("UPDATE monoped_history SET seconds = ?", (hour,))
-    connection.commit()
-    connection.close()
+    change(path, f"UPDATE monoped_history SET seconds = {hour}", *UNSEALED)
     summary = run(replace(made(), stop=Stop(wall_time_s=0.5 * hour)), path)
     assert (summary.stop_reason, summary.new_evaluations) == ("wall_time", 0)
     summary = run(replace(made(), stop=Stop(wall_time_s=2.0 * hour)), path, evaluations=40)
@@ -277,13 +273,8 @@ def test_status_says_how_far_it_is(whole):
 
 
 def test_trials_that_do_not_follow_from_the_checkpoint_are_refused(tmp_path):
-    import sqlite3
-
     run(made(), tmp_path / "s.db", evaluations=25)
-    connection = sqlite3.connect(tmp_path / "s.db")
-    connection.execute("UPDATE monoped_trials SET hip_ratio = hip_ratio + 0.01 WHERE trial = 22")
-    connection.commit()
-    connection.close()
+    change(tmp_path / "s.db", "UPDATE monoped_trials SET hip_ratio = hip_ratio + 0.01 WHERE trial = 22", *UNSEALED)
     with pytest.raises(DatabaseError, match="trials 20 to 24 do not follow"):
         resume(tmp_path / "s.db", evaluations=60)
 
@@ -325,7 +316,7 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
 
 
 @pytest.mark.parametrize(
-    "change",
+    "bent",
     [
         "state = '{}'",
         "state = json_remove(state, '$.generator')",
@@ -335,15 +326,10 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
         "state = json_set(state, '$.F', 'x')",
     ],
 )
-def test_a_bent_checkpoint_is_refused(whole, tmp_path, change):
-    import sqlite3
-
+def test_a_bent_checkpoint_is_refused(whole, tmp_path, bent):
     path = tmp_path / "s.db"
     path.write_bytes(whole[0].read_bytes())
-    connection = sqlite3.connect(path)
-    connection.execute(f"UPDATE monoped_checkpoint SET {change}")
-    connection.commit()
-    connection.close()
+    change(path, f"UPDATE monoped_checkpoint SET {bent}", *UNSEALED)
     with pytest.raises(DatabaseError, match="checkpoint is damaged"):
         resume(path, evaluations=80)
     assert read_study(path).trials.equals(whole[2].trials)

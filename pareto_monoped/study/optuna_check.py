@@ -1,0 +1,101 @@
+"""Whether Optuna's tables say the same as ours, and which of Optuna's trials are not of this package."""
+
+import sqlite3
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.optuna_tables import stored_digest
+from pareto_monoped.study.protocol import MOTOR
+from pareto_monoped.study.reader import StudyData
+from pareto_monoped.study.seals import Seals
+
+
+def optuna_numbers(count: int, seals: Seals | None) -> list[int]:
+    """Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials."""
+    numbers = np.arange(count)
+    if seals is not None:
+        changed = sorted((int(ours), int(number)) for ours, number in seals.written.get("optuna_first", {}).items())
+        for ours, number in changed:
+            numbers[ours:] = number + np.arange(count - ours)
+    return [int(number) for number in numbers]
+
+
+def foreign_trials(connection: sqlite3.Connection, count: int, seals: Seals | None) -> tuple[int, ...]:
+    """Optuna's numbers of the trials that are not among the study's ``count``."""
+    ours = set(optuna_numbers(count, seals))
+    return tuple(n for (n,) in connection.execute("SELECT number FROM trials ORDER BY number") if n not in ours)
+
+
+def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seals | None) -> list[str]:
+    """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
+    numbers = optuna_numbers(len(data.trials), seals)
+    findings = [*_study_findings(connection, data.study), *_trial_findings(connection, data, numbers)]
+    if not findings and seals is not None:
+        # Equal in what both hold; dates, constraints and attributes stand in Optuna's tables alone.
+        findings += _digest_findings(connection, numbers, seals)
+    return findings
+
+
+def _study_findings(connection: sqlite3.Connection, study: Study) -> Iterator[str]:
+    names = [name for (name,) in connection.execute("SELECT study_name FROM studies")]
+    if names != [study.name]:
+        yield f"Optuna's name of the study is {', '.join(map(repr, names))}, ours {study.name!r}"
+    wanted = ["MAXIMIZE" if sign < 0.0 else "MINIMIZE" for sign in study.objectives.signs]
+    rows = connection.execute("SELECT direction FROM study_directions ORDER BY objective").fetchall()
+    if [direction for (direction,) in rows] != wanted:
+        yield "Optuna's directions of the objectives are not ours"
+
+
+def _trial_findings(connection: sqlite3.Connection, data: StudyData, numbers: Sequence[int]) -> Iterator[str]:
+    place = {number: k for k, number in enumerate(numbers)}
+    trials = data.trials
+    failed = (trials["state"] == "failed").to_numpy()
+    stored = dict(connection.execute("SELECT number, state FROM trials").fetchall())
+    for number, k in place.items():
+        if stored.get(number) != (wanted := "FAIL" if failed[k] else "COMPLETE"):
+            yield f"trial {k} is {stored.get(number, 'missing')} in Optuna's tables, must be {wanted}"
+            break
+    names = list(data.study.objectives.names)
+    values = trials[names].to_numpy(dtype=np.float64)
+    rows = connection.execute("SELECT number, objective, value FROM trial_values JOIN trials USING (trial_id)")
+    yield from _different("value", rows, place, {m: values[:, m] for m in range(len(names))}, ~failed)
+    wanted_params: dict[Any, Any] = {n: trials[n].to_numpy(dtype=np.float64) for n in data.study.free}
+    if len(data.study.motors) > 1:
+        motors = [motor.name for motor in data.motors]
+        wanted_params[MOTOR] = np.array([motors.index(name) for name in trials["motor"]], dtype=np.float64)
+    rows = connection.execute("SELECT number, param_name, param_value FROM trial_params JOIN trials USING (trial_id)")
+    yield from _different("parameter", rows, place, wanted_params, np.ones(len(trials), dtype=bool))
+
+
+def _different(
+    what: str,
+    rows: sqlite3.Cursor,
+    place: dict[int, int],
+    wanted: dict[Any, Any],
+    present: "np.typing.NDArray[np.bool_]",
+) -> Iterator[str]:
+    """The first of some values (number, key, value) that is not the wanted one, or is missing."""
+    counts = np.zeros(len(present), dtype=np.int64)
+    for number, key, value in rows:
+        k = place.get(number)
+        if k is None:
+            continue
+        counts[k] += 1
+        if key not in wanted or not present[k] or value != wanted[key][k]:
+            yield f"trial {k} has another {what} {key!r} in Optuna's tables: {value!r}"
+            return
+    lacking = np.flatnonzero(counts != len(wanted) * present)
+    if len(lacking):
+        yield f"trial {lacking[0]} lacks a {what} in Optuna's tables"
+
+
+def _digest_findings(connection: sqlite3.Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:
+    sealed = {int(first): digest for first, digest in seals.written.get("optuna", {}).items()}
+    for first, digest in sealed.items():
+        end = min((other for other in sealed if other > first), default=len(numbers))
+        if first >= len(numbers) or stored_digest(connection, numbers[first], end - first) != digest:
+            yield f"trials {first} to {end - 1} do not match their hash in Optuna's tables"
+            return
