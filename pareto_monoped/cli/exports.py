@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pareto_monoped.cad.batch import Progress
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.study.reader import StudyData
 
 
 @click.command()
@@ -85,7 +86,6 @@ def export(
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
         from pareto_monoped.pareto.pick import pick
-        from pareto_monoped.study.reader import read_study
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
@@ -100,17 +100,27 @@ def export(
             )
             _one(_without(dropped, job))
         elif whole_front:
-            data = read_study(_given(db))
+            data = _read(_given(db))
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
             _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1)
         else:
             study, wanted = _given(db), required(selector)
-            data = read_study(study)
+            data = _read(study)
             picked = pick(data.front(), wanted, data.study.objectives)
             _note(picked.why)
             trial = picked.trial
             job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)
             _one(_without(dropped, job))
+
+
+def _read(db: Path) -> "StudyData":
+    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.study.seals import UNSEALED
+
+    data = read_study(db)
+    if not data.sealed:
+        _note(UNSEALED)
+    return data
 
 
 def _refuse_mixed_sources(

@@ -4,13 +4,13 @@ import functools
 import inspect
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.design import VARIABLES, in_use
+from pareto_monoped.design import VARIABLES, Variable, in_use
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -18,13 +18,14 @@ if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.study.definition import Study
     from pareto_monoped.study.reader import StudyData
 
 
-def shown_columns(data: "StudyData", objectives: "Objectives") -> list[str]:
+def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objectives") -> list[str]:
     """The columns of each design in the output of ``front`` and ``pick``: objectives, variables in use, choices."""
-    variables = [variable.name for variable in in_use(data.trials)]
-    return ["trial", *objectives.names, *variables, *(["motor"] if len(data.study.motors) > 1 else [])]
+    variables = [variable.name for variable in used]
+    return ["trial", *objectives.names, *variables, *(["motor"] if len(study.motors) > 1 else [])]
 
 
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -134,16 +135,21 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
     """
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.study.reader import read_front, read_study
 
-    data = read_study(db)
-    chosen = _objectives(objectives, data)
-    rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
-    if chosen != data.study.objectives:
-        unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
-        click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
-    _say_of_strength(data)
-    rows = rows[shown_columns(data, chosen)]
+    if objectives is None and not include_all:
+        kept = read_front(db)
+        study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
+    else:
+        data = read_study(db)
+        study, used, sealed = data.study, in_use(data.trials), data.sealed
+        chosen = _objectives(objectives, data)
+        rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
+        if chosen != study.objectives:
+            unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
+            click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
+    say_of_study(study, sealed=sealed)
+    rows = rows[shown_columns(study, used, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -155,11 +161,14 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
         _print_table(rows, chosen)
 
 
-def _say_of_strength(data: "StudyData") -> None:
-    """Say that designs may not hold, where a study did not ask for it."""
+def say_of_study(study: "Study", *, sealed: bool) -> None:
+    """Say that designs may not hold, where a study did not ask for it, and that it has no running hash."""
     from pareto_monoped.study.definition import NO_STRENGTH
+    from pareto_monoped.study.seals import UNSEALED
 
-    if not data.study.strength:
+    if not sealed:
+        click.echo(f"note: {UNSEALED}", err=True)
+    if not study.strength:
         click.echo(f"note: {NO_STRENGTH}", err=True)
 
 
@@ -215,13 +224,13 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
 def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
     """Pick one design from the front and say why it was chosen."""
     from pareto_monoped.pareto.pick import pick as pick_design
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.study.reader import read_front
 
     wanted = required(selector)
-    data = read_study(db)
-    rows, names = data.front(), shown_columns(data, data.study.objectives)
+    data = read_front(db)
+    rows, names = data.rows, shown_columns(data.study, data.used, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
-    _say_of_strength(data)
+    say_of_study(data.study, sealed=data.sealed)
     row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
     if as_json:
         click.echo(json.dumps(row | {"why": picked.why}, indent=2))

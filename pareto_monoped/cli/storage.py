@@ -17,6 +17,7 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
     Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
     """
     from pareto_monoped.study.run import default_workers
+    from pareto_monoped.study.seals import UNSEALED
     from pareto_monoped.study.verify import require_sound
     from pareto_monoped.study.verify import verify as verify_study
 
@@ -30,10 +31,6 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
     require_sound(db, result)
     again = f", {result.simulated} jumped again as stored" if result.simulated else ""
     click.echo(f"{db}: sound, {result.trials} trials{again}")
-
-
-UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed; it gets one when it goes on"
-"""What is said of a study of version 0.2.0 or earlier."""
 
 
 def foreign_note(numbers: tuple[int, ...]) -> str:

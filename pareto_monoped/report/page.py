@@ -22,6 +22,7 @@ from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.report.schema import Payload
 from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
 from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.seals import UNSEALED
 
 SCRIPTS = (
     "dom", "state", "plots", "front", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
@@ -53,6 +54,8 @@ def payload_of(
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
     # Everything is read before anything is simulated, so that a wrong name is reported at once.
     studies = [read_study(db) for db in dbs]
+    if not all(data.sealed for data in studies):
+        note(UNSEALED)
     models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
     sources = [
         Source(data=data, resimulation=resimulate(data), models=found)

@@ -47,7 +47,14 @@ def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str
                 (first, first + count),
             ).fetchall()
         )
-    return row_digest(rows)
+    return _digest(rows)
+
+
+def _digest(rows: list[list[Any]]) -> str:
+    """Digest of rows of the tables of ``_WRITTEN``; the long texts of distributions are the same for all trials."""
+    trials, params, *others = rows
+    distributions = sorted({(name, text) for _, name, _, text in params})
+    return row_digest([trials, [row[:3] for row in params], distributions, *others])
 
 
 def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> None:
@@ -130,7 +137,7 @@ class OptunaTables:
                 f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({', '.join('?' * len(columns))})", rows[table]
             )
         key = str(generation.first_trial)
-        sealed = {"optuna": {key: row_digest([rows[table] for table in _WRITTEN])}}
+        sealed = {"optuna": {key: _digest(list(rows.values()))}}
         return sealed if first == generation.first_trial else {**sealed, "optuna_first": {key: str(first)}}
 
     def _rows(self, connection: sqlite3.Connection, generation: Generation) -> tuple[dict[str, list[Any]], int]:

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import DEFAULTS, PAPER_MOTOR
+from pareto_monoped.design import DEFAULTS, PAPER_MOTOR, VARIABLES, Variable, in_use
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
@@ -19,6 +19,7 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.kept_front import rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
 from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
 
@@ -216,6 +217,61 @@ def read_study(db: Path, *, check: bool = True) -> StudyData:
         checkpoint=checkpoint,
         sealed=sealed,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyFront:
+    """The front of a study, read without its other trials.
+
+    Attributes:
+        db, study, meta, sealed: as in ``StudyData``.
+        rows: as by ``StudyData.front``.
+        used: the paper's seven variables, and the optional ones of which some trial has another value than the default.
+    """
+
+    db: Path
+    study: Study
+    meta: StudyMeta
+    rows: pd.DataFrame
+    used: tuple[Variable, ...]
+    sealed: bool
+
+
+def read_front(db: Path) -> StudyFront:
+    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    with reading(db) as connection:
+        sealed = has_seals(connection)
+        if sealed:
+            rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
+            seals = read_seals(connection, db)
+            findings = [line for table in rows for line in seals.row_findings(table, rows[table])]
+            if findings:
+                raise damaged(db, findings)
+            numbers = json.loads(rows["front"][0][1])
+            columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
+            trials = _frame(columns, rows_of(connection, columns, numbers), db)
+            if len(trials) < len(numbers):
+                findings = ["trials of its kept front are missing"]
+            findings += seals.trial_findings({name: trials[name].to_numpy() for name in trials}, trials["trial"])
+            if findings:
+                raise damaged(db, findings)
+    if not sealed:
+        data = read_study(db)
+        return StudyFront(
+            db=db, study=data.study, meta=data.meta, rows=data.front(), used=in_use(data.trials), sealed=False
+        )
+    meta = meta_of_rows(rows["meta"], db)
+    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
+    front = _with_motors(trials, study, meta, db).sort_values(
+        study.objectives.names[0], kind="stable", ignore_index=True
+    )
+    optional = set(json.loads(rows["front"][0][5]))
+    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in optional)
+    return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, sealed=True)
 
 
 def seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:

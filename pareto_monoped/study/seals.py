@@ -27,9 +27,9 @@ CREATE TABLE monoped_seals (
     written TEXT NOT NULL, hash TEXT NOT NULL
 );
 """
-"""One row per transaction: number of its ``first`` trial; digests of its ``trials``, one after the other; the ``columns``
-that these are over (empty: as in the link before); digests of the rows ``written`` into the other tables, by table and
-key; the chained hash."""
+"""One row per transaction: number of its ``first`` trial; digests of its ``trials``, one after the other; the
+``columns`` that these are over (empty: as in the link before); digests of the rows ``written`` into the other tables,
+by table and key; the chained hash."""
 
 ROWS = {
     "meta": "SELECT key, value FROM monoped_meta ORDER BY key",
@@ -42,6 +42,9 @@ ROWS = {
 
 Besides, ``optuna`` has the digest of all rows of a link's trials in Optuna's tables, by the number of the first trial,
 and ``optuna_first`` Optuna's own number of that trial where it is another one."""
+
+UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed; it gets one when it goes on"
+"""What is said of a study of version 0.2.0 or earlier."""
 
 _DIGITS = 16
 _KNOWN = frozenset(column.name for column in COLUMNS)

@@ -7,7 +7,7 @@ from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.pareto.at_height import best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.lock import holder
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.summary import read_summary
 
 
 def status(db: Path) -> dict[str, Any]:
@@ -16,13 +16,10 @@ def status(db: Path) -> dict[str, Any]:
     Raises:
         DatabaseError: not a study, damaged, or of a newer version.
     """
-    data = read_study(db)
-    front, objectives = data.front(), data.study.objectives
-    values = front[list(objectives.names)].to_numpy()
-    states = data.trials["state"]
-    done, seconds = len(data.trials), data.wall_time_s
-    high = front[front["height_m"] >= HEADLINE_HEIGHT_M]
-    best = best_at_height(values, objectives)
+    data = read_summary(db)
+    objectives, done, seconds = data.study.objectives, sum(data.counts.values()), data.seconds
+    high = data.energies_j[data.heights_m >= HEADLINE_HEIGHT_M]
+    best = best_at_height(data.front, objectives)
     running = holder(db)
     return {
         "name": data.study.name,
@@ -37,18 +34,16 @@ def status(db: Path) -> dict[str, Any]:
         "stop_reason": data.meta.stop_reason,
         "evaluations": done,
         "budget": data.meta.budget,
-        "feasible": int((states == "feasible").sum()),
-        "infeasible": int((states == "infeasible").sum()),
-        "failed": int((states == "failed").sum()),
+        **data.counts,
         "wall_time_s": seconds,
         "evaluations_per_second": done / seconds if seconds > 0.0 else None,
-        "front": len(front),
-        "ill_conditioned": len(data.ill_conditioned),
-        "hypervolume": hypervolume(values, data.reference_point),
+        "front": len(data.front),
+        "ill_conditioned": data.ill_conditioned,
+        "hypervolume": hypervolume(data.front, data.study.reference_point),
         "hypervolume_unit": objectives.volume_unit,
         "objectives": objectives.directions,
-        "reference_point": data.reference_point.as_dict(),
-        "least_energy_at_0_8_m_j": float(high["energy_j"].min()) if len(high) else None,
+        "reference_point": data.study.reference_point.as_dict(),
+        "least_energy_at_0_8_m_j": float(high.min()) if len(high) else None,
         "best_at_0_8_m": None if best is None else {best.measure.name: best.value},
         "hash": data.meta.hash,
         "versions": data.meta.versions,

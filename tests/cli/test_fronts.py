@@ -8,7 +8,8 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.design import PAPER_NAMES
-from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.store import Store
 from tests.study.support import made_database
 
 
@@ -110,20 +111,20 @@ def test_weights_are_height_then_energy(db, capsys):
     assert json.loads(capsys.readouterr().out)["trial"] == 4
 
 
-def test_all_keeps_designs_that_failed_their_audit(db, capsys, monkeypatch):
-    asked = []
-    front = StudyData.front
-    monkeypatch.setattr(
-        StudyData,
-        "front",
-        lambda data, include_ill_conditioned=False, objectives=None: (
-            asked.append(include_ill_conditioned) or front(data, objectives=objectives)
-        ),
-    )
-    assert cli(["front", db]) == 0
-    assert cli(["front", db, "--all"]) == 0
-    assert cli(["pick", db, "--knee"]) == 0
-    assert asked == [False, True, False]
+def test_all_keeps_designs_that_failed_their_audit(db, capsys):
+    """Trial 5, 0.9 m on 40 J, was dominated by trial 3, 1.1 m on 30 J."""
+    data = read_study(Path(db))
+    with Store(Path(db), data.study) as store:
+        store.set_audits([(3, False, {})])
+
+    def trials(*words):
+        capsys.readouterr()
+        assert cli(["front", db, "--json", *words]) == 0
+        return [row["trial"] for row in json.loads(capsys.readouterr().out)]
+
+    assert trials() == [4, 0, 5]
+    assert trials("--all") == [4, 0, 3]
+    assert cli(["pick", db, "--trial", "3"]) == 2
 
 
 def test_other_objectives_take_other_designs_of_the_stored_trials(db, capsys):
