@@ -99,6 +99,16 @@ def test_help_imports_nothing_heavy():
     assert run.stdout.strip() == "[]"
 
 
+def test_an_export_of_a_case_imports_no_tables():
+    """Only an export from a study's database needs pandas, which is slow to import."""
+    modules = ("cli.exports", "pareto.pick", "cad.jobs", "cad.records", "cad.batch")
+    code = "import sys\n" + "".join(f"import pareto_monoped.{name}\n" for name in modules)
+    run = subprocess.run(
+        [sys.executable, "-c", f"{code}print('pandas' in sys.modules)"], capture_output=True, text=True
+    )
+    assert run.stdout.strip() == "False", run.stderr
+
+
 def module_of(path: Path) -> str:
     return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
 

@@ -1,5 +1,6 @@
 """Export a design: build it as it can be built, check it, and write one folder that is either whole or not there."""
 
+import gc
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -94,7 +95,7 @@ def export_design(
     """
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
-    with _second_process(draws=bool({"assembly", "png"} & set(wanted))):
+    with _collecting_rarely(), _second_process(draws=bool({"assembly", "png"} & set(wanted))):
         built = built_of(design, actuator_map, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
         progress("building")
         product = build_product(built.robot, built.pose)
@@ -137,6 +138,17 @@ def export_design(
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")
             move_in(folder, out_dir)
     return ExportSummary(folder=out_dir, record=record, checks=checks, files=tuple(record["files"]))
+
+
+@contextmanager
+def _collecting_rarely() -> Iterator[None]:
+    """Look for unreachable objects as rarely as the kernel's process does."""
+    before = gc.get_threshold()
+    gc.set_threshold(kernel.COLLECT_AFTER)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 @contextmanager

@@ -85,7 +85,6 @@ def export(
             kernel.start()
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
-        from pareto_monoped.pareto.pick import pick
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
@@ -104,6 +103,8 @@ def export(
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
             _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1)
         else:
+            from pareto_monoped.pareto.pick import pick
+
             study, wanted = _given(db), required(selector)
             data = _read(study)
             picked = pick(data.front(), wanted, data.study.objectives)

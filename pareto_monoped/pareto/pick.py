@@ -1,14 +1,18 @@
 """Pick one design from the front and say why."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from pandas import DataFrame
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import Measure, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
+if TYPE_CHECKING:
+    # Not at run time: importing pandas takes longer than to pick, and ``export --case`` needs none.
+    from pandas import DataFrame
 
 Floats = NDArray[np.float64]
 
@@ -71,7 +75,7 @@ class Pick:
     why: str
 
 
-def pick(front: DataFrame, selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
+def pick(front: "DataFrame", selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
     """Pick the design of ``front`` that ``selector`` asks for.
 
     Args:
@@ -120,7 +124,7 @@ def _energy(objectives: Objectives) -> str:
     )
 
 
-def _within(rows: DataFrame, asked: Within, objectives: Objectives, name: str) -> tuple[int, str]:
+def _within(rows: "DataFrame", asked: Within, objectives: Objectives, name: str) -> tuple[int, str]:
     limited, other = measure(asked.measure), objectives.other_than(asked.measure)
     more_is_better = limited.direction == "maximise"
     column = rows[asked.measure].to_numpy(dtype=np.float64)

@@ -1,6 +1,7 @@
 """The folder is complete or absent, foreign files are safe, and the same design gives the same bytes."""
 
 import dataclasses
+import gc
 import json
 
 import pytest
@@ -58,6 +59,16 @@ def test_same_design_same_bytes_and_force_replaces_only_our_own_files(quick, act
         n: d for n, d in first.items() if n.startswith("laser/")
     }
     assert [path.name for path in tmp_path.iterdir()] == ["robot"]
+
+
+def test_python_collects_as_before_after_an_export(quick, monkeypatch, actuator_map, calibration, tmp_path):
+    before = gc.get_threshold()
+    seen = []
+    monkeypatch.setattr(export, "built_of", lambda *_, **__: seen.append(gc.get_threshold()) or 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
+    assert seen[0][0] > before[0]
+    assert gc.get_threshold() == before
 
 
 def test_a_record_cannot_make_force_delete_outside_the_folder(quick, actuator_map, calibration, tmp_path):

@@ -68,6 +68,9 @@ def placed(
             room = all(bare * scale < side for bare, side in zip(bare_mm, inner_mm(size), strict=True))
             if not room or (best is not None and scale <= best[2]):
                 continue
+            # Before anything is drawn, which takes ten times as long: are the views alone too large beside the tables?
+            if scale not in drawn and compose(size, [_blank(bare_mm, scale)], tables, notes) is None:
+                continue
             if scale not in drawn:
                 drawn[scale] = views(scale)
             paper = compose(size, drawn[scale], tables, notes)
@@ -79,3 +82,10 @@ def placed(
     if best is None:
         raise ValueError(f"drawing: {bare_mm[0]:g} mm with tables fit no sheet")
     return best
+
+
+def _blank(bare_mm: tuple[float, float], scale: float) -> Paper:
+    """The room that views need without dimensions."""
+    paper = Paper()
+    paper.line([(0.0, 0.0), (scale * bare_mm[0], scale * bare_mm[1])])
+    return paper

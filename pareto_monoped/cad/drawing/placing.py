@@ -23,6 +23,9 @@ _REACHES_MM = np.array(
 _ANGLES = np.radians(
     [45.0, 135.0, 225.0, 315.0, 0.0, 90.0, 180.0, 270.0, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5]
 )
+_WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
+_ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
+"""Directions in which a name may stand, and how it is then aligned."""
 _CLEAR_MM, _APART_MM = 0.2, 0.4
 """Least distance of a name from lines and from other texts."""
 _LEADER_GAP_MM = 0.3
@@ -87,21 +90,25 @@ def _pieces(paper: Paper) -> NDArray[np.object_]:
 
 def _free(tag: Tag, scale: float, lines: shapely.STRtree, texts: Floats, leaders: Sequence[Floats]) -> _Place:
     """The nearest free place of a name, at best one whose leader crosses nothing that can be read or followed."""
-    at = scale * np.array([tag.x, tag.y])
+    at, radius = scale * np.array([tag.x, tag.y]), scale * tag.radius
+    around = np.array([_label(tag, 0.0, 0.0, align).box() for align in _ALIGNS])
+    lowered = tag.height_mm * (0.5 - 0.5 * _WAYS[:, 1])
+    others = shapely.linestrings(leaders) if leaders else np.empty(0, dtype=object)
     second_best: _Place | None = None
-    for reach in _REACHES_MM:
-        places = [_place(tag, at, scale * tag.radius, float(reach), float(angle)) for angle in _ANGLES]
-        boxes = np.array([place.label.box() for place in places])
-        covered = np.zeros(len(places), dtype=bool)
-        covered[lines.query(_grown(boxes, _CLEAR_MM), predicate="intersects")[0]] = True
-        others = shapely.linestrings(leaders) if leaders else np.empty(0, dtype=object)
-        for place, box, hit in zip(places, boxes, covered, strict=True):
-            if hit or _meets_texts(box, texts) or _meet(_grown(box, _CLEAR_MM), others):
-                continue
-            if place.leader is None:
-                return place
-            own = shapely.linestrings(place.leader)
-            if not _meet(own, others) and not _meet(own, _grown(texts, _CLEAR_MM)):
+    for reach in _REACHES_MM.tolist():
+        starts = at + (radius + reach) * _WAYS
+        starts[:, 1] -= lowered
+        boxes = around + np.tile(starts, 2)
+        free = np.flatnonzero(~_covered(boxes, lines, texts, others))
+        if not free.size:
+            continue
+        labels = [_label(tag, float(starts[k, 0]), float(starts[k, 1]), _ALIGNS[k]) for k in free]
+        if reach <= _NEAR_MM:
+            return _Place(label=labels[0], leader=None)
+        own = _leaders(at, radius, boxes[free])
+        for label, leader, crosses in zip(labels, own, _crossing(own, texts, others), strict=True):
+            place = _Place(label=label, leader=leader)
+            if not crosses:
                 return place
             second_best = second_best or place
     # On a sheet that is too small for its names; a larger one is taken if there is any.
@@ -110,30 +117,33 @@ def _free(tag: Tag, scale: float, lines: shapely.STRtree, texts: Floats, leaders
     raise ValueError(f"no free place for the name {tag.text!r} on a drawing")
 
 
-def _place(tag: Tag, at: Floats, radius: float, reach: float, angle: float) -> _Place:
-    """A name in some direction from what it names."""
-    way = np.array([np.cos(angle), np.sin(angle)])
-    x, y = at + (radius + reach) * way
-    align: Align = "left" if way[0] > 0.3 else "right" if way[0] < -0.3 else "centre"
-    lowered = y - tag.height_mm * (0.5 - 0.5 * way[1])
-    label = Label(text=tag.text, x=float(x), y=float(lowered), height_mm=tag.height_mm, align=align)
-    if reach <= _NEAR_MM:
-        return _Place(label=label, leader=None)
-    left, low, right, high = label.box()
-    end = np.clip(at, [left, low], [right, high])
-    along = (end - at) / np.hypot(*(end - at))
-    return _Place(label=label, leader=np.array([at + radius * along, end - _LEADER_GAP_MM * along]))
+def _label(tag: Tag, x: float, y: float, align: Align) -> Label:
+    return Label(text=tag.text, x=x, y=y, height_mm=tag.height_mm, align=align)
+
+
+def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Which boxes, shape (n, 4), meet a line, another text or a leader; all of them at once, as there are many."""
+    high, low = boxes[:, None, 2:] + _APART_MM, boxes[:, None, :2] - _APART_MM
+    covered = np.any(np.all((texts[:, :2] < high) & (texts[:, 2:] > low), axis=2), axis=1)
+    areas = _grown(boxes, _CLEAR_MM)
+    covered[lines.query(areas, predicate="intersects")[0]] = True
+    covered |= np.any(shapely.intersects(areas[:, None], leaders), axis=1)
+    return np.asarray(covered)
+
+
+def _leaders(at: Floats, radius: float, boxes: Floats) -> Floats:
+    """The lines from what is named to the nearest points of the boxes of its name, shape (n, 2, 2)."""
+    ends = np.clip(at, boxes[:, :2], boxes[:, 2:])
+    along = (ends - at) / np.hypot(*(ends - at).T)[:, None]
+    return np.stack([at + radius * along, ends - _LEADER_GAP_MM * along], axis=1)
+
+
+def _crossing(leaders: Floats, texts: Floats, others: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Which leaders, shape (n, 2, 2), meet a text or another leader."""
+    obstacles = np.concatenate([others, _grown(texts, _CLEAR_MM)])
+    return np.asarray(np.any(shapely.intersects(shapely.linestrings(leaders)[:, None], obstacles), axis=1))
 
 
 def _grown(boxes: Floats, by_mm: float) -> Any:
     """Boxes of shape (..., 4) as areas, wider on all sides."""
     return shapely.box(*np.moveaxis(boxes + by_mm * np.array([-1.0, -1.0, 1.0, 1.0]), -1, 0))
-
-
-def _meets_texts(box: Floats, texts: Floats) -> bool:
-    near = (texts[:, :2] < box[2:] + _APART_MM) & (texts[:, 2:] > box[:2] - _APART_MM)
-    return bool(np.any(np.all(near, axis=1)))
-
-
-def _meet(one: Any, others: Any) -> bool:
-    return bool(np.any(shapely.intersects(one, others)))

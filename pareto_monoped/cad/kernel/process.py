@@ -1,5 +1,6 @@
 """The process that holds the CAD kernel: answers the questions of ``client`` until its input ends."""
 
+import gc
 import os
 import pickle
 import signal
@@ -15,7 +16,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from pareto_monoped.cad.kernel import step
-from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly
+from pareto_monoped.cad.kernel.client import COLLECT_AFTER, SolidFacts, StepAssembly
 from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
 from pareto_monoped.geometry.bevels import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
@@ -84,6 +85,7 @@ def serve(questions: BinaryIO, answers: BinaryIO) -> None:
 
 def main() -> None:
     """Serve the process that started this one."""
+    gc.set_threshold(COLLECT_AFTER)
     # The parent handles interrupts and then closes our input.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The kernel may print; send that to stderr, away from the answers.
