@@ -46,8 +46,11 @@ _ROUND_MM = 10.0  # cut lengths are rounded up to this
 _COPPER_G_PER_MM3, _SILICONE_G_PER_MM3 = 8.96e-3, 1.2e-3
 
 
-_Run = tuple[float, float, Sequence[Points | Sequence[float]], Sequence[str]]
-"""Diameter, bend radius, corners in the base's frame, and what is at each of them, up to the tie."""
+_CURE = "take one that its maker allows to bend so"
+
+
+_Run = tuple[float, float, Sequence[Points | Sequence[float]], Sequence[str], str]
+"""Diameter, bend radius, corners in the base's frame, what is at each of them, up to the tie, and a cure."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +68,7 @@ class Cable:
         notes: what is at each corner.
         tails_mm: what is added at both ends.
         mass_g: of all wires; counted in no body's mass. 0 where it is counted.
+        cure: what helps if it bends more tightly than its maker allows.
     """
 
     name: str
@@ -78,6 +82,23 @@ class Cable:
     notes: tuple[str, ...]
     tails_mm: tuple[float, float]
     mass_g: float
+    cure: str = _CURE
+
+    @property
+    def least_bend_radius_mm(self) -> float:
+        """What the maker allows."""
+        return _BENDS * self.diameter_mm
+
+    @property
+    def warning(self) -> str:
+        """That it bends more tightly than its maker allows, for want of room, and what helps; '' if it does not."""
+        if self.bend_radius_mm >= self.least_bend_radius_mm * (1.0 - 1e-9):
+            return ""
+        return (
+            f"{self.name.replace('_', ' ')} cable: bend radius = {self.bend_radius_mm:.1f} mm, "
+            f"{self.bend_radius_mm / self.diameter_mm:.2f} diameters: must be at least "
+            f"{self.least_bend_radius_mm:.1f} mm, {_BENDS:g} diameters; {self.cure}"
+        )
 
     @property
     def length_mm(self) -> float:
@@ -131,15 +152,14 @@ def cables(robot: Robot) -> tuple[Cable, ...]:
 
 def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
     """Over the back, along the outside of the casing below the board, and up behind it."""
-    wire_mm = _wire(actuator, robot)[1]
+    wire, wire_mm = _wire(actuator, robot)
     back, rim = _back_mm(actuator, unit), _rim_mm(actuator)
     found: list[_Run] = []
     for diameter, side, start in (
         (wire_mm, 1.0, _hole(actuator, unit, np.array([1.0, 0.0]))),
         (_ENCODER_MM, -1.0, np.array([0.0, 0.0, _sensor_mm(actuator, unit)])),
     ):
-        x, behind = side * board.tie_x_mm, board.behind_mm(0.5 * diameter + _PLAY_MM)
-        under = float(np.sqrt(rim**2 - x**2)) + 0.5 * diameter + _PLAY_MM
+        x, (under, behind) = side * board.tie_x_mm, _around(board, rim, diameter)
         radius = min(_BENDS * diameter, _radius_below(board, under, behind, diameter))
         out = min(back, float(start[2])) - radius - 0.5 * diameter
         found.append(
@@ -148,6 +168,7 @@ def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: R
                 radius,
                 [start, [start[0], start[1], out], [x, under, out], [x, under, behind], *_up(board, x, behind)],
                 ["leaves the actuator", "turns up", "turns along the casing", "turns up behind the board"],
+                _thinner(board, rim, wire) if side > 0.0 else _CURE,
             )
         )
     return _named("hip", found, actuator, base, robot)
@@ -166,6 +187,7 @@ def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: 
             _BENDS * wire_mm,
             [hole, [hole[0], hole[1], motor], [x, 0.0, motor], *_up(board, x, motor)],
             ["leaves the actuator", "turns to the hip's axis", "beside the axis: the swing twists it below here"],
+            _CURE,
         ),
         (
             _ENCODER_MM,
@@ -177,6 +199,7 @@ def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: 
                 *_up(board, -x, encoder),
             ],
             ["leaves the encoder", "turns up beyond the journal", "goes behind the board"],
+            _CURE,
         ),
     ]
     return _named("knee", found, actuator, base, robot)
@@ -199,7 +222,7 @@ def _named(
     area, diameter = _wire(actuator, robot)
     section = 0.25 * np.pi * diameter**2
     made = []
-    for what, (one_mm, radius, corners, notes) in zip(("motor", "encoder"), found, strict=True):
+    for what, (one_mm, radius, corners, notes, cure) in zip(("motor", "encoder"), found, strict=True):
         points = np.array([np.asarray(corner, dtype=np.float64) for corner in corners])
         motor = what == "motor"
         cable = Cable(
@@ -214,6 +237,7 @@ def _named(
             notes=(*notes, TIE, "the board's upper edge"),
             tails_mm=_TAILS_MM if motor else (0.0, _TAILS_MM[1]),
             mass_g=0.0,
+            cure=cure,
         )
         grams_per_mm = area * _COPPER_G_PER_MM3 + (section - area) * _SILICONE_G_PER_MM3
         made.append(replace(cable, mass_g=3.0 * grams_per_mm * cable.cut_mm) if motor else cable)
@@ -225,6 +249,21 @@ def _wire(actuator: Actuator, robot: Robot) -> tuple[float, float]:
     amplitude = min(peak_current_a(actuator.motor), robot.leg.driver.peak_current_a)
     needed = amplitude / np.sqrt(2.0) / _CURRENT_A_PER_MM2
     return next((wire for wire in _WIRES if wire[0] >= needed), _WIRES[-1])
+
+
+def _thinner(board: BoardPlace, rim: float, area_mm2: float) -> str:
+    """The cure for a wire that has no room for its bend: the thickest thinner ones that have, with as much copper."""
+    for area, diameter in reversed([wire for wire in _WIRES if wire[0] < area_mm2]):
+        if _radius_below(board, *_around(board, rim, diameter), diameter) >= _BENDS * diameter:
+            count = int(np.ceil(area_mm2 / area))
+            return f"lay {count} wires of {area:g} mm2 in parallel, or {_CURE}"
+    return _CURE
+
+
+def _around(board: BoardPlace, rim: float, diameter: float) -> tuple[float, float]:
+    """Height of a wire along the outside of the casing, and its distance behind the board."""
+    under = float(np.sqrt(rim**2 - board.tie_x_mm**2)) + 0.5 * diameter + _PLAY_MM
+    return under, board.behind_mm(0.5 * diameter + _PLAY_MM)
 
 
 def _backplate(actuator: Actuator) -> Part:

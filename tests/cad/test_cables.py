@@ -1,7 +1,9 @@
 """The cables: lengths against a line that is summed up, room for their bends, and nothing that they run through."""
 
 import csv
+import dataclasses
 import io
+import re
 from itertools import pairwise
 
 import manifold3d as m3
@@ -11,7 +13,9 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.cables import ENCODER_CABLE_M, cables, rounded, rounded_length_mm
+from pareto_monoped.cad.product import Listed
 from pareto_monoped.cad.shape.meshes import placed
+from pareto_monoped.cad.write.assembly_pack import _cables
 from pareto_monoped.cad.write.cables import cables_csv
 from pareto_monoped.cad.write.hardware import hardware
 from pareto_monoped.design import PAPER_CASES
@@ -71,6 +75,40 @@ def test_the_encoder_s_own_cable_is_long_enough(robot):
             assert cable.mass_g == 0.0
         else:
             assert 5.0 < cable.mass_g < 80.0
+
+
+def test_a_bend_that_is_too_tight_is_said_with_its_cure_in_every_output(robot):
+    """Wires bend by four diameters at least; the U12's thick ones have no room for that beside the hip's driver."""
+    made = cables(robot)
+    tight = [cable for cable in made if cable.bend_radius_mm < 4.0 * cable.diameter_mm - 1e-6]
+    assert [cable.name for cable in made if cable.warning] == [cable.name for cable in tight]
+    assert ("hip_motor" in {cable.name for cable in tight}) == (robot.hip.motor.name == "U12")
+    rows = list(csv.DictReader(io.StringIO(cables_csv(Listed(robot=robot, unique=())))))
+    for row in rows:
+        assert float(row["least_bend_radius_mm"]) == pytest.approx(4.0 * float(row["diameter_mm"]), abs=0.051)
+        assert bool(row["warning"]) == (row["cable"] in {cable.name for cable in tight})
+    page = "\n".join(_cables(Listed(robot=robot, unique=())))
+    for cable in tight:
+        assert f"{cable.bend_radius_mm:.1f} mm" in cable.warning
+        assert f"at least {4.0 * cable.diameter_mm:.1f} mm" in cable.warning
+        assert cable.warning in page
+        assert {row["warning"] for row in rows if row["cable"] == cable.name} == {cable.warning}
+
+
+def test_the_thinner_wires_of_the_cure_have_the_copper_and_the_room():
+    """A robot with these wires is made, and bends them by four diameters."""
+    robot = build_robot(PAPER_CASES["B"].design, map_for("U12", "iso6336"))
+    thick = next(cable for cable in cables(robot) if cable.name == "hip_motor")
+    found = re.search(r"lay (\d+) wires of ([\d.]+) mm2", thick.warning)
+    count, area = int(found[1]), float(found[2])
+    assert count * area >= float(thick.designation.split()[2]) > (count - 1) * area
+    # The same robot with a driver that lets only so much current flow takes just these wires.
+    current_a = 0.999 * area * 32.0 * np.sqrt(2.0)
+    leg = dataclasses.replace(robot.leg, driver=dataclasses.replace(robot.leg.driver, peak_current_a=current_a))
+    thin = next(c for c in cables(dataclasses.replace(robot, leg=leg)) if c.name == "hip_motor")
+    assert float(thin.designation.split()[2]) == area
+    assert thin.bend_radius_mm == pytest.approx(4.0 * thin.diameter_mm)
+    assert thin.warning == ""
 
 
 def test_cables_run_through_no_part(product):

@@ -36,10 +36,11 @@ def cable_sheet(product: Product) -> tuple[Paper, Size, float]:
     made = cables(product.robot)
     regions = {name: list(_seen(product, axes)) for name, axes in _VIEWS}
     tables = _tables(made)
+    notes = (*_NOTES, *(f"{cable.warning[0].upper()}{cable.warning[1:]}." for cable in made if cable.warning))
     for scale in (scale for scale in SCALES if scale <= _LARGEST):
         views = [_view(name, regions[name], axes, made, scale) for name, axes in _VIEWS]
         for size in (A2, A1):
-            paper = compose(size, views, tables, _NOTES)
+            paper = compose(size, views, tables, notes)
             if paper is not None:
                 return paper, size, scale
     raise ValueError("drawing of the cables: the robot fits no sheet")

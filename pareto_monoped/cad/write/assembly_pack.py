@@ -199,6 +199,7 @@ def _cables(product: Listed) -> Iterator[str]:
             for cable in made
         ),
     )
+    yield from (f"<p><b>Note:</b> {cable.warning}.</p>" for cable in made if cable.warning)
     uncounted = sum(cable.mass_g for cable in made)
     yield (
         f"<p>The motors' wires weigh {uncounted:.0f} g. The robot's mass does not count them, since nobody knows where "

@@ -14,6 +14,7 @@ _COLUMNS = (
     "designation",
     "diameter_mm",
     "bend_radius_mm",
+    "least_bend_radius_mm",
     "path_mm",
     "cut_mm",
     "mass_not_counted_g",
@@ -22,6 +23,7 @@ _COLUMNS = (
     "y_mm",
     "z_mm",
     "what",
+    "warning",
 )
 
 
@@ -32,7 +34,8 @@ def cables_csv(product: Listed) -> str:
     writer.writerow(_COLUMNS)
     for cable in cables(product.robot):
         head = (cable.name, cable.start, cable.end, cable.wires, cable.designation, f"{cable.diameter_mm:g}")
-        sizes = (f"{cable.bend_radius_mm:.1f}", f"{cable.length_mm:.0f}", f"{cable.cut_mm:g}", f"{cable.mass_g:.1f}")
+        bends = (f"{cable.bend_radius_mm:.1f}", f"{cable.least_bend_radius_mm:.1f}")
+        sizes = (*bends, f"{cable.length_mm:.0f}", f"{cable.cut_mm:g}", f"{cable.mass_g:.1f}")
         for k, (point, what) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1):
-            writer.writerow((*head, *sizes, k, *(f"{value:.1f}" for value in point), what))
+            writer.writerow((*head, *sizes, k, *(f"{value:.1f}" for value in point), what, cable.warning))
     return stream.getvalue()

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.formats import FILES
@@ -106,12 +107,15 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
 
 
 def _making(product: Product) -> Iterator[str]:
-    """Per process: how it is done, and the parts that it makes."""
+    """Per process: how it is done, and the parts that it makes; then what the cables lack room for."""
     yield from ("## Making the parts", "")
     for process, how in _HOW.items():
         names = [_counted(unique) for unique in product.unique if unique.part.process == process]
         if names:
             yield from (f"**{process[0].upper()}{process[1:]}.** {how}", "", ", ".join(names) + ".", "")
+    for cable in cables(product.robot):
+        if cable.warning:
+            yield from (f"**Note.** {cable.warning[0].upper()}{cable.warning[1:]}.", "")
 
 
 def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor]) -> Iterator[str]:

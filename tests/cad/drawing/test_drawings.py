@@ -1,6 +1,7 @@
 """The drawings of an export: one of each made part, one of the assembly, the same each time."""
 
 import csv
+import dataclasses
 import io
 
 import numpy as np
@@ -83,6 +84,15 @@ def test_the_exploded_sheets_number_every_item_once(product, origin):
     assert sorted(map(int, numbers)) == list(range(1, len(product.unique) + 1))
     said = [text for page in exploded for text, _, _ in page.texts]
     assert [f"A1   {k}/{len(exploded) + 2}" in said for k in range(2, len(exploded) + 2)] == [True] * len(exploded)
+
+
+def test_the_sheet_of_the_cables_notes_a_bend_that_is_too_tight(product, monkeypatch):
+    made = cables(product.robot)
+    assert not any(label.text.startswith("Hip motor cable: ") for label in cable_sheet(product)[0].labels)
+    tight = dataclasses.replace(made[0], bend_radius_mm=2.5 * made[0].diameter_mm)
+    monkeypatch.setattr("pareto_monoped.cad.drawing.cable_sheet.cables", lambda _: (tight, *made[1:]))
+    said = " ".join(label.text for label in cable_sheet(product)[0].labels)
+    assert f"{tight.warning[0].upper()}{tight.warning[1:]}." in said
 
 
 def test_the_sheet_of_the_cables_says_how_to_cut_them(product, origin):
