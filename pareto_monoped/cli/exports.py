@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.fronts import required, selector_options
+from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:

@@ -1,15 +1,15 @@
-"""Commands that read a front: ``front`` and ``pick``; also the options that select one design, shared by ``export``."""
+"""Commands that read a front: ``front`` and ``pick``."""
 
-import functools
-import inspect
 import json
 import math
-from collections.abc import Callable, Sequence
+import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.design import VARIABLES, Variable, in_use
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.study.alternatives import Alternative
     from pareto_monoped.study.definition import Study
     from pareto_monoped.study.reader import StudyData
 
@@ -26,99 +27,6 @@ def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objec
     """The columns of each design in the output of ``front`` and ``pick``: objectives, variables in use, choices."""
     variables = [variable.name for variable in used]
     return ["trial", *objectives.names, *variables, *(["motor"] if len(study.motors) > 1 else [])]
-
-
-def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that select one design; ``command`` receives them as the keyword ``selector``.
-
-    More than one of them is a usage error. Without any, ``selector`` is None, which ``required`` refuses.
-    """
-
-    @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
-    @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
-    @click.option("--limit", metavar="MEASURE=X", help="Best design with a measure at X, in SI units, or better.")
-    @click.option("--knee", is_flag=True, help="The design where the front bends most.")
-    @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
-    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
-    @functools.wraps(command)
-    def wrapper(*arguments: Any, **given: Any) -> Any:
-        selector = _selector(**{name: given.pop(name) for name in inspect.signature(_selector).parameters})
-        return command(*arguments, selector=selector, **given)
-
-    return wrapper
-
-
-def _selector(
-    min_height: float | None,
-    max_energy: float | None,
-    limit: str | None,
-    knee: bool,
-    weights: str | None,
-    trial: int | None,
-) -> "Selector | None":
-    from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, Trial, Weights, Within
-
-    chosen: list[Selector] = []
-    if min_height is not None:
-        chosen.append(MinHeight(height_m=_finite("--min-height", min_height)))
-    if max_energy is not None:
-        chosen.append(MaxEnergy(energy_j=_finite("--max-energy", max_energy)))
-    if limit is not None:
-        name, value = _limit(limit)
-        chosen.append(Within(measure=name, value=value))
-    if knee:
-        chosen.append(Knee())
-    if weights is not None:
-        chosen.append(Weights(values=_weights(weights)))
-    if trial is not None:
-        chosen.append(Trial(number=trial))
-    if len(chosen) > 1:
-        raise click.UsageError(
-            f"{len(chosen)} selectors given: must be one of --min-height, --max-energy, --limit, --knee, --weights, "
-            "--trial; drop the others"
-        )
-    return chosen[0] if chosen else None
-
-
-def required(selector: "Selector | None") -> "Selector":
-    """The selector; without one, a usage error that names the options."""
-    if selector is None:
-        raise click.UsageError(
-            "no selector given: must be one of --min-height M, --max-energy J, --limit MEASURE=X, --knee, --weights "
-            "WH,WE, --trial N; add one"
-        )
-    return selector
-
-
-def _finite(option: str, value: float) -> float:
-    if not math.isfinite(value):
-        raise click.UsageError(f"{option} = {value}: must be a finite number; correct it")
-    return value
-
-
-def _weights(text: str) -> tuple[float, ...]:
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        values = ()
-    if len(values) not in (2, 3):
-        raise click.UsageError(
-            f"--weights = {text!r}: must be two numbers WH,WE, or three for three objectives; give for example 1,1"
-        )
-    return values
-
-
-def _limit(text: str) -> tuple[str, float]:
-    from pareto_monoped.measures import MEASURES
-
-    known = [entry.name for entry in MEASURES if entry.direction is not None]
-    name, _, value = text.partition("=")
-    if name not in known:
-        raise click.UsageError(f"--limit = {text!r}: must begin with a measure and =, one of {', '.join(known)}")
-    try:
-        return name, _finite("--limit", float(value))
-    except ValueError:
-        raise click.UsageError(f"--limit = {text!r}: must end with a number; give for example {name}=1.0") from None
 
 
 @click.command()
@@ -220,21 +128,80 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
 @selector_options
+@click.option(
+    "--alternatives",
+    "count",
+    type=click.IntRange(0, 50),
+    default=0,
+    metavar="N",
+    help="Also N designs that cost about as much and differ most.",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0.0, 100.0),
+    default=2.0,
+    metavar="PERCENT",
+    help="How much worse alternatives may be.  [default: 2]",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the design as JSON.")
-def pick(db: Path, selector: "Selector | None", as_json: bool) -> None:
-    """Pick one design from the front and say why it was chosen."""
+def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, as_json: bool) -> None:
+    """Pick one design from the front and say why it was chosen.
+
+    Conditions combine with each other and with one way to choose. Measures and variables have their stored names and
+    SI units.
+    """
+    from pareto_monoped.pareto.one_more import one_more
     from pareto_monoped.pareto.pick import pick as pick_design
-    from pareto_monoped.study.reader import read_front
+    from pareto_monoped.study.alternatives import alternatives
+    from pareto_monoped.study.binding import binding_limits, front_alone
+    from pareto_monoped.study.reader import read_front, read_study
 
     wanted = required(selector)
     data = read_front(db)
     rows, names = data.rows, shown_columns(data.study, data.used, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
+    step = one_more(rows, picked.trial, data.study.objectives)
+    limits = binding_limits(front_alone(data), picked.trial)
+    others: tuple[Alternative, ...] = ()
+    if count:
+        share = 0.01 * tolerance
+        others = alternatives(read_study(db), picked.trial, count=count, tolerance=share, conditions=picked.conditions)
     say_of_study(data.study, sealed=data.sealed)
     row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
     if as_json:
-        click.echo(json.dumps(row | {"why": picked.why}, indent=2))
+        more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
+        if count:
+            more["alternatives"] = [other.as_dict() for other in others]
+        click.echo(json.dumps(row | more, indent=2))
         return
-    click.echo(picked.why)
+    click.echo(_wrapped(picked.why))
     for name in names[1:]:
         click.echo(f"{name:<34} {row[name]}" if name == "motor" else f"{name:<34} {row[name]:.6g}")
+    click.echo(_wrapped(step.text()))
+    click.echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+    if count:
+        _print_alternatives(others, tolerance)
+
+
+def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:
+    if not others:
+        click.echo(f"no other design is within {tolerance:g} percent; raise --tolerance")
+        return
+    click.echo(f"alternatives within {tolerance:g} percent, the most different first:")
+    for other in others:
+        values = other.objectives.text(other.values)
+        click.echo(_wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
+    if unaudited := sum(not other.audited for other in others):
+        click.echo(f"note: alternatives without an audit: {unaudited} of {len(others)}", err=True)
+
+
+def _wrapped(text: str, indent: int = 2) -> str:
+    """A sentence in lines of at most 80 letters."""
+    return textwrap.fill(
+        text,
+        width=_TABLE_WIDTH,
+        subsequent_indent=" " * indent,
+        break_on_hyphens=False,
+        drop_whitespace=True,
+        break_long_words=False,
+    )

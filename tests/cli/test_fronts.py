@@ -4,13 +4,15 @@ import csv
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.design import PAPER_NAMES
+from pareto_monoped.study.alternatives import alternatives
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
-from tests.study.support import made_database
+from tests.study.support import made_database, made_evaluations, made_generation, made_study
 
 
 @pytest.fixture
@@ -52,16 +54,23 @@ def test_front_as_csv_and_table(db, tmp_path, capsys):
         (["--knee"], 0, "knee"),
         (["--weights", "1,0"], 3, "weighted sum"),
         (["--trial", "4"], 4, "by its number"),
+        (["--tradeoff"], 0, "largest trade-off"),
+        (["--compromise", "0,1"], 4, "compromise"),
+        (["--nearest", "height_m=0.85,energy_j=9"], 0, "nearest to the wish"),
+        (["--min-height", "0.75", "--max-energy", "29"], 0, "reach 0.75 m and need at most 29 J"),
+        (["--min", "height_m=0.75", "--knee"], 0, "knee"),
+        (["--max", "height_m=0.75", "--weights", "1,0"], 4, "have at most 0.75 m of height"),
+        (["--max", "height_m=1.0", "--min", "energy_j=8.5"], 0, "at least 8.5 J of energy"),
     ],
 )
 def test_pick(db, capsys, selector, trial, word):
     assert cli(["pick", db, *selector, "--json"]) == 0
     picked = json.loads(capsys.readouterr().out)
-    assert list(picked) == ["trial", "height_m", "energy_j", *PAPER_NAMES, "why"]
+    assert list(picked) == ["trial", "height_m", "energy_j", *PAPER_NAMES, "why", "one_more", "limits"]
     assert picked["trial"] == trial
     assert word in picked["why"]
     assert cli(["pick", db, *selector]) == 0
-    assert picked["why"] in capsys.readouterr().out
+    assert picked["why"] in " ".join(capsys.readouterr().out.split())
 
 
 @pytest.mark.parametrize(
@@ -76,6 +85,12 @@ def test_pick(db, capsys, selector, trial, word):
         (["--min-height", "2"], "1.1000 m"),
         (["--trial", "1"], "must be on the front"),
         (["--trial", "-1"], "-1"),
+        (["--min", "mass=4"], "did you mean 'mass_kg'?"),
+        (["--max", "mass_kg"], "with a number"),
+        (["--nearest", "apex_s=1"], "the name of a measure"),
+        (["--nearest", "height_m=1,height_m=2"], "each measure once"),
+        (["--compromise", "x"], "two numbers"),
+        (["--min-height", "0.75", "--max-energy", "8.5"], "the nearest is trial 0 (0.800 m on 9.00 J)"),
     ],
 )
 def test_a_bad_selector_gets_one_line(db, capsys, selector, word):
@@ -101,9 +116,54 @@ def test_the_printed_pick_has_six_digits(db, capsys):
     assert cli(["pick", db, "--trial", "4"]) == 0
     why, *lines = capsys.readouterr().out.splitlines()
     assert why == picked["why"]
-    assert [line.split() for line in lines] == [
-        [name, f"{picked[name]:.6g}"] for name in ("height_m", "energy_j", *PAPER_NAMES)
-    ]
+    names = ("height_m", "energy_j", *PAPER_NAMES)
+    assert [line.split() for line in lines[: len(names)]] == [[name, f"{picked[name]:.6g}"] for name in names]
+    assert " ".join(" ".join(lines[len(names) :]).split()) == (
+        "one more centimetre of height costs 1 J of energy (trial 0: 0.800 m on 9.00 J) limits: none binds"
+    )
+
+
+@pytest.fixture
+def wide_db(tmp_path):
+    """40 trials around 0.9 m and 20 J."""
+    generator = np.random.default_rng(2)
+    evaluations = made_evaluations(
+        0.9 + 0.01 * generator.standard_normal(40), 20.0 + 0.2 * generator.standard_normal(40)
+    )
+    study = made_study()
+    made_database(tmp_path / "wide.db", [made_generation(study, 0, 0, evaluations)], study)
+    return str(tmp_path / "wide.db")
+
+
+def test_alternatives(wide_db, capsys):
+    data = read_study(Path(wide_db))
+    trial = int(data.front()["trial"].iloc[0])
+    ask = ["pick", wide_db, "--trial", str(trial), "--alternatives", "3", "--tolerance", "1.5"]
+    assert cli([*ask, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["alternatives"]
+    expected = alternatives(data, trial, count=3, tolerance=0.015)
+    assert [one["trial"] for one in found] == [one.trial for one in expected]
+    assert len(found) == 3
+    assert cli(ask) == 0
+    said = capsys.readouterr()
+    assert max(map(len, said.out.splitlines())) <= 80
+    words = " ".join(said.out.split())
+    assert "alternatives within 1.5 percent, the most different first:" in words
+    for one in expected:
+        assert f"trial {one.trial} ({one.objectives.text(one.values)}): {one.text()}" in words
+    assert said.err.endswith("note: alternatives without an audit: 3 of 3\n")
+
+
+def test_alternatives_keep_the_conditions_and_may_be_none(wide_db, capsys):
+    data = read_study(Path(wide_db))
+    least = float(data.front()["height_m"].min())
+    ask = ["pick", wide_db, "--min-height", repr(least), "--alternatives", "9", "--json"]
+    assert cli(ask) == 0
+    found = json.loads(capsys.readouterr().out)["alternatives"]
+    assert found
+    assert min(one["height_m"] for one in found) >= least
+    assert cli(["pick", wide_db, "--knee", "--alternatives", "1", "--tolerance", "0"]) == 0
+    assert "no other design is within 0 percent; raise --tolerance" in capsys.readouterr().out
 
 
 def test_weights_are_height_then_energy(db, capsys):

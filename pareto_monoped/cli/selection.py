@@ -1,0 +1,172 @@
+"""The options that select one design of a front, shared by ``pick`` and ``export``."""
+
+import functools
+import inspect
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from pareto_monoped.pareto.selectors import Chooser, Condition, MaxEnergy, Selector
+
+_CHOOSERS = "--knee, --tradeoff, --weights, --compromise, --nearest, --trial"
+
+
+def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that select one design; ``command`` receives them as the keyword ``selector``.
+
+    Conditions combine; more than one way to choose is a usage error. Without any of them, ``selector`` is None, which
+    ``required`` refuses.
+    """
+
+    @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
+    @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
+    @click.option("--limit", multiple=True, metavar="MEASURE=X", help="Condition: a measure at X or better.")
+    @click.option(
+        "--min", "least", multiple=True, metavar="NAME=X", help="Condition: measure or variable of at least X."
+    )
+    @click.option("--max", "most", multiple=True, metavar="NAME=X", help="Condition: measure or variable of at most X.")
+    @click.option("--knee", is_flag=True, help="The design where the front bends most.")
+    @click.option("--tradeoff", is_flag=True, help="The design whose neighbours give up most for what they gain.")
+    @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
+    @click.option("--compromise", metavar="WH,WE", help="Nearest to the best of every objective, with these weights.")
+    @click.option(
+        "--nearest", metavar="NAME=X,...", help="Nearest to a wished-for point, such as height_m=1,energy_j=20."
+    )
+    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
+    @functools.wraps(command)
+    def wrapper(*arguments: Any, **given: Any) -> Any:
+        selector = _selector(**{name: given.pop(name) for name in inspect.signature(_selector).parameters})
+        return command(*arguments, selector=selector, **given)
+
+    return wrapper
+
+
+def _selector(
+    min_height: float | None,
+    max_energy: float | None,
+    limit: Sequence[str],
+    least: Sequence[str],
+    most: Sequence[str],
+    knee: bool,
+    tradeoff: bool,
+    weights: str | None,
+    compromise: str | None,
+    nearest: str | None,
+    trial: int | None,
+) -> "Selector | None":
+    from pareto_monoped.pareto.selectors import Among, Compromise, Knee, Nearest, Tradeoff, Trial, Weights
+
+    chosen: list[Chooser] = []
+    if knee:
+        chosen.append(Knee())
+    if tradeoff:
+        chosen.append(Tradeoff())
+    if weights is not None:
+        chosen.append(Weights(values=_weights("--weights", weights)))
+    if compromise is not None:
+        chosen.append(Compromise(values=_weights("--compromise", compromise)))
+    if nearest is not None:
+        chosen.append(Nearest(wish=_wish(nearest)))
+    if trial is not None:
+        chosen.append(Trial(number=trial))
+    if len(chosen) > 1:
+        raise click.UsageError(
+            f"{len(chosen)} selectors given: must be one of {_CHOOSERS}, with any conditions; drop the others"
+        )
+    conditions = _conditions(min_height, max_energy, limit, least, most)
+    if not chosen and not conditions:
+        return None
+    return Among(conditions=conditions, chooser=chosen[0] if chosen else None)
+
+
+def required(selector: "Selector | None") -> "Selector":
+    """The selector; without one, a usage error that names the options."""
+    if selector is None:
+        raise click.UsageError(
+            "no selector given: must be one of --min-height M, --max-energy J, --limit MEASURE=X, --min NAME=X, "
+            "--max NAME=X, --knee, --tradeoff, --weights WH,WE, --compromise WH,WE, --nearest NAME=X,..., --trial N; "
+            "add one"
+        )
+    return selector
+
+
+def _conditions(
+    min_height: float | None,
+    max_energy: float | None,
+    limit: Sequence[str],
+    least: Sequence[str],
+    most: Sequence[str],
+) -> "tuple[Condition | MaxEnergy, ...]":
+    """All conditions, in the order of the options."""
+    from pareto_monoped.pareto.pick import at_or_better
+    from pareto_monoped.pareto.selectors import Condition, MaxEnergy
+
+    found: list[Condition | MaxEnergy] = []
+    if min_height is not None:
+        height_m = _finite("--min-height", min_height)
+        found.append(Condition(name="height_m", side="min", value=height_m, asked="min-height"))
+    if max_energy is not None:
+        found.append(MaxEnergy(energy_j=_finite("--max-energy", max_energy)))
+    found += [at_or_better(*_pair("--limit", text, _directed())) for text in limit]
+    for name, value in (_pair("--min", text, _stored()) for text in least):
+        found.append(Condition(name=name, side="min", value=value))
+    for name, value in (_pair("--max", text, _stored()) for text in most):
+        found.append(Condition(name=name, side="max", value=value))
+    return tuple(found)
+
+
+def _finite(option: str, value: float) -> float:
+    if not math.isfinite(value):
+        raise click.UsageError(f"{option} = {value}: must be a finite number; correct it")
+    return value
+
+
+def _weights(option: str, text: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) not in (2, 3):
+        raise click.UsageError(
+            f"{option} = {text!r}: must be two numbers WH,WE, or three for three objectives; give for example 1,1"
+        )
+    return values
+
+
+def _wish(text: str) -> dict[str, float]:
+    pairs = [_pair("--nearest", part.strip(), _directed()) for part in text.split(",")]
+    if len(dict(pairs)) < len(pairs):
+        raise click.UsageError(f"--nearest = {text!r}: must name each measure once; drop one")
+    return dict(pairs)
+
+
+def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
+    """A name and a number from NAME=X."""
+    name, _, value = text.partition("=")
+    if name not in known:
+        import difflib
+
+        near = difflib.get_close_matches(name, known, n=1)
+        allowed = f"did you mean {near[0]!r}?" if near else f"one of {', '.join(known)}"
+        raise click.UsageError(f"{option} = {text!r}: must begin with the name of a measure and =; {allowed}")
+    try:
+        return name, _finite(option, float(value))
+    except ValueError:
+        raise click.UsageError(f"{option} = {text!r}: must end with a number; give for example {name}=1.0") from None
+
+
+def _directed() -> list[str]:
+    """Measures of which more or less is better."""
+    from pareto_monoped.measures import MEASURES
+
+    return [entry.name for entry in MEASURES if entry.direction is not None]
+
+
+def _stored() -> Sequence[str]:
+    """Everything that a condition may be about."""
+    from pareto_monoped.pareto.conditions import CONDITION_NAMES
+
+    return CONDITION_NAMES

@@ -1,0 +1,38 @@
+"""Random fronts for brute force: with ties, duplicates, collinear and single points, and infinite slopes."""
+
+import numpy as np
+import pandas as pd
+from hypothesis import strategies as st
+
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
+THREE = Objectives(names=("height_m", "electrical_energy_j", "mass_kg"))
+
+# Few different numbers give many ties; hundredths have no exact binary form, which shows rounding.
+_numbers = st.integers(0, 6).map(lambda k: 0.55 + 0.07 * k)
+
+
+@st.composite
+def fronts(draw, objectives=HEIGHT_AND_ENERGY):
+    """A data frame of 1 to 12 designs, in any order; they may dominate each other, as a caller may give any."""
+    n = draw(st.integers(1, 12))
+    columns = {
+        name: draw(st.lists(_numbers, min_size=n, max_size=n))
+        for name in {*objectives.names, "mass_kg", "drift_m", "knee_ratio"}
+    }
+    trials = draw(st.permutations(range(100, 100 + n)))
+    return pd.DataFrame({"trial": trials, **columns})
+
+
+def losses(front, objectives):
+    """Rows of losses from 0, the best, to 1, the worst, by plain Python."""
+    rows = []
+    for record in front.to_dict(orient="records"):
+        row = []
+        for entry in objectives.measures:
+            column = [float(value) for value in front[entry.name]]
+            low, high = min(column), max(column)
+            share = (record[entry.name] - low) / (high - low) if high > low else 0.0
+            row.append((1.0 - share if high > low else 0.0) if entry.direction == "maximise" else share)
+        rows.append(row)
+    return np.array(rows)
