@@ -217,6 +217,15 @@ def test_the_nearest_design_is_named_where_none_meets_all():
     )
 
 
+def test_the_greatest_shortfall_decides_which_design_is_nearest():
+    """Trial 1 misses both by 0.3 of the extents, trial 2 only one, by 0.5."""
+    front = pd.DataFrame({"trial": [1, 2, 3, 4], "height_m": [0.7, 0.5, 1.0, 0.0], "mass_kg": [1.3, 1.0, 2.0, 1.0]})
+    front["energy_j"] = [1.0, 2.0, 3.0, 0.0]
+    conditions = (Condition(name="height_m", side="min", value=1.0), Condition(name="mass_kg", side="max", value=1.0))
+    with pytest.raises(SelectionError, match="the nearest is trial 1 "):
+        pick(front, Among(conditions=conditions))
+
+
 @pytest.mark.parametrize(
     ("selector", "words"),
     [
