@@ -410,6 +410,12 @@ MEASURES: tuple[Measure, ...] = (
     _safety("stop_safety", "bumpers, seats and strikers of the end stops", "strength of the end stops", "stops ok"),
     _safety("joint_safety", "screws, pins, fits and shafts", "strength of the joints", "joints ok"),
     _safety("link_safety", "plates, cores and rods", "strength of the links", "links ok"),
+    _safety(
+        "gear_strike_safety",
+        "gears that the largest torque strikes in every jump of their duty (it informs: nothing requires it by itself)",
+        "gears struck in every jump",
+        "strikes",
+    ),
 )
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)

@@ -58,6 +58,7 @@ def test_directions():
         "stop_safety",
         "joint_safety",
         "link_safety",
+        "gear_strike_safety",
     ]
     assert [name for name in better if better[name] is None] == ["lift_off_s", "apex_s"]
 

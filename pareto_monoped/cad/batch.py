@@ -34,9 +34,17 @@ class Progress:
         return self.elapsed_s / self.made * (self.total - self.made)
 
 
-def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[str, Any]:
-    """Export one design, see ``export_design``; returns the content of its ``design.json``."""
-    return export_design(
+def run(
+    job: Job, *, progress: Callable[[str], None] = lambda _: None, note: Callable[[str], None] = lambda _: None
+) -> dict[str, Any]:
+    """Export one design, see ``export_design``; returns the content of its ``design.json``.
+
+    Args:
+        job: the design, and where it goes.
+        progress: called with the name of each step as it begins.
+        note: called with a line of advice, if there is any.
+    """
+    summary = export_design(
         job.design,
         map_of(job.motor, job.rules),
         job.calibration,
@@ -48,7 +56,10 @@ def run(job: Job, *, progress: Callable[[str], None] = lambda _: None) -> dict[s
         hip_rad=job.hip_rad,
         knee_rad=job.knee_rad,
         progress=progress,
-    ).record
+    )
+    if summary.gear_life is not None and summary.gear_life.advice:
+        note(summary.gear_life.advice)
+    return summary.record
 
 
 def run_all(jobs: Sequence[Job], *, workers: int, progress: Callable[[Progress], None] = lambda _: None) -> int:

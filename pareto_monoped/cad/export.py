@@ -34,8 +34,8 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
-from pareto_monoped.strength.single import JointFactor, joint_factors
+from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
+from pareto_monoped.strength.single import GearLife, JointFactor, gear_life, joint_factors
 
 _NAMED_FAILURES = 3  # more would not fit on a line
 
@@ -49,12 +49,14 @@ class ExportSummary:
         record: the content of its ``design.json``.
         checks: all checks; all of them passed.
         files: paths relative to the folder.
+        gear_life: of the gears under strikes, where it is known.
     """
 
     folder: Path
     record: dict[str, Any]
     checks: tuple[Check, ...]
     files: tuple[str, ...]
+    gear_life: GearLife | None
 
 
 def export_design(
@@ -113,7 +115,9 @@ def export_design(
         progress("simulating")
         designs = {"searched": design, "as_built": built.design}
         results = _evaluated(designs, actuator_map, calibration)
-        factors = _factors(built.design, results, list(designs).index("as_built"), actuator_map)
+        loads = _loads(built.design, results, list(designs).index("as_built"))
+        factors = joint_factors(built.design, actuator_map, loads)
+        life = gear_life(built.design, actuator_map, loads)
         record["jumps"] = _jumps(designs, results)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
@@ -132,12 +136,12 @@ def export_design(
             files.write_drawings(folder, product, wanted)
             files.write_assembly_sheet(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
-            _write_tables(folder, product, record, checks, factors, leg_dimensions(actuator_map))
+            _write_tables(folder, product, record, checks, factors, life, leg_dimensions(actuator_map))
             ordered.write(folder)
             record["files"] = [*files_in(folder), RECORD]
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")
             move_in(folder, out_dir)
-    return ExportSummary(folder=out_dir, record=record, checks=checks, files=tuple(record["files"]))
+    return ExportSummary(folder=out_dir, record=record, checks=checks, files=tuple(record["files"]), gear_life=life)
 
 
 @contextmanager
@@ -174,6 +178,7 @@ def _write_tables(
     record: Mapping[str, Any],
     checks: Sequence[Check],
     factors: Sequence[JointFactor],
+    life: GearLife | None,
     leg: LegDimensions,
 ) -> None:
     """Write what every export has in words and numbers."""
@@ -183,7 +188,7 @@ def _write_tables(
     write(folder, "parameters.csv", parameters_csv(dimensions))
     write(folder, "monoped_equations.txt", equations(dimensions))
     write(folder, "checks.json", checks_record(checks))
-    write(folder, "README.md", readme(record, product, checks, record["formats"], factors))
+    write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life))
 
 
 def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
@@ -197,7 +202,7 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
 def simulated_jumps(
     designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration
 ) -> dict[str, dict[str, Any]]:
-    """Status, reason, height and energy of some designs' jumps, by the designs' names, as JSON values."""
+    """Status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
     return _jumps(designs, _evaluated(designs, actuator_map, calibration))
 
 
@@ -205,11 +210,10 @@ def _evaluated(designs: Mapping[str, Design], actuator_map: ActuatorMap, calibra
     return Evaluator(actuator_map, calibration)(np.stack([design.as_array() for design in designs.values()]))
 
 
-def _factors(design: Design, results: Evaluations, row: int, actuator_map: ActuatorMap) -> tuple[JointFactor, ...]:
-    """The safety factors of a design's joints, from a row of the results of its jump; none if it does not jump."""
+def _loads(design: Design, results: Evaluations, row: int) -> Loads:
+    """The loads of a design's parts, from a row of the results of its jump."""
     columns = {name: getattr(results, name)[row : row + 1] for name in LOAD_NAMES if name not in LENGTHS}
-    lengths = {name: np.array([getattr(design, name)]) for name in LENGTHS}
-    return joint_factors(design, actuator_map, loads_of(columns | lengths))
+    return loads_of(columns | {name: np.array([getattr(design, name)]) for name in LENGTHS})
 
 
 def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dict[str, Any]]:
@@ -219,6 +223,7 @@ def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dic
             "reason": results.reason[k],
             "height_m": _plain(results.height_m[k]),
             "energy_j": _plain(results.energy_j[k]),
+            "gear_strike_safety": _plain(results.gear_strike_safety[k]),
         }
         for k, name in enumerate(designs)
     }

@@ -170,7 +170,7 @@ def _note(text: str) -> None:
 def _one(job: "Job") -> None:
     from pareto_monoped.cad.batch import run
 
-    record = run(job, progress=lambda step: _note(f"{step} ..."))
+    record = run(job, progress=lambda step: _note(f"{step} ..."), note=lambda text: _note(f"note: {text}"))
     _note(f"wrote {job.folder} ({len(record['files'])} files)")
     _say_of_strength([job])
     for name in ("searched", "as_built"):

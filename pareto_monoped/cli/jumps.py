@@ -84,6 +84,7 @@ def simulate(
     if result.status == "cannot_stand" and (trace or model):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
     report = _report(result, motor, actuator_map)
+    _add_gear_life(report, result, actuator_map)
     if audited and result.status == "ok":
         report["audit"] = _audit(design, actuator_map, calibration)
     if trace:
@@ -137,6 +138,21 @@ def _report(result: "JumpResult", motor: str, actuator_map: "ActuatorMap") -> di
         **{name: _plain(value) for name, value in result.measures.items()},
         "design": result.design.as_dict(),
     }
+
+
+def _add_gear_life(report: dict[str, Any], result: "JumpResult", actuator_map: "ActuatorMap") -> None:
+    """How many jumps the gears last that strike their stops in each; with a note if that is too few."""
+    import numpy as np
+
+    from pareto_monoped.strength.loads import loads_of
+    from pareto_monoped.strength.single import gear_life
+
+    known = result.measures | result.design.as_dict()
+    life = gear_life(result.design, actuator_map, loads_of({name: np.array([v]) for name, v in known.items()}))
+    if life is not None:
+        report["gear_life_jumps"] = life.jumps
+        if life.advice:
+            click.echo(f"note: {life.advice}", err=True)
 
 
 def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibration") -> dict[str, Any]:

@@ -134,10 +134,10 @@ def _state(facts: dict[str, Any]) -> str:
 
 def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
     """The line on the limits besides the least height; none if there are no others."""
-    from pareto_monoped.strength.joint import GROUP_MEASURES
+    from pareto_monoped.strength.joint import REQUIRED_MEASURES
 
     limits: dict[str, float | None] = facts["settings"]["constraints"]
-    told = {"min_height_m": None, **(dict.fromkeys((f"min_{name}" for name in GROUP_MEASURES.values()), 1.0))}
+    told = {"min_height_m": None, **(dict.fromkeys((f"min_{name}" for name in REQUIRED_MEASURES), 1.0))}
     shown = [
         f"{key} {value:g}"
         for key, value in limits.items()

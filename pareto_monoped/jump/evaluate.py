@@ -85,6 +85,7 @@ class Evaluations:
     stop_safety: Floats
     joint_safety: Floats
     link_safety: Floats
+    gear_strike_safety: Floats
 
     def __len__(self) -> int:
         return len(self.height_m)

@@ -1,6 +1,6 @@
 """Safety factors of all joints of many robots at once, from capacities that are tabulated per gearbox and per leg."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
@@ -11,7 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.strength.joint import GROUP_MEASURES, SIDES, ActuatorJoint, LegJoint, Side, Structure, over
+from pareto_monoped.strength.joint import (
+    GROUP_MEASURES,
+    SIDES,
+    ActuatorJoint,
+    LegJoint,
+    Side,
+    Structure,
+    Together,
+    over,
+)
 from pareto_monoped.strength.loads import LOAD_NAMES, Loads
 from pareto_monoped.strength.table import TABLE
 
@@ -72,7 +81,7 @@ def capacities(actuator_map: ActuatorMap) -> Capacities:
     ]
     # Rows that share a capacity, such as those of hip and knee, have it computed once.
     wanted = {(joint.capacity, isinstance(joint, ActuatorJoint)) for joint in TABLE}
-    found = {key: np.array([_numbers(key[0](s)) for s in (structures if key[1] else structures[:1])]) for key in wanted}
+    found = {key: _all(key[0], structures if key[1] else structures[:1]) for key in wanted}
     columns: list[slice] = [slice(0)] * len(TABLE)
     values: dict[Of, Floats] = {}
     for of, rows in _ROWS.items():
@@ -86,6 +95,12 @@ def capacities(actuator_map: ActuatorMap) -> Capacities:
         values=values,
         columns=tuple(columns),
     )
+
+
+def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:
+    """Capacities of some structures, shape (structures, numbers of the capacity)."""
+    values = capacity.of(structures) if isinstance(capacity, Together) else [capacity(s) for s in structures]
+    return np.array([_numbers(value) for value in values])
 
 
 def _numbers(capacity: float | Sequence[float]) -> tuple[float, ...]:

@@ -1,19 +1,26 @@
-"""Gears in the stop: the largest torque of a jump against what teeth carry once.
+"""Gears in the stop: the largest torque of a jump against what teeth carry once, and in every jump of their duty.
 
 Gears are rated for their duty in stage 1. What an end stop or a landing sends through them is a single event of a
-higher torque, against which standards have a static limit.
+higher torque, against which standards have a static limit: rows of the group ``gears``. A joint that strikes its stop
+in every jump loads its teeth with that torque as often as it jumps: rows of the group ``gear_strikes``, which inform.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
+from pareto_monoped.actuator.gearset import joined
+from pareto_monoped.actuator.layout import FAMILIES
 from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.strike import strike_safeties, strike_shares
 from pareto_monoped.actuator.strength import lewis_form_factor
-from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure
+from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure, Together
 
 _CLOSE, _MOST_STEPS = 1e-12, 100  # the fixed point below gains about a digit per step
+_LIFE_DIGITS = 1e-6  # of the logarithm of a number of jumps
+MOST_JUMPS = 1e9
+"""Lives are cut here: both standards end their curves at 1e10 load cycles."""
 
 
 def static_torques_n_m(s: Structure) -> tuple[float, float]:
@@ -37,6 +44,51 @@ def static_torques_n_m(s: Structure) -> tuple[float, float]:
     return float(torques[0]), float(torques[1])
 
 
+def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
+    """Output torques that the gears of one motor carry in every jump of their duty, with the safeties that it requires.
+
+    They depend on no length and no jump, so that they are computed once per actuator map, all gearboxes of a family
+    together. The least of flanks and roots; NaN under the rules ``paper``, which know no fatigue.
+    """
+    torques = np.full(len(structures), np.nan)
+    for family in FAMILIES:
+        rows = [k for k, s in enumerate(structures) if s.actuator.family == family and s.settings.rules == "iso6336"]
+        if not rows:
+            continue
+        actuators, settings = [structures[k].actuator for k in rows], structures[rows[0]].settings
+        stage = build_stage(joined([a.gears for a in actuators]), actuators[0].motor, family, settings)
+        required = (settings.parts.rating.flank_safety, settings.parts.rating.root_safety)
+        shares = strike_shares(stage, np.array([a.face_width_mm for a in actuators]), required)
+        torques[rows] = np.minimum(*shares) * [a.peak_torque_n_m for a in actuators]
+    return torques.tolist()
+
+
+def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
+    """Jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their duty.
+
+    0 if they do not last a single one, ``MOST_JUMPS`` if they last that many; NaN under the rules ``paper``.
+    """
+    if s.settings.rules == "paper":
+        return float("nan")
+    actuator, data = s.actuator, s.settings.parts.rating
+    stage = build_stage(actuator.gears, actuator.motor, actuator.family, s.settings)
+    share = torque_n_m / actuator.peak_torque_n_m
+
+    def lasts(jumps: float) -> bool:
+        flank, root = strike_safeties(stage, actuator.face_width_mm, share, jumps)
+        return bool(flank >= data.flank_safety and root >= data.root_safety)
+
+    low, high = 0.0, float(np.log10(MOST_JUMPS))
+    if not lasts(1.0):
+        return 0.0
+    if lasts(MOST_JUMPS):
+        return MOST_JUMPS
+    while high - low > _LIFE_DIGITS:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if lasts(10.0**middle) else (low, middle)
+    return float(10.0**low)
+
+
 def lewis_torque_n_m(s: Structure) -> float:
     """Output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
 
@@ -57,6 +109,7 @@ def _torques_n_m(s: Structure) -> tuple[float, float]:
     return static_torques_n_m(s) if s.settings.rules == "iso6336" else (np.inf, lewis_torque_n_m(s))
 
 
+_STRIKES = Together(of=strike_torques_n_m)
 _TEETH: dict[str, tuple[str, Callable[..., Any]]] = {
     "flank": (
         "ISO 6336-2, static stress; the rules paper have no limit of flanks",
@@ -68,7 +121,7 @@ _TEETH: dict[str, tuple[str, Callable[..., Any]]] = {
     ),
 }
 
-JOINTS = tuple(
+_ONCE = tuple(
     ActuatorJoint(
         name=f"{side}_gear_{tooth}",
         group="gears",
@@ -86,3 +139,20 @@ JOINTS = tuple(
     for side in SIDES
     for tooth, (source, factor) in _TEETH.items()
 )
+_ALWAYS = tuple(
+    ActuatorJoint(
+        name=f"{side}_gear_strikes",
+        group="gear_strikes",
+        side=side,
+        formula="T_limit / T, with rating.flank_safety and rating.root_safety under duty and strikes at T_limit",
+        source="ISO 6336-2, -3 and -6, one load cycle per jump; the rules paper know no fatigue",
+        required=1.0,
+        required_source="it informs: below 1, the gears last fewer jumps than duty.jumps if each strikes like this one",
+        loads=(f"peak_gear_torque_{side}_n_m",),
+        capacity=_STRIKES,
+        parts=("sun", "planet", "ring"),
+        cure=f"release the {side}'s torque before its stop, or a heavier gearbox",
+    )
+    for side in SIDES
+)
+JOINTS = (*_ONCE, *_ALWAYS)

@@ -1,6 +1,6 @@
 """One row of the table of joints: what may fail, under which loads, by which formula, and what is required."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -13,15 +13,20 @@ Side = Literal["hip", "knee"]
 SIDES: tuple[Side, ...] = ("hip", "knee")
 """The joints of the robot, each with its actuator."""
 
-Group = Literal["gears", "chain", "stops", "joints", "links"]
+Group = Literal["gears", "gear_strikes", "chain", "stops", "joints", "links"]
 GROUP_MEASURES: dict[Group, str] = {
     "gears": "gear_safety",
+    "gear_strikes": "gear_strike_safety",
     "chain": "chain_safety",
     "stops": "stop_safety",
     "joints": "joint_safety",
     "links": "link_safety",
 }
 """Group -> the measure that is the least factor over required factor of its rows."""
+INFORMING: frozenset[Group] = frozenset({"gear_strikes"})
+"""Groups that inform: their factors are shown and stored, but no study and no export requires them by itself."""
+REQUIRED_MEASURES: tuple[str, ...] = tuple(name for group, name in GROUP_MEASURES.items() if group not in INFORMING)
+"""The measures that a design must have at 1 or more to hold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +42,21 @@ class Structure:
     actuator: Actuator
     leg: LegDimensions
     settings: ActuatorSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Together:
+    """A capacity that is computed for many structures at once, which saves time.
+
+    Attributes:
+        of: the capacities of some structures of one actuator map.
+    """
+
+    of: Callable[[Sequence[Structure]], Sequence[float]]
+
+    def __call__(self, s: Structure) -> float:
+        """The capacity of one structure."""
+        return self.of([s])[0]
 
 
 def over(capacity: Any, load: Any) -> Any:
@@ -74,6 +94,11 @@ class Joint:
     factor: Callable[..., Any] = over
     parts: tuple[str, ...]
     cure: str
+
+    @property
+    def informs(self) -> bool:
+        """Whether the row only informs, see ``INFORMING``."""
+        return self.group in INFORMING
 
     def __post_init__(self) -> None:
         """Refuse loads that do not exist."""

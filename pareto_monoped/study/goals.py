@@ -14,7 +14,7 @@ from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import MEASURE_NAMES, MEASURES, measure
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
-from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.strength.joint import REQUIRED_MEASURES
 
 Side = Literal["min", "max"]
 
@@ -90,7 +90,7 @@ def constraints_of(table: Mapping[str, Any], *, strength: bool = False, source: 
                 typed = f"constraints.{key}.{side}" if key == name else f"constraints.{key}"
                 chosen[side, name] = _value((side, name), limit, f"{source}: {typed}")
     chosen.setdefault(("min", "height_m"), MIN_HEIGHT_M)
-    for name in GROUP_MEASURES.values() if strength else ():
+    for name in REQUIRED_MEASURES if strength else ():
         least = chosen.setdefault(("min", name), LEAST_SAFETY)
         if least < LEAST_SAFETY:
             allowed = f"at least {LEAST_SAFETY:g} with strength = true"

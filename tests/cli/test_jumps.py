@@ -33,9 +33,9 @@ def test_rules_choose_the_gearboxes_and_a_stand_in_is_noted(capsys):
     code, out, err = run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--rules", "iso6336", "--json")
     report = json.loads(out)
     assert (code, report["status"], report["rules"]) == (0, "ok", "iso6336")
-    assert len(err.splitlines()) == 1
-    assert "gear ratio 8.35" in err
-    assert "stands in" in err
+    (note,) = [line for line in err.splitlines() if "gear ratio" in line]
+    assert "gear ratio 8.35" in note
+    assert "stands in" in note
     assert json.loads(run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--json")[1]) == report
     plain = json.loads(
         run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--rules", "paper", "--json")[1]
@@ -159,7 +159,30 @@ def test_tables_fit_eighty_columns(capsys):
 
 @pytest.mark.parametrize("text", ["thigh_length_m=0.3", "thigh_length_m=0.5", "damping_n_s_per_m=0"])
 def test_a_value_on_a_bound_is_within_it(capsys, text):
-    assert run(capsys, "simulate", "--set", text)[2] == ""
+    assert "bounds" not in run(capsys, "simulate", "--set", text)[2]
+
+
+def test_gears_that_do_not_last_their_duty_get_one_line_of_advice(capsys):
+    said = {}
+    for case in ("nominal", "C"):
+        code, out, err = run(capsys, "simulate", "--case", case, "--json")
+        assert code == 0
+        said[case] = json.loads(out), err
+    weak, err = said["nominal"]
+    assert weak["gear_strike_safety"] < 1.0
+    assert weak["gear_life_jumps"] < 1e5
+    assert len(err.splitlines()) == 1
+    assert all(
+        word in err for word in ("of 100000 jumps", "heavier gearboxes", "knee_release_rad", "gear_strike_safety")
+    )
+    strong, err = said["C"]
+    assert strong["gear_strike_safety"] >= 1.0
+    assert strong["gear_life_jumps"] >= 1e5
+    assert err == ""
+    # The rules of the paper know no fatigue.
+    paper = json.loads(run(capsys, "simulate", "--calibration", "paper", "--json")[1])
+    assert paper["gear_strike_safety"] is None
+    assert "gear_life_jumps" not in paper
 
 
 def test_the_named_motor_and_calibration_are_used(capsys):

@@ -38,5 +38,5 @@ def factors_one_by_one(actuator_map, design, loads, i):
         acting = [float(getattr(loads, name)[i]) for name in joint.loads]
         with np.errstate(divide="ignore"):
             value = joint.factor(*map(np.float64, np.atleast_1d(carried)), *map(np.float64, acting))
-        found[joint.name] = min(float(value), 1000.0)
+        found[joint.name] = float(np.minimum(value, 1000.0))
     return found

@@ -8,7 +8,7 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES
 from pareto_monoped.strength.factors import MOST_FACTOR, safeties, strength_factors
-from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.strength.joint import GROUP_MEASURES, INFORMING
 from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
 from pareto_monoped.strength.table import TABLE
 from tests.strength.support import factors_one_by_one, jumped
@@ -22,12 +22,14 @@ def test_a_population_has_the_factors_of_its_designs(rules):
     for i, design in enumerate(designs[:8]):
         alone = factors_one_by_one(actuator_map, design, loads, i)
         assert list(alone) == [joint.name for joint in TABLE]
-        assert factors[i] == pytest.approx(list(alone.values()), rel=1e-12)
+        assert factors[i] == pytest.approx(list(alone.values()), rel=1e-10, nan_ok=rules == "paper")
+    unknown = {joint.name for k, joint in enumerate(TABLE) if np.isnan(factors[:, k]).any()}
+    assert unknown == ({"hip_gear_strikes", "knee_gear_strikes"} if rules == "paper" else set())
     for group, measure in GROUP_MEASURES.items():
         rows = [k for k, joint in enumerate(TABLE) if joint.group == group]
         if rows:
             least = [min(row[k] / TABLE[k].required for k in rows) for row in factors]
-            assert getattr(result, measure) == pytest.approx(least, rel=1e-15)
+            assert getattr(result, measure) == pytest.approx(least, rel=1e-15, nan_ok=group in INFORMING)
 
 
 def test_a_design_does_not_depend_on_the_batch():
@@ -75,8 +77,9 @@ def test_failed_jumps_have_no_safety():
     lame[0, NAMES.index("knee_ratio")] = 99.0
     result = Evaluator(actuator_map, load_calibration("reference"))(lame)
     assert result.status[0] == "no_gearbox"
-    assert np.isnan(result.gear_safety[0])
-    assert np.isfinite(result.gear_safety[1])
+    for safety in (result.gear_safety, result.gear_strike_safety):
+        assert np.isnan(safety[0])
+        assert np.isfinite(safety[1])
 
 
 def test_rows_can_be_told_apart_and_say_what_they_are_about():

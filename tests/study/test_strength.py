@@ -9,7 +9,7 @@ from pareto_monoped.cli import cli
 from pareto_monoped.errors import StudyError
 from pareto_monoped.report.summary import notes
 from pareto_monoped.strength.factors import strength_factors
-from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.strength.joint import GROUP_MEASURES, REQUIRED_MEASURES
 from pareto_monoped.strength.loads import loads_of
 from pareto_monoped.strength.table import TABLE
 from pareto_monoped.study.definition import NO_STRENGTH, load_study, study_from_dict
@@ -18,7 +18,7 @@ from pareto_monoped.study.run import resume, run
 from tests.study.support import assert_refused, made_database, made_study
 from tests.study.support import study_of as made
 
-SAFETIES = tuple(GROUP_MEASURES.values())
+SAFETIES = REQUIRED_MEASURES
 STUDY = """
 name = "strong"
 evaluations = 120
@@ -63,6 +63,27 @@ def test_more_may_be_asked_and_less_may_not():
         ["constraints.chain_safety.min = 0.5", "at least 1", "strength = false"],
     )
     assert made(constraints={"chain_safety": {"min": 0.5}}).constraints.value("min_chain_safety") == 0.5
+
+
+def test_strikes_inform_and_are_asked_for_by_name_alone():
+    assert "gear_strike_safety" in GROUP_MEASURES.values()
+    assert made(strength=True).constraints.value("min_gear_strike_safety") is None
+    asked = made(strength=True, constraints={"gear_strike_safety": {"min": 0.8}})
+    assert asked.constraints.value("min_gear_strike_safety") == 0.8
+    assert asked.constraints.value("min_gear_safety") == 1.0
+
+
+def test_a_study_keeps_strikes_within_the_limit_that_it_names(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = load_study(written(tmp_path, more=f"{EASY}\n[constraints]\ngear_strike_safety = {{ min = 1.2 }}"))
+    run(study, tmp_path / "struck.db")
+    trials = read_study(tmp_path / "struck.db").trials
+    ok = trials[trials["status"] == "ok"]
+    low = ok["gear_strike_safety"] < 1.2
+    assert low.any()
+    assert not low.all()
+    assert (ok.loc[low, "state"] == "infeasible").all()
+    assert ok.loc[low, "reason"].str.contains("gear_strike_safety|_safety = ").all()
 
 
 def test_the_option_overrides_the_file(tmp_path):

@@ -56,7 +56,7 @@ def roughness_factor(steel: GearGrade, roughness_um: float) -> float:
     return float(1.674 - 0.529 * (roughness_um + 1.0) ** 0.1)
 
 
-def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: float) -> Numbers:
+def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: Numbers) -> Numbers:
     """Y_M = 1 / (1 - R (1 - M) / (1 + M)), with R = -1.2 times ``ratio`` (ISO 6336-3, annex B; cited from memory).
 
     A load on one flank compresses the root of the other 1.2 times as much as it stretches its own. The standard gives

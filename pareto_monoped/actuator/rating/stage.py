@@ -176,6 +176,10 @@ class Stage:
         parts = self.settings.parts
         return self._loads(width_mm, max(parts.rating.overload_factor, highest_share(parts.duty)), moving=False)
 
+    def single_loads(self, width_mm: Numbers, share: Numbers) -> tuple[MeshLoad, MeshLoad]:
+        """Loads of both meshes under a torque of ``share`` times the peak torque in gears that stand still, K_A 1."""
+        return self._loads(width_mm, share, moving=False)
+
     def _loads(self, width_mm: Numbers, factor: Numbers, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
         """Loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
         data, materials = self.settings.parts.rating, self.settings.materials
@@ -244,7 +248,7 @@ class Stage:
         """The least static S_H and S_F under a single event of ``share`` times the peak torque."""
         both = [
             safeties_of(carried, acting(over, over))
-            for carried, over in zip(self.carried, self._loads(width_mm, share, moving=False), strict=True)
+            for carried, over in zip(self.carried, self.single_loads(width_mm, share), strict=True)
         ]
         least = Safeties(*map(np.minimum, *both))
         return least.overload_flank, least.overload_root

@@ -1,4 +1,4 @@
-"""Every joint has its required safety factor under the loads of the jump."""
+"""Every joint has its required safety factor under the loads of the jump; rows that only inform are left out."""
 
 from collections.abc import Sequence
 
@@ -13,6 +13,7 @@ def check(factors: Sequence[JointFactor]) -> Check:
     Args:
         factors: of all joints; none if the design does not jump, so that there are no loads.
     """
+    factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
     return worst_of(STRENGTH, looked_at, [Finding(value=one.share, text=_sentence(one)) for one in factors])
 

@@ -66,7 +66,8 @@ def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
     """File name of a part -> its joints, each with factor and required factor."""
     found: dict[str, list[str]] = defaultdict(list)
     for one in factors:
-        text = f"{one.joint.name} {one.factor:.2f} ({one.joint.required:g})"
+        required = "informs" if one.joint.informs else f"{one.joint.required:g}"
+        text = f"{one.joint.name} {one.factor:.2f} ({required})"
         for part in one.joint.parts:
             # A joint of an actuator may name parts of the leg too, and both actuators may share their parts.
             found[part].append(text)

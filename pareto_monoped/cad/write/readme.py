@@ -7,7 +7,7 @@ from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.formats import FILES
-from pareto_monoped.strength.single import JointFactor
+from pareto_monoped.strength.single import GearLife, JointFactor
 
 _HOW = {
     "laser cut": "Laser-cut by the layer CUT in `laser/`; countersink, tap and ream as its layer NOTES says; deburr.",
@@ -24,6 +24,7 @@ def readme(
     checks: Sequence[Check],
     formats: Sequence[str],
     factors: Sequence[JointFactor] = (),
+    life: GearLife | None = None,
 ) -> str:
     """The page as Markdown.
 
@@ -33,13 +34,14 @@ def readme(
         checks: all checks that were run.
         formats: what was written.
         factors: safety factors of all joints; none if the design does not jump.
+        life: of the gears under strikes, where it is known.
     """
     lines = [
         *_design(record),
         *_actuators(record),
         *_files(formats),
         *_making(product),
-        *_strength(record, factors),
+        *_strength(record, factors, life),
         *_checks(checks),
     ]
     return "\n".join(lines) + "\n"
@@ -118,7 +120,7 @@ def _making(product: Product) -> Iterator[str]:
             yield from (f"**Note.** {cable.warning[0].upper()}{cable.warning[1:]}.", "")
 
 
-def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor]) -> Iterator[str]:
+def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: GearLife | None) -> Iterator[str]:
     """The factors, and whether anybody asked for them."""
     yield from ("## Strength", "")
     if not record["strength"]:
@@ -128,8 +130,16 @@ def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor]) -> Iter
         return
     yield from ("Safety factors under the loads of the jump; `strength.csv` has formulas, loads and sources.", "")
     yield from ("| joint | safety factor | required |", "|---|---:|---:|")
-    yield from (f"| {one.joint.name} | {one.factor:.2f} | {one.joint.required:g} |" for one in factors)
+    for one in factors:
+        required = "informs" if one.joint.informs else f"{one.joint.required:g}"
+        yield f"| {one.joint.name} | {one.factor:.2f} | {required} |"
     yield ""
+    if life is not None:
+        yield (
+            f"Gears that are struck in every jump as in this one have the safety of their duty for {life.text} jumps; "
+            f"the duty is {life.duty_jumps:.0f}. This informs, and nothing is refused for it."
+        )
+        yield from (f"{life.advice[0].upper()}{life.advice[1:]}.", "") if life.advice else ("",)
 
 
 def _checks(checks: Sequence[Check]) -> Iterator[str]:

@@ -331,15 +331,15 @@ def sun_lag(load, width, diameter, planets, slices=20000):
     return float(np.sum(torque / (shear * polar)) * width / slices * diameter / 2.0)
 
 
-def mesh_loads(sets, data, width, meshes, over=False):
+def mesh_loads(sets, data, width, meshes, over=None):
     """K factors of both meshes; ``sets`` holds what the gear set and motor give, ``data`` the settings.
 
-    ``over`` is the overload: a larger torque without K_A and K_V, whose distribution it also decides.
+    ``over`` times the peak torque acts once, without K_A and K_V, and also decides its distribution.
     """
     found = []
     for mesh in meshes:
         epsilon = contact_ratio(mesh["pinion"], mesh["wheel"], sets["distance"])
-        load = (data.overload_factor if over else data.application_factor) * sets["sharing"] * sets["force"] / width
+        load = (over or data.application_factor) * sets["sharing"] * sets["force"] / width
         pace = sets["speed"] * mesh["z1"] / 100.0 * sqrt(mesh["u"] ** 2 / (1.0 + mesh["u"] ** 2))
         slope = 2.0 if pace <= 0.2 else max(2.071 - 0.357 * pace, 2.071 - 0.357 * 2.9)
         dynamic = 1.0 + (K1[data.accuracy_class] / max(load, 100.0) + 0.0193) * pace * slope
@@ -388,8 +388,11 @@ def mesh_loads(sets, data, width, meshes, over=False):
     return found
 
 
-def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
-    """Safety factors by gear and mesh: {(gear, mesh): (S_H, S_F, overload S_H, overload S_F)}, and the K factors."""
+def rate(gears, motor, width, settings, *, ring_wall, sun_bore, standing_at=None):
+    """Safety factors by gear and mesh: {(gear, mesh): (S_H, S_F, overload S_H, overload S_F)}, and the K factors.
+
+    ``standing_at`` is the highest level of a duty, over the peak torque. It acts without K_A on gears that stand still.
+    """
     data, duty, steels = settings.parts.rating, settings.parts.duty, settings.gear_steels
     zs, zp, zr, module, planets = (
         gears.sun_teeth,
@@ -425,7 +428,7 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
     for mesh in meshes:
         mesh |= {"z1": mesh["pinion"].teeth, "z2": mesh["wheel"].teeth, "internal": mesh["wheel"].internal}
         mesh["u"] = mesh["z2"] / mesh["z1"]
-    loads, overloads = (mesh_loads(sets, data, width, meshes, over) for over in (False, True))
+    loads, overloads = (mesh_loads(sets, data, width, meshes, over) for over in (standing_at, data.overload_factor))
     turns = (ratio - 1.0) / (2.0 * pi)
     passes = {"sun": planets * turns, "planet": turns * zs / zp, "ring": planets * turns * zs / zr}
     bores = {"sun": sun_bore, "planet": planet_bore}
@@ -448,6 +451,8 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore):
                 y_b = 1.0 if rim >= 1.2 else 1.6 * log(2.242 / rim)
             limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty)
             duty_factor = data.application_factor * load["K_V"] * nominal
+            if standing_at:  # the permissible stresses of a duty with a level above 1 are for the peak torque
+                duty_factor = nominal
             over_factor = data.overload_factor * nominal
             hertz = [
                 hertz_load(limit, mesh["pinion"], mesh["wheel"], sets["distance"], module, which == 1)
