@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.picture.colours import LEAST_DISTANCE, PALETTE, colour
+from pareto_monoped.cad.picture.colours import LEAST_DISTANCE, LEAST_FOR_DEFICIENT, PALETTE, colour
 
 # Machado, Oliveira and Fernandes 2009, table of severity 1.0, for linear RGB.
 VISION = {
@@ -33,7 +33,9 @@ def lab(rgb):
 def test_any_two_colours_can_be_told_apart(vision):
     seen = lab(np.clip(linear(np.array(PALETTE)) @ np.array(VISION[vision]).T, 0.0, 1.0))
     apart = np.linalg.norm(seen[:, None] - seen[None], axis=2)
-    assert apart[~np.eye(len(seen), dtype=bool)].min() >= LEAST_DISTANCE
+    assert apart[~np.eye(len(seen), dtype=bool)].min() >= (
+        LEAST_DISTANCE if vision == "normal" else LEAST_FOR_DEFICIENT
+    )
 
 
 def test_black_lines_and_white_paper_stand_out():
