@@ -10,7 +10,7 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, bores
-from pareto_monoped.cad.shape.curves import Contour, ends, polygon
+from pareto_monoped.cad.shape.curves import Contour, corners, ends, polygon
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Pattern
@@ -52,7 +52,7 @@ class Plan:
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Least x and y, greatest x and y."""
-        points = np.concatenate([polygon(layer.outline) for layer in self.layers])
+        points = np.concatenate([corners(layer.outline) for layer in self.layers])
         (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
         return float(x0), float(y0), float(x1), float(y1)
 
@@ -68,11 +68,11 @@ def plan_of(part: Part) -> Plan:
     outlines = [contour for contour, _, _, _ in shapes]
     found = bores(part, on_axis=True)
     turn = _turn(outlines)
-    points = _rotated(np.concatenate([polygon(contour) for contour in outlines]), turn)
     if any(_centre(bore) == (0.0, 0.0) for bore in found):
         shift = np.zeros(2)
     else:
-        shift = -points.min(axis=0)
+        turned = [_moved(outline, turn, np.zeros(2)) for outline in outlines]
+        shift = -np.concatenate([corners(outline) for outline in turned]).min(axis=0)
     layers = [
         Layer(
             outline=_moved(outline, turn, shift),

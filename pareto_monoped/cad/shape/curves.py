@@ -59,6 +59,23 @@ def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
     return np.concatenate(rows)
 
 
+def corners(contour: Contour) -> Points:
+    """Points of a contour among which are all its extremes along x and y, to rounding, shape (n, 2)."""
+    circle = contour.circle
+    if circle is not None:
+        arcs = [Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)]
+    else:
+        arcs = [piece for piece in contour.pieces if isinstance(piece, Arc)]
+    tops = [on_arc(arc, angle) for arc in arcs for angle in _quarters(float(arc.start_rad), float(arc.end_rad))]
+    return np.array([*polygon(contour), *tops])
+
+
+def _quarters(start_rad: float, end_rad: float) -> Points:
+    """The multiples of a right angle between two angles: there an arc is farthest along x or y."""
+    low, high = sorted((start_rad, end_rad))
+    return 0.5 * np.pi * np.arange(np.ceil(low / (0.5 * np.pi)), np.floor(high / (0.5 * np.pi)) + 1.0)
+
+
 def _arc_points(arc: Arc, tolerance_mm: float) -> Points:
     """Points on an arc without its last one, which is the next piece's first."""
     sweep = float(arc.end_rad) - float(arc.start_rad)

@@ -176,6 +176,24 @@ def test_a_contour_can_be_drawn_again_from_its_table(sheets):
     assert tables > 10
 
 
+def test_blanks_are_as_large_as_the_parts(sheets):
+    """Against polygons within 1e-6 mm of the arcs; those that are drawn are up to 0.01 mm smaller."""
+    blanks = 0
+    for part, paper, _, _ in sheets:
+        if is_round(part):
+            continue
+        blanks += 1
+        plan = plan_of(part)
+        points = np.concatenate([polygon(layer.outline, 1e-6) for layer in plan.layers])
+        size = np.ptp(points, axis=0)
+        assert plan.bounds == pytest.approx([*points.min(axis=0), *points.max(axis=0)], abs=2e-6)
+        on_axis = any((bore.shape.x_mm, bore.shape.y_mm) == (0.0, 0.0) for bore in plan.bores)
+        assert on_axis or plan.bounds[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
+        said = " ".join(label.text for label in paper.labels)
+        assert f"Blank {number(float(size[0]))} {TIMES} {number(float(size[1]))} {TIMES} " in said, part.name
+    assert blanks > 10
+
+
 def test_gears_have_their_data_and_fits_their_limits(sheets):
     gears = 0
     for part, paper, _, _ in sheets:
