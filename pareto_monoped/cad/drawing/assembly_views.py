@@ -13,6 +13,7 @@ from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
+from pareto_monoped.cad.drawing.sheet import scale_text
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import SCREWS, Role, Visibility
@@ -28,6 +29,8 @@ FROM_LEFT = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
+
+_CAPTION_MM = 3.5  # height of the names of views
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,3 +122,12 @@ def outline_of(section: m3.CrossSection) -> BaseGeometry:
     for ring in sorted((shapely.Polygon(ring).buffer(0.0) for ring in rings), key=lambda area: -area.area):
         region = region.symmetric_difference(ring)
     return region
+
+
+def captioned(paper: Paper, name: str, scale: float) -> Paper:
+    """A finished view with its name and scale over it, and its middle, without these, at y = 0."""
+    left, low, right, high = paper.box()
+    paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
+    centred = Paper()
+    centred.lay(paper, 0.0, -0.5 * (low + high))
+    return centred

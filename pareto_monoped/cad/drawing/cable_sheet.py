@@ -8,18 +8,17 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.cables import Cable, cables, rounded
-from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT, FROM_LEFT, Seen, drawn, outline_of, to_view
+from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT, FROM_LEFT, Seen, captioned, drawn, outline_of, to_view
 from pareto_monoped.cad.drawing.bores import number
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.placing import Tag, place_tags
-from pareto_monoped.cad.drawing.sheet import A1, A2, SCALES, Size, compose, scale_text, table
+from pareto_monoped.cad.drawing.sheet import A1, A2, SCALES, Size, compose, table
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import Role, Visibility
 
 _WIDE_MM = 0.7
 _NAME_MM = 2.5
-_CAPTION_MM = 3.5
 _LARGEST = 1.0
 _NOTES = (
     "Lengths in mm, from the hip's axis in the middle of the leg: x forward, y left, z up. The thigh hangs down.",
@@ -71,11 +70,7 @@ def _view(name: str, seen: Sequence[Seen], axes: NDArray[np.float64], made: Sequ
         for k, (x, y) in enumerate((cable.points_mm @ axes[:2].T).tolist(), 1):
             tags.append(Tag(text=f"{letter}{k}", x=x, y=y, radius=0.0, height_mm=_NAME_MM))
     place_tags(paper, tags, scale)
-    left, low, right, high = paper.box()
-    paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
-    centred = Paper()
-    centred.lay(paper, 0.0, -0.5 * (low + high))
-    return centred
+    return captioned(paper, name, scale)
 
 
 def _tables(made: Sequence[Cable]) -> list[Paper]:

@@ -7,17 +7,16 @@ import numpy as np
 import shapely
 
 from pareto_monoped.cad.assembly import Instance, Pose, body_frames
-from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT_LYING, Seen, drawn, outline_of, to_view
+from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT_LYING, Seen, captioned, drawn, outline_of, to_view
 from pareto_monoped.cad.drawing.balloons import clear_balloons
 from pareto_monoped.cad.drawing.paper import Paper
-from pareto_monoped.cad.drawing.sheet import A0, A1, SCALES, Size, compose, scale_text
+from pareto_monoped.cad.drawing.sheet import A0, A1, SCALES, Size, compose
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.pulled_apart import pulled_apart
 
 _SCALE = 0.5
 """At most: heads of M3 are then 2.8 mm wide."""
-_CAPTION_MM = 3.5
 _NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
 
 Sheet = tuple[Paper, Size, float]
@@ -61,11 +60,7 @@ def _filled(views: Sequence[tuple[str, list[Seen]]]) -> tuple[int, Sheet]:
 def _view(name: str, seen: Sequence[Seen], scale: float) -> Paper:
     paper = drawn(seen, scale)
     clear_balloons(paper, seen, scale)
-    left, low, right, high = paper.box()
-    paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
-    centred = Paper()
-    centred.lay(paper, 0.0, -0.5 * (low + high))
-    return centred
+    return captioned(paper, name, scale)
 
 
 def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
