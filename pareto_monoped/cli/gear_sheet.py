@@ -26,7 +26,7 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
     console.print("Rating after ISO 6336 at the motor's peak torque", markup=False)
     for name, value in (
         ("duty", f"{duty.jumps:g} jumps, each {levels}"),
-        ("overload", f"{data.overload_factor:g} times the peak torque, once"),
+        ("overload", f"{rating.overload_share:g} times the peak torque, once; K_A and K_V are 1"),
         ("accuracy", f"ISO 1328-1 class {data.accuracy_class}"),
         ("highest level", f"{rating.highest_share:g} times the peak torque, to which the limits refer"),
         ("gap of the planets", f"{rating.planet_gap_mm:.3f} mm between their tips"),
@@ -34,6 +34,7 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
         *((one.gear, f"{one.steel}, {one.quality}, {one.hardness_hv:g} HV") for one in steels.values()),
         ("equal to 1", "Z_beta, Z_X, Y_beta, Y_DT, Y_X, Y_epsilon (method B)"),
         ("Y_ST", "2"),
+        ("1 at overload", "Z_L Z_v Z_R, Y_R,rel,T, Y_M"),
     ):
         console.print(f"  {name:20} {value}", markup=False)
     console.print(_loads(rating))
@@ -68,6 +69,10 @@ def _loads(rating: "Rating") -> "Table":
         ("face load, root K_Fbeta", lambda mesh: mesh.root_face_load_factor, ".3f"),
         ("transverse load, flank K_Halpha", lambda mesh: mesh.transverse_load_factor, ".3f"),
         ("transverse load, root K_Falpha", lambda mesh: mesh.root_transverse_load_factor, ".3f"),
+        ("overload, flank K_Hbeta", lambda mesh: mesh.overload_face_load_factor, ".3f"),
+        ("overload, root K_Fbeta", lambda mesh: mesh.overload_root_face_load_factor, ".3f"),
+        ("overload, flank K_Halpha", lambda mesh: mesh.overload_transverse_load_factor, ".3f"),
+        ("overload, root K_Falpha", lambda mesh: mesh.overload_root_transverse_load_factor, ".3f"),
         ("zone Z_H", lambda mesh: mesh.zone_factor, ".4f"),
         ("elasticity Z_E, sqrt(MPa)", lambda mesh: mesh.elasticity_factor, ".2f"),
         ("contact ratio Z_epsilon", lambda mesh: mesh.contact_ratio_factor, ".4f"),
@@ -94,6 +99,7 @@ def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table
         ("contact stress sigma_H, MPa", lambda gear: gear.contact_stress_mpa, ".0f"),
         ("limit sigma_HG, MPa", lambda gear: gear.contact_limit_mpa, ".0f"),
         (f"S_H, at least {data.flank_safety:g}", lambda gear: gear.flank_safety, ".2f"),
+        ("overload, life Z_NT", lambda gear: gear.static_flank_life_factor, ".3f"),
         (f"S_H at overload, at least {data.overload_flank_safety:g}", lambda gear: gear.overload_flank_safety, ".2f"),
         ("", lambda gear: 0.0, ""),
         ("form Y_F", lambda gear: gear.form_factor, ".3f"),
@@ -108,6 +114,8 @@ def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table
         ("bending stress sigma_F, MPa", lambda gear: gear.bending_stress_mpa, ".0f"),
         ("limit sigma_FG, MPa", lambda gear: gear.bending_limit_mpa, ".0f"),
         (f"S_F, at least {data.root_safety:g}", lambda gear: gear.root_safety, ".2f"),
+        ("overload, life Y_NT", lambda gear: gear.static_root_life_factor, ".3f"),
+        ("overload, notch Y_delta,rel,T", lambda gear: gear.static_notch_factor, ".3f"),
         (f"S_F at overload, at least {data.overload_root_safety:g}", lambda gear: gear.overload_root_safety, ".2f"),
     )
     table = _table("stress and safety", "sun", "planet\nwith sun", "planet\nwith ring", "ring")

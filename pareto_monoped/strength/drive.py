@@ -107,7 +107,11 @@ def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
 
 
 def shaft(s: Structure) -> float:
-    """Output torque at which the sun's shaft yields between spline and teeth, at its thinnest."""
+    """Output torque at which the sun's shaft yields between spline and teeth, at its thinnest.
+
+    Where the spline's roots lie below the shaft, a hob runs out into it. What is left of the section there is at least
+    the round one within the roots, which counts.
+    """
     sun, (hub, _) = one(s, Role.GEAR, Group.ROTOR), _spline(one(s, Role.COUPLING, Group.ROTOR))
     toothed = [prism for prism in sun.prisms if isinstance(prism.outline, ExternalGear)]
     low, high = float(hub.z0_mm), max(float(prism.z1_mm) for prism in toothed)
@@ -237,7 +241,14 @@ def _rows() -> tuple[ActuatorJoint, ...]:
     dowels, pins = "Roloff/Matek, 9.2: pressure in the holes of pins", ("planet_pin",)
     table: tuple[_Row, ...] = (
         ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", shape, spline, ("sun", "coupling")),
-        ("sun_shaft", "tau_y pi r^3 / 2 i / T", "torsion, von Mises", shape, shaft, ("sun",)),
+        (
+            "sun_shaft",
+            "tau_y pi r^3 / 2 i / T, r within the roots and the hob's run-out",
+            "torsion, von Mises",
+            shape,
+            shaft,
+            ("sun",),
+        ),
         ("coupling_dowels", "n d l Rp0.2 r i / T", dowels, shape, coupling_dowels, ("coupling_dowel",)),
         ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", bond, ring, ("ring",)),
         ("ring_housing_dowels", "n d l Rp0.2 r / T", dowels, shape, ring_housing, ("ring_housing_dowel",)),

@@ -302,6 +302,10 @@ def test_rated_gear_set_prints_a_gear_calculation_sheet(capsys):
         ("face load, root", "root_face_load_factor", ".3f"),
         ("transverse load, flank", "transverse_load_factor", ".3f"),
         ("transverse load, root", "root_transverse_load_factor", ".3f"),
+        ("overload, flank K_Hbeta", "overload_face_load_factor", ".3f"),
+        ("overload, root K_Fbeta", "overload_root_face_load_factor", ".3f"),
+        ("overload, flank K_Halpha", "overload_transverse_load_factor", ".3f"),
+        ("overload, root K_Falpha", "overload_root_transverse_load_factor", ".3f"),
     ):
         assert cells(first)[-2:] == [format(one[key], form) for one in (mesh, ring)]
     for first, key, form in (

@@ -128,6 +128,45 @@ def test_safeties_can_be_recalculated_from_the_printed_sheet_alone(capsys, motor
         assert (bears / bending).high / (bears / bending).low < 1.02
 
 
+@pytest.mark.parametrize(("motor", "ratio"), CASES)
+def test_static_safeties_can_be_recalculated_from_the_printed_sheet_alone(capsys, motor, ratio):
+    """ISO 6336-2 and -3 with static limits: finish, roughness and mean stress are 1, and so are K_A and K_V."""
+    text = printed(capsys, motor, ratio)
+    b = Range.of(re.search(r"face width, length +([0-9.]+) mm", text)[1])
+    module = float(re.search(r" m ([0-9.]+) x", text)[1])
+    over = float(re.search(r"overload +([0-9.]+) times", text)[1])
+    y_st = float(re.search(r"Y_ST +([0-9.]+)", text)[1])
+    loads, _, stresses = text.partition("Bearings after")[0].partition("stress and safety")
+    mesh_rows, gear_rows = rows(loads, 2), rows(stresses, 4)
+    for column in range(4):
+        mesh = {name: Range.of(values[column // 2]) for name, values in mesh_rows.items()}
+        gear = {name: Range.of(values[column]) for name, values in gear_rows.items() if "cycles" not in name}
+        u, sign = mesh["gear ratio u"], -1.0 if column >= 2 else 1.0
+        curvature = Range(min((x + sign) / x for x in (u.low, u.high)), max((x + sign) / x for x in (u.low, u.high)))
+        load = product(mesh["tangential force F_t, N"], mesh["load sharing K_gamma"], over) / b
+        flank = product(load, mesh["overload, flank K_Hbeta"], mesh["overload, flank K_Halpha"])
+        stress = product(
+            mesh["zone Z_H"],
+            mesh["elasticity Z_E, sqrt(MPa)"],
+            mesh["contact ratio Z_epsilon"],
+            gear["single contact Z_B, Z_D"],
+            (flank / mesh["reference diameter d_1, mm"] * curvature).root(),
+        )
+        limit = product(gear["strength sigma_H,lim, MPa"], gear["overload, life Z_NT"], gear["work hardening Z_W"])
+        assert (limit / stress).touches(gear["S_H at overload"])
+        assert (limit / stress).high / (limit / stress).low < 1.01
+        root = product(load, mesh["overload, root K_Fbeta"], mesh["overload, root K_Falpha"])
+        bending = product(root / module, gear["form Y_F"], gear["stress correction Y_S"], gear["rim Y_B"])
+        bears = product(
+            gear["strength sigma_F,lim, MPa"],
+            y_st,
+            gear["overload, life Y_NT"],
+            gear["overload, notch Y_delta,rel,T"],
+        )
+        assert (bears / bending).touches(gear["S_F at overload"])
+        assert (bears / bending).high / (bears / bending).low < 1.02
+
+
 @pytest.mark.parametrize(("motor", "ratio"), CASES[:2])
 def test_load_factors_can_be_recalculated_too(capsys, motor, ratio):
     """K_Hbeta and K_Halpha from stiffness, misalignment and pitch deviation (ISO 6336-1, clauses 7.3.2 and 8.3.2)."""

@@ -9,8 +9,13 @@ import numpy as np
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating.flank import contact_stress_mpa, elasticity_factor
 from pareto_monoped.actuator.rating.geometry import contact_ratio_factor, zone_factor
-from pareto_monoped.actuator.rating.life import highest_share
-from pareto_monoped.actuator.rating.root import bending_stress_mpa, notch_sensitivity_factor, roughness_factor
+from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, highest_share
+from pareto_monoped.actuator.rating.root import (
+    bending_stress_mpa,
+    notch_sensitivity_factor,
+    roughness_factor,
+    static_notch_factor,
+)
 from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, acting, safeties_of
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
@@ -30,6 +35,8 @@ class GearRating:
         contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H.
         bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F.
         overload_flank_safety, overload_root_safety: against static failure under the overload.
+        static_flank_life_factor, static_root_life_factor: Z_NT and Y_NT of a few load cycles.
+        static_notch_factor: Y_delta rel T for static stress.
         single_contact_factor: Z_B or Z_D.
         finish_factor, work_hardening_factor: Z_L Z_v Z_R and Z_W.
         notch_sensitivity_factor, roughness_factor, mean_stress_factor: Y_delta rel T, Y_R rel T, Y_M.
@@ -70,6 +77,9 @@ class GearRating:
     root_cycles: float
     flank_life_factor: float
     root_life_factor: float
+    static_flank_life_factor: float
+    static_root_life_factor: float
+    static_notch_factor: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,6 +96,7 @@ class MeshRating:
         application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V.
         face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta.
         transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha.
+        overload_face_load_factor, ...: the same four under the overload, without K_A and K_V.
         pinion, wheel: the gears.
     """
 
@@ -107,6 +118,10 @@ class MeshRating:
     root_face_load_factor: float
     transverse_load_factor: float
     root_transverse_load_factor: float
+    overload_face_load_factor: float
+    overload_root_face_load_factor: float
+    overload_transverse_load_factor: float
+    overload_root_transverse_load_factor: float
     pinion: GearRating
     wheel: GearRating
 
@@ -119,12 +134,14 @@ class Rating:
         face_width_mm: b.
         planet_gap_mm: between the tips of neighbouring planets.
         highest_share: largest torque of the duty over the motor's peak torque, at least 1, to which limits refer.
+        overload_share: torque of the overload over the motor's peak torque.
         sun_mesh, ring_mesh: the meshes.
     """
 
     face_width_mm: float
     planet_gap_mm: float
     highest_share: float
+    overload_share: float
     sun_mesh: MeshRating
     ring_mesh: MeshRating
 
@@ -173,6 +190,7 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
             face_width_mm=number(width_mm),
             planet_gap_mm=number(_planet_gap_mm(stage.gears)),
             highest_share=highest_share(stage.settings.parts.duty),
+            overload_share=stage.overload_share,
             sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number),
             ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number),
         )
@@ -214,6 +232,10 @@ def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callab
         root_face_load_factor=number(at.face_root),
         transverse_load_factor=number(at.transverse_flank),
         root_transverse_load_factor=number(at.transverse_root),
+        overload_face_load_factor=number(over.face_flank),
+        overload_root_face_load_factor=number(over.face_root),
+        overload_transverse_load_factor=number(over.transverse_flank),
+        overload_root_transverse_load_factor=number(over.transverse_root),
         pinion=_gear(stage, mesh, mesh.pinion, loads, number),
         wheel=_gear(stage, mesh, mesh.wheel, loads, number),
     )
@@ -258,4 +280,7 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         root_cycles=number(member.root_cycles),
         flank_life_factor=number(member.flank_life),
         root_life_factor=number(member.root_life),
+        static_flank_life_factor=FLANK_CURVES[member.steel.treatment].static_factor,
+        static_root_life_factor=ROOT_CURVES[member.steel.treatment].static_factor,
+        static_notch_factor=number(static_notch_factor(member.steel, member.form)),
     )

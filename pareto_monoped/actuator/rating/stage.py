@@ -173,8 +173,13 @@ class Stage:
 
     def overloads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
         """Loads of both meshes under the overload: a single event, so that K_A and K_V do not apply."""
+        return self.single_loads(width_mm, self.overload_share)
+
+    @property
+    def overload_share(self) -> float:
+        """The overload over the peak torque; no less than the highest level of the duty."""
         parts = self.settings.parts
-        return self._loads(width_mm, max(parts.rating.overload_factor, highest_share(parts.duty)), moving=False)
+        return max(parts.rating.overload_factor, highest_share(parts.duty))
 
     def single_loads(self, width_mm: Numbers, share: Numbers) -> tuple[MeshLoad, MeshLoad]:
         """Loads of both meshes under a torque of ``share`` times the peak torque in gears that stand still, K_A 1."""
