@@ -16,6 +16,7 @@ LEVELS = [
     {"__main__"},
     {"cli"},
     {"report", "cad", "study"},
+    {"uncertainty"},
     {"pareto", "jump"},
     {"strength"},
     {"robot"},

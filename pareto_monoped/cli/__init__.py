@@ -23,6 +23,7 @@ _COMMANDS = {
     "verify": "storage",
     "front": "fronts",
     "pick": "fronts",
+    "robust": "robustness",
     "export": "exports",
     "report": "reports",
 }

@@ -143,8 +143,9 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     metavar="PERCENT",
     help="How much worse alternatives may be.  [default: 2]",
 )
+@click.option("--robust", "by_robust", is_flag=True, help="By what 19 of 20 built robots keep; needs 'robust' before.")
 @click.option("--json", "as_json", is_flag=True, help="Print the design as JSON.")
-def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, as_json: bool) -> None:
+def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by_robust: bool, as_json: bool) -> None:
     """Pick one design from the front and say why it was chosen.
 
     Conditions combine with each other and with one way to choose. Measures and variables have their stored names and
@@ -157,17 +158,21 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, as
     from pareto_monoped.study.reader import read_front, read_study
 
     wanted = required(selector)
+    if by_robust and count:
+        raise click.UsageError("--robust takes no --alternatives, which are compared as designed; drop one")
     data = read_front(db)
-    rows, names = data.rows, shown_columns(data.study, data.used, data.study.objectives)
+    whole, rows = _robust_rows(db) if by_robust else (front_alone(data), data.rows)
+    names = shown_columns(data.study, data.used, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
     step = one_more(rows, picked.trial, data.study.objectives)
-    limits = binding_limits(front_alone(data), picked.trial)
+    limits = binding_limits(whole, picked.trial)
     others: tuple[Alternative, ...] = ()
     if count:
         share = 0.01 * tolerance
         others = alternatives(read_study(db), picked.trial, count=count, tolerance=share, conditions=picked.conditions)
     say_of_study(data.study, sealed=data.sealed)
-    row = rows.loc[rows["trial"] == picked.trial, names].to_dict(orient="records")[0]
+    shares = ["failed", "overloaded"] if by_robust else []
+    row = rows.loc[rows["trial"] == picked.trial, [*names, *shares]].to_dict(orient="records")[0]
     if as_json:
         more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
         if count:
@@ -179,8 +184,22 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, as
         click.echo(f"{name:<34} {row[name]}" if name == "motor" else f"{name:<34} {row[name]:.6g}")
     click.echo(_wrapped(step.text()))
     click.echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+    if by_robust:
+        failed, overloaded = (100.0 * row[name] for name in shares)
+        ends = "measures are the worse of their 5th and 95th percentiles"
+        click.echo(_wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
     if count:
         _print_alternatives(others, tolerance)
+
+
+def _robust_rows(db: Path) -> "tuple[StudyData, DataFrame]":
+    """The study, and its front by what is stored of its robustness."""
+    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.study.robust_rows import read_robustness
+    from pareto_monoped.study.robustness import robust_front
+
+    data = read_study(db)
+    return data, robust_front(data, read_robustness(db))
 
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:

@@ -12,6 +12,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.jump.rows import joined, take
+from pareto_monoped.jump.variations import Variations, varied_control, varied_robots
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.frames import JOINTS
 from pareto_monoped.robot.population import JointStops, RobotArrays, robot_arrays
@@ -127,12 +128,15 @@ class Evaluator:
         self.calibration = calibration
         self.workers = workers
 
-    def __call__(self, designs: ArrayLike, motors: ArrayLike | None = None) -> Evaluations:
+    def __call__(
+        self, designs: ArrayLike, motors: ArrayLike | None = None, *, variations: Variations | None = None
+    ) -> Evaluations:
         """Jump with each design.
 
         Args:
             designs: shape (n, 7) or (n, number of variables), see ``design.complete``.
             motors: which of ``actuator_maps`` each design is built with, shape (n,); the first if None.
+            variations: how each robot departs from its design; its parts carry as much as designed. None: not at all.
         """
         values = np.atleast_2d(complete(designs))
         table, reasons = _Table(len(values)), _nonsense(values)
@@ -141,10 +145,17 @@ class Evaluator:
         sane = np.setdiff1d(np.arange(len(values)), list(reasons))
         chosen = np.zeros(len(values), dtype=np.intp) if motors is None else np.asarray(motors, dtype=np.intp)
         if len(sane):
-            self._evaluate(values, {k: sane[chosen[sane] == k] for k in np.unique(chosen[sane]).tolist()}, table)
+            rows_of = {k: sane[chosen[sane] == k] for k in np.unique(chosen[sane]).tolist()}
+            self._evaluate(values, rows_of, table, variations)
         return table.evaluations()
 
-    def _evaluate(self, values: Floats, rows_of: Mapping[int, NDArray[np.intp]], table: "_Table") -> None:
+    def _evaluate(
+        self,
+        values: Floats,
+        rows_of: Mapping[int, NDArray[np.intp]],
+        table: "_Table",
+        variations: Variations | None,
+    ) -> None:
         """Fill the table; ``rows_of`` has the rows of each motor."""
         built = {
             k: robot_arrays(values[rows], self.actuator_maps[k], self.calibration.mass) for k, rows in rows_of.items()
@@ -153,7 +164,8 @@ class Evaluator:
         for members in _alike(built):
             robots = joined([built[k] for k in members])
             rows = np.concatenate([rows_of[k] for k in members])
-            _jump(robots, columns(values[rows], CONTROL), self.calibration, self.workers, table, rows)
+            own = None if variations is None else take(variations, rows)
+            _jump(robots, columns(values[rows], CONTROL), self.calibration, self.workers, table, rows, own)
         for k, rows in rows_of.items():
             _add_safeties(values, self.actuator_maps[k], table, rows)
 
@@ -226,9 +238,17 @@ class _Table:
 
 
 def _jump(
-    robots: RobotArrays, control: Floats, calibration: Calibration, workers: int, table: _Table, rows: NDArray[np.intp]
+    robots: RobotArrays,
+    control: Floats,
+    calibration: Calibration,
+    workers: int,
+    table: _Table,
+    rows: NDArray[np.intp],
+    variations: Variations | None = None,
 ) -> None:
     """Let ``robots`` jump and fill ``rows`` of the table, one row per robot."""
+    if variations is not None:
+        robots, control = varied_robots(robots, variations), varied_control(control, variations)
     built = np.array([not reason for reason in robots.reason], dtype=bool)
     for i in np.flatnonzero(~built):
         table.fail(rows[i], "no_gearbox", robots.reason[i])
@@ -241,7 +261,8 @@ def _jump(
     for start in range(0, len(ready), _CHUNK):
         chosen = ready[start : start + _CHUNK]
         jumping = take(robots, chosen)
-        population = prepare(jumping, control[chosen], take(pose, chosen), calibration, workers)
+        own = None if variations is None else take(variations, chosen)
+        population = prepare(jumping, control[chosen], take(pose, chosen), calibration, workers, own)
         population.run()
         _collect(population, jumping, calibration, table, rows[chosen])
 

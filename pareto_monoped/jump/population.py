@@ -13,6 +13,7 @@ from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.pose import StartPose, start_pose
+from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
 
@@ -77,7 +78,12 @@ class Population:
 
 
 def prepare(
-    robots: RobotArrays, control: Floats, pose: StartPose, calibration: Calibration, threads: int = 1
+    robots: RobotArrays,
+    control: Floats,
+    pose: StartPose,
+    calibration: Calibration,
+    threads: int = 1,
+    variations: Variations | None = None,
 ) -> Population:
     """A population at rest in its start pose.
 
@@ -87,6 +93,7 @@ def prepare(
         pose: their start pose.
         calibration: the jump model.
         threads: number of threads that step the simulations.
+        variations: what of the robots' variations ``robots`` and ``control`` do not show; None without any.
     """
     import mujoco
     from mujoco.batch import Batch
@@ -107,6 +114,9 @@ def prepare(
     _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(calibration, robots.start_height_m, pose)
     records = _component(batch, mujoco.mjtState.mjSTATE_USERDATA).view(RECORD)[:, 0]
     records[:] = first_records(robots, control, calibration)
+    if variations is not None:
+        vary_fields(batch, model.FOOT_GEOM, variations)
+        vary_records(records, calibration, variations)
     return Population(batch=batch, records=records)
 
 

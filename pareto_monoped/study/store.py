@@ -21,6 +21,7 @@ from pareto_monoped.study.kept_front import FRONT, KeptFront
 from pareto_monoped.study.meta import StudyMeta, strict_json
 from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.optuna_tables import KNOWN_SCHEMAS, OptunaTables, create_tables
+from pareto_monoped.study.robust_rows import CREATE, INSERT, SEALED_AS, Row
 from pareto_monoped.study.seals import ROWS, SEALS, Sealer, row_digests
 
 _OUR_TABLES = """
@@ -198,6 +199,13 @@ class Store:
                 self._front.leave_out(self._connection, self._ill_conditioned())
                 written["front"] = row_digests([self._front.store(self._connection)])
             self._sealer.add(written)
+
+    def set_robustness(self, rows: Sequence[Row]) -> None:
+        """Store how trials do under uncertainty."""
+        with translated(self.path), _transaction(self._connection):
+            self._connection.execute(CREATE)
+            self._connection.executemany(INSERT, rows)
+            self._sealer.add({SEALED_AS: row_digests(rows)})
 
     def add(self, generation: Generation) -> None:
         """Store a generation. When this returns, its trials are safe.

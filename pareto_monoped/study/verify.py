@@ -16,6 +16,7 @@ from pareto_monoped.study.database import reading
 from pareto_monoped.study.optuna_check import foreign_trials, optuna_findings
 from pareto_monoped.study.plausible import implausible
 from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.seals import read_seals
 
 
@@ -51,6 +52,7 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
         StudyError: ``simulate``, but this code or machine computes other jumps than the study began with.
     """
     data = read_study(db)
+    read_robustness(db)
     with reading(db) as connection:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)

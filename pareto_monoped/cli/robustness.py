@@ -1,0 +1,90 @@
+"""``robust``: designs of a study under uncertainty."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from pareto_monoped.measures import Measure
+    from pareto_monoped.pareto.objectives import Objectives
+    from pareto_monoped.uncertainty.statistics import Robustness
+
+_DEFAULT_SAMPLES, _DEFAULT_SEED = 256, 1
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@click.option(
+    "--trial", "trials", type=click.IntRange(min=0), multiple=True, metavar="N", help="A trial, instead of the front."
+)
+@click.option(
+    "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."
+)
+@click.option("--samples", type=int, default=_DEFAULT_SAMPLES, metavar="N", help="Per design.  [default: 256]")
+@click.option("--seed", type=click.IntRange(min=0), default=_DEFAULT_SEED, metavar="N", help="Of the samples.")
+@click.option(
+    "--uncertainty", type=click.Path(path_type=Path), metavar="FILE", help="TOML file of ranges, instead of ours."
+)
+@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
+def robust(
+    db: Path,
+    trials: tuple[int, ...],
+    every: int,
+    samples: int,
+    seed: int,
+    uncertainty: Path | None,
+    workers: int | None,
+    as_json: bool,
+) -> None:
+    """Simulate designs again with what is uncertain in a built robot.
+
+    Masses, motors, friction, springs, lengths, gains, delay and battery vary together; all designs get the same
+    samples. The results are stored in DB; what is there is not simulated again.
+    """
+    from pareto_monoped.study.reader import read_front
+    from pareto_monoped.study.robustness import robust as run_robust
+    from pareto_monoped.uncertainty.ranges import load_uncertainty
+
+    if trials and every > 1:
+        raise click.UsageError("--every goes with the front, not with --trial; drop one")
+    ranges, kept = load_uncertainty(uncertainty), read_front(db)
+    chosen = list(trials) or kept.rows["trial"].tolist()[::every] or None
+    results = run_robust(
+        db,
+        ranges,
+        trials=chosen,
+        samples=samples,
+        seed=seed,
+        workers=workers,
+        progress=lambda done, total: click.echo(f"{done}/{total} designs", err=True),
+    )
+    if as_json:
+        shown = {str(trial): result.as_dict() for trial, result in results.items()}
+        click.echo(
+            json.dumps({"uncertainty": ranges.name, "samples": samples, "seed": seed, "trials": shown}, indent=2)
+        )
+    else:
+        _print(results, kept.study.objectives)
+
+
+def _print(results: "Mapping[int, Robustness]", objectives: "Objectives") -> None:
+    """One row per design: mean and percentiles of two objectives, shares of jumps that fail or overload a part."""
+    shown = objectives.measures[:2]
+    heads = "  ".join(f"{f'{entry.short} {entry.shown_unit}'.removesuffix(' 1'):>24}" for entry in shown)
+    click.echo(f"{'':6} {heads}  {'':7} {'over':>7}")
+    ends = "  ".join(f"{'mean':>8}{'5 %':>8}{'95 %':>8}" for _ in shown)
+    click.echo(f"{'trial':>6} {ends}  {'fail %':>7} {'load %':>7}")
+    for trial, result in results.items():
+        cells = "  ".join(_cells(result, entry) for entry in shown)
+        click.echo(f"{trial:6d} {cells}  {100.0 * result.failed:7.1f} {100.0 * result.overloaded:7.1f}")
+
+
+def _cells(result: "Robustness", entry: "Measure") -> str:
+    spread = result.measures.get(entry.name)
+    values: Sequence[float | None] = (spread.mean, spread.p05, spread.p95) if spread else (None,) * 3
+    texts = ["-" if value is None else f"{value * entry.scale:.{entry.decimals}f}" for value in values]
+    return "".join(f"{text:>8}" for text in texts)

@@ -1,0 +1,93 @@
+"""Robots that differ from what was designed: how each of many jumps departs from its nominal robot.
+
+A robot that was built has other masses, motors and springs than its model. Its controller does not know them: the term
+m g of the virtual leg keeps the nominal mass. Its links are measured, so the controller knows their true lengths. It
+starts in the balanced pose of its true masses and lengths, on a foot that is compressed as nominal.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import CONTROL, PAPER_CONTROL
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.robot.frames import BODIES
+from pareto_monoped.robot.population import RobotArrays
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variations:
+    """How n robots depart from their design. Factors of 1, lengths and delays of 0 leave a jump as it is to the bit.
+
+    Attributes:
+        masses: factors on mass and inertia of the bodies, shape (n, 3), in the order of ``BODIES``.
+        peak_torques: factors on the motors' peak torque, shape (n, 2).
+        no_load_speeds: factors on the no-load speed of both motors, which goes with the voltage, shape (n,).
+        friction, damping: factors on Coulomb and viscous friction of both joints, shape (n,).
+        stop_stiffness, foot_stiffness: factors on the stiffness of the end stops and of the foot, shape (n,).
+        link_lengths_m: added to thigh and shank, shape (n, 2).
+        gains: factors on K, C and T, shape (n, 3).
+        delays_s: added to the delay of the calibration, in which they count as whole control periods, shape (n,).
+    """
+
+    masses: Floats
+    peak_torques: Floats
+    no_load_speeds: Floats
+    friction: Floats
+    damping: Floats
+    stop_stiffness: Floats
+    foot_stiffness: Floats
+    link_lengths_m: Floats
+    gains: Floats
+    delays_s: Floats
+
+    def __len__(self) -> int:
+        return len(self.masses)
+
+
+def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
+    """The robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
+    return replace(
+        robots,
+        body_mass_kg=robots.body_mass_kg * variations.masses,
+        body_inertia_kg_m2=robots.body_inertia_kg_m2 * variations.masses[:, :, None, None],
+        peak_torque_n_m=robots.peak_torque_n_m * variations.peak_torques,
+        no_load_speed_rad_per_s=robots.no_load_speed_rad_per_s * variations.no_load_speeds[:, None],
+        thigh_length_m=robots.thigh_length_m + variations.link_lengths_m[:, 0],
+        shank_length_m=robots.shank_length_m + variations.link_lengths_m[:, 1],
+    )
+
+
+def varied_control(control: Floats, variations: Variations) -> Floats:
+    """The gains as they act, shape (n, 6), in the order of ``CONTROL``."""
+    varied = control.copy()
+    varied[:, [CONTROL.index(name) for name in PAPER_CONTROL]] *= variations.gains
+    return varied
+
+
+def vary_records(records: Any, calibration: Calibration, variations: Variations) -> None:
+    """Change the controller's records of varied robots: their delay, their friction, and the mass that it knows."""
+    true = records["body_mass_kg"]
+    known = true / variations.masses
+    if calibration.controller.weight == "robot":
+        records["weight_n"] *= known.sum(axis=1) / true.sum(axis=1)
+    else:
+        records["weight_n"] *= known[:, BODIES.index("base")] / true[:, BODIES.index("base")]
+    records["joint_damping_n_m_s_per_rad"] *= variations.damping[:, None]
+    records["delay_periods"] += np.round(variations.delays_s / calibration.simulation.period_s)
+
+
+def vary_fields(batch: Any, foot_geom: int, variations: Variations) -> None:
+    """Change the friction and the springs of a batch of simulations, after ``prepare`` has set them.
+
+    The springs are MuJoCo's ``solref`` with negative numbers, which are stiffness and damping times a constant.
+    """
+    batch.expand("dof_damping")[:, -2:] *= variations.damping[:, None]
+    batch.expand("dof_frictionloss")[:, -2:] *= variations.friction[:, None]
+    foot, stops = batch.expand("geom_solref")[:, foot_geom, 0], batch.expand("jnt_solref")[:, -2:, 0]
+    foot *= np.where(foot < 0.0, variations.foot_stiffness, 1.0)
+    stops *= np.where(stops < 0.0, variations.stop_stiffness[:, None], 1.0)

@@ -1,0 +1,185 @@
+"""Simulate trials of a study again under uncertainty, and store what that says of them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.measures import MEASURES
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.study.goals import LEAST_SAFETY
+from pareto_monoped.study.lock import locked
+from pareto_monoped.study.meta import strict_json
+from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.robust_rows import Stored, read_robustness
+from pareto_monoped.study.run import default_workers
+from pareto_monoped.study.simulator import stored_simulator
+from pareto_monoped.study.store import Store
+from pareto_monoped.uncertainty.ranges import Uncertainty
+from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, DEFAULT_SEED, Samples, sobol_samples, variations
+from pareto_monoped.uncertainty.statistics import Robustness, robustness
+
+LEAST_SAMPLES = 256
+"""Fewest samples of a design that are stored: a 5th percentile then rests on 13 of them."""
+MOST_FAILED = 0.05
+"""Greatest share of failed jumps of a design on the robust front. Our own choice, as the percentiles'."""
+_CHUNK = 4
+"""Designs that are simulated and stored together; an interrupt loses at most these."""
+
+
+def robust(
+    db: Path,
+    uncertainty: Uncertainty,
+    *,
+    trials: Sequence[int] | None = None,
+    samples: int = DEFAULT_SAMPLES,
+    seed: int = DEFAULT_SEED,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[int, Robustness]:
+    """Simulate trials under uncertainty and store their robustness; what is stored already is not simulated again.
+
+    All designs have the same samples, so that differences between them are of the designs. The same seed gives the
+    same numbers, whatever the number of workers.
+
+    Args:
+        db: the study's database.
+        uncertainty: the ranges.
+        trials: numbers of trials that jump; None: the front.
+        samples: per design, a power of two of at least ``LEAST_SAMPLES``.
+        seed: of the samples.
+        workers: threads, all cores if None.
+        progress: called with the number of designs done and of all after each stored chunk.
+
+    Raises:
+        InputError: too few samples, or ranges that the calibration cannot have.
+        SelectionError: a trial that is not there or did not jump, or an empty front.
+        StudyError: this code or machine computes other jumps than the stored ones.
+        DatabaseError: the study is damaged, or in use by another process.
+    """
+    if samples < LEAST_SAMPLES:
+        raise InputError(complaint("samples", samples, f"a power of two of at least {LEAST_SAMPLES}", "give more"))
+    drawn = sobol_samples(uncertainty, samples, seed)
+    with locked(db):
+        data = read_study(db)
+        rows = _chosen(data, trials)
+        settings = {"uncertainty": uncertainty.as_dict(), "samples": samples, "seed": seed}
+        known = {trial: stored.result for trial, stored in read_robustness(db).items() if stored.settings == settings}
+        fresh = rows[~rows["trial"].isin(known)]
+        done = len(rows) - len(fresh)
+        if len(fresh):
+            evaluator = stored_simulator(data, workers=workers or default_workers()).evaluator
+            with Store(db, data.study) as store:
+                for first in range(0, len(fresh), _CHUNK):
+                    chunk = fresh.iloc[first : first + _CHUNK]
+                    results = simulated(data, chunk, evaluator, drawn)
+                    text = strict_json(settings)
+                    store.set_robustness(
+                        [(trial, text, strict_json(result.as_dict())) for trial, result in results.items()]
+                    )
+                    known |= results
+                    done += len(chunk)
+                    if progress is not None:
+                        progress(done, len(rows))
+    return {int(trial): known[int(trial)] for trial in rows["trial"]}
+
+
+def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples: Samples) -> dict[int, Robustness]:
+    """The robustness of some trials by number.
+
+    Raises:
+        StudyError: a design without variation does not jump as it is stored.
+    """
+    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    motors = _motors(data, rows)
+    _refuse_other_jumps(data, rows, evaluator(designs, motors).height_m)
+    count = len(samples)
+    jumps = evaluator(
+        np.repeat(designs, count, axis=0),
+        np.repeat(motors, count),
+        variations=variations(samples, len(rows), data.calibration),
+    )
+    least = {name: data.study.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
+    return {
+        int(trial): robustness(jumps, np.arange(k * count, (k + 1) * count), least)
+        for k, trial in enumerate(rows["trial"])
+    }
+
+
+def _motors(data: StudyData, rows: pd.DataFrame) -> np.ndarray:
+    """Which of the study's motors each trial has, as the evaluator counts them."""
+    names = list(data.actuator_maps)
+    return np.array([names.index(str(name)) for name in rows["motor"]], dtype=np.intp)
+
+
+def _refuse_other_jumps(data: StudyData, rows: pd.DataFrame, height_m: np.ndarray) -> None:
+    stored = rows["height_m"].to_numpy(dtype=np.float64)
+    other = np.flatnonzero(height_m != stored)
+    if len(other):
+        k = other[0]
+        raise StudyError(
+            f"study database {str(data.db)!r}: trial {int(rows['trial'].iloc[k])} jumps {height_m[k]:.9g} m with this "
+            f"code and machine, {stored[k]:.9g} m are stored; use the version that made the study, or run it anew"
+        )
+
+
+def _chosen(data: StudyData, trials: Sequence[int] | None) -> pd.DataFrame:
+    if trials is None:
+        front = data.front()
+        if len(front) == 0:
+            raise SelectionError("front: has 0 designs, at least 1 is needed; run the study longer, or name trials")
+        return front
+    numbers = list(dict.fromkeys(trials))
+    known = data.trials.set_index("trial", drop=False)
+    for number in numbers:
+        if number not in known.index or known.loc[number, "status"] != "ok":
+            raise SelectionError(f"trial = {number}: must be a trial of the study that jumped; give another number")
+    return known.loc[numbers].reset_index(drop=True)
+
+
+def robust_front(data: StudyData, stored: Mapping[int, Stored]) -> pd.DataFrame:
+    """The front by what nineteen of twenty robots keep: of each measure the percentile that is worse.
+
+    Args:
+        data: the study.
+        stored: robustness of some of its trials.
+
+    Returns:
+        As ``StudyData.front``, with the 5th percentile of every measure that is to be maximised, and the 95th of every
+        one that is to be minimised; other measures have their means. Columns ``failed`` and ``overloaded`` are added.
+        Designs that fail more often than ``MOST_FAILED`` are left out.
+
+    Raises:
+        SelectionError: no trial has a robustness, or all fail too often.
+    """
+    if not stored:
+        raise SelectionError(f"study database {str(data.db)!r}: holds no robustness; simulate it with 'robust' first")
+    rows = data.trials[data.trials["trial"].isin(stored)].reset_index(drop=True)
+    results = [stored[int(trial)].result for trial in rows["trial"]]
+    columns: dict[str, Any] = {
+        "failed": [result.failed for result in results],
+        "overloaded": [result.overloaded for result in results],
+    }
+    for entry in MEASURES:
+        side = {"maximise": "p05", "minimise": "p95", None: "mean"}[entry.direction]
+        columns[entry.name] = [
+            getattr(result.measures[entry.name], side) if entry.name in result.measures else np.nan
+            for result in results
+        ]
+    rows = rows.assign(**columns)
+    objectives = data.study.objectives
+    mask = front_mask(
+        rows[list(objectives.names)].to_numpy(dtype=np.float64), objectives, rows["failed"] <= MOST_FAILED
+    )
+    if not mask.any():
+        raise SelectionError(
+            f"robust front: has 0 designs, because all {len(rows)} fail in more than {100 * MOST_FAILED:g} percent of "
+            "their jumps; simulate more trials with 'robust'"
+        )
+    return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)

@@ -1,0 +1,1 @@
+"""What is uncertain in a built robot, by how much, and what that does to its jump."""

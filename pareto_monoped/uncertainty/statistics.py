@@ -1,0 +1,88 @@
+"""What samples say of a design: mean, spread and percentiles of its measures, and how often it fails or overloads."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.jump.evaluate import Evaluations
+from pareto_monoped.measures import MEASURE_NAMES
+
+LOW_PERCENT, HIGH_PERCENT = 5.0, 95.0
+"""The percentiles that are kept: one design in twenty is worse. EN 1990 takes the same fractile for strengths."""
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """A measure over the samples that jumped, in its stored unit.
+
+    Attributes:
+        mean: of the samples.
+        deviation: their standard deviation.
+        p05, p95: the 5th and the 95th percentile.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    mean: Number
+    deviation: Number
+    p05: Number
+    p95: Number
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Robustness:
+    """One design under uncertainty.
+
+    Attributes:
+        samples: number of jumps.
+        failed: share of them that do not reach an apex.
+        overloaded: share of them that jump and exceed the load that some joint or part carries with its required
+            safety factor.
+        measures: the measures by name; those without a value in every successful jump are left out.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    samples: Annotated[int, Field(ge=1)]
+    failed: Share
+    overloaded: Share
+    measures: dict[str, Spread]
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON values."""
+        return asdict(self)
+
+
+def robustness(evaluations: Evaluations, rows: Sequence[int] | np.ndarray, least: Mapping[str, float]) -> Robustness:
+    """The robustness of one design.
+
+    Args:
+        evaluations: jumps of many samples.
+        rows: which of them are of this design, at least one.
+        least: measures of strength and what each must at least be.
+    """
+    chosen = np.asarray(rows, dtype=np.intp)
+    ok = evaluations.ok[chosen]
+    overloaded = np.zeros(len(chosen), dtype=bool)
+    for name, value in least.items():
+        with np.errstate(invalid="ignore"):
+            overloaded |= getattr(evaluations, name)[chosen] < value
+    measures = {}
+    for name in MEASURE_NAMES if ok.any() else ():
+        values = getattr(evaluations, name)[chosen][ok]
+        if np.isfinite(values).all():
+            low, high = np.percentile(values, (LOW_PERCENT, HIGH_PERCENT))
+            measures[name] = Spread(
+                mean=float(values.mean()), deviation=float(values.std()), p05=float(low), p95=float(high)
+            )
+    return Robustness(
+        samples=len(chosen),
+        failed=float(1.0 - ok.mean()),
+        overloaded=float((overloaded & ok).mean()),
+        measures=measures,
+    )

@@ -1,0 +1,139 @@
+"""Varied robots: neutral variations change no bit, and each variation is that of a robot or calibration made so."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import PAPER_CASES, PAPER_CONTROL, complete_control
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
+from pareto_monoped.jump.variations import Variations
+from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.robot.population import robot_arrays
+
+CALIBRATION = load_calibration("reference")
+DESIGNS = np.array([PAPER_CASES[name].design.as_array() for name in ("C", "A")])
+
+
+@pytest.fixture(scope="module")
+def evaluator():
+    return Evaluator(map_for("VT8020"), CALIBRATION)
+
+
+def neutral(n=2, **changes):
+    fields = {
+        "masses": np.ones((n, 3)),
+        "peak_torques": np.ones((n, 2)),
+        "no_load_speeds": np.ones(n),
+        "friction": np.ones(n),
+        "damping": np.ones(n),
+        "stop_stiffness": np.ones(n),
+        "foot_stiffness": np.ones(n),
+        "link_lengths_m": np.zeros((n, 2)),
+        "gains": np.ones((n, 3)),
+        "delays_s": np.zeros(n),
+    }
+    return Variations(**(fields | changes))
+
+
+def same(one, other, names=("height_m", "energy_j", "peak_foot_force_n", "stop_energy_j", "peak_chain_tension_n")):
+    for name in names:
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+
+
+def test_neutral_variations_change_no_bit(evaluator):
+    same(evaluator(DESIGNS, variations=neutral()), evaluator(DESIGNS), MEASURE_NAMES)
+
+
+def test_the_result_does_not_depend_on_batch_or_workers(evaluator):
+    generator = np.random.default_rng(1)
+    n = 12
+    varied = neutral(n, masses=generator.uniform(0.95, 1.05, (n, 3)), delays_s=0.001 * generator.integers(0, 4, n))
+    designs = np.repeat(DESIGNS[:1], n, axis=0)
+    together = Evaluator(evaluator.actuator_map, CALIBRATION, workers=2)(designs, variations=varied)
+    alone = evaluator(designs[7:8], variations=neutral(1, masses=varied.masses[7:8], delays_s=varied.delays_s[7:8]))
+    for name in MEASURE_NAMES:
+        np.testing.assert_array_equal(getattr(together, name)[7:8], getattr(alone, name))
+
+
+def as_calibrated(evaluator, **tables):
+    """The jumps under a calibration with other numbers."""
+    changed = replace(CALIBRATION, **{name: replace(getattr(CALIBRATION, name), **new) for name, new in tables.items()})
+    return Evaluator(evaluator.actuator_map, changed)(DESIGNS)
+
+
+@pytest.mark.parametrize(
+    ("change", "tables", "rtol"),
+    [
+        ({"friction": np.full(2, 1.5)}, {"joints": {"friction_n_m": 1.5 * CALIBRATION.joints.friction_n_m}}, 1e-9),
+        (
+            {"damping": np.full(2, 0.5)},
+            {"joints": {"damping_n_m_s_per_rad": 0.5 * CALIBRATION.joints.damping_n_m_s_per_rad}},
+            1e-9,
+        ),
+        (
+            {"foot_stiffness": np.full(2, 1.25)},
+            {"contact": {"stiffness_n_per_m": 1.25 * CALIBRATION.contact.stiffness_n_per_m}},
+            # A varied robot starts in the pose of the nominal foot, which is compressed by some 0.05 mm more.
+            1e-4,
+        ),
+        ({"delays_s": np.full(2, 0.003)}, {"simulation": {"delay_s": 0.003}}, 1e-9),
+        ({"delays_s": np.full(2, 0.0014)}, {"simulation": {"delay_s": 0.001}}, 1e-9),
+        ({"peak_torques": np.full((2, 2), 0.9)}, {"drive": {"peak_torque_scale": 0.9}}, 1e-9),
+    ],
+    ids=["friction", "damping", "foot", "delay", "part of a period", "torque"],
+)
+def test_what_a_calibration_can_say_is_as_if_it_said_so(evaluator, change, tables, rtol):
+    varied, calibrated = evaluator(DESIGNS, variations=neutral(**change)), as_calibrated(evaluator, **tables)
+    np.testing.assert_allclose(varied.height_m, calibrated.height_m, rtol=rtol)
+    np.testing.assert_allclose(varied.energy_j, calibrated.energy_j, rtol=10.0 * rtol)
+    assert (varied.height_m != evaluator(DESIGNS).height_m).any()
+
+
+def test_gains_and_lengths_are_those_of_another_design_with_the_same_masses(evaluator):
+    robots = robot_arrays(DESIGNS, evaluator.actuator_map)
+    longer = replace(robots, thigh_length_m=robots.thigh_length_m + 5e-4, shank_length_m=robots.shank_length_m - 3e-4)
+    control = complete_control(DESIGNS[:, 4:7] * [1.05, 0.95, 1.02])
+    assert len(PAPER_CONTROL) == 3
+    varied = evaluator(
+        DESIGNS,
+        variations=neutral(gains=np.tile([1.05, 0.95, 1.02], (2, 1)), link_lengths_m=np.tile([5e-4, -3e-4], (2, 1))),
+    )
+    same(varied, evaluate_robots(longer, control, CALIBRATION))
+
+
+def test_a_lower_voltage_is_a_lower_no_load_speed(evaluator):
+    robots = robot_arrays(DESIGNS, evaluator.actuator_map)
+    slower = replace(robots, no_load_speed_rad_per_s=0.9 * robots.no_load_speed_rad_per_s)
+    varied = evaluator(DESIGNS, variations=neutral(no_load_speeds=np.full(2, 0.9)))
+    same(varied, evaluate_robots(slower, complete_control(DESIGNS[:, 4:7]), CALIBRATION))
+
+
+def test_the_controller_does_not_know_the_true_mass(evaluator):
+    """The jump of a heavier robot whose controller knows its mass is another one."""
+    robots = robot_arrays(DESIGNS, evaluator.actuator_map)
+    heavier = replace(
+        robots, body_mass_kg=1.05 * robots.body_mass_kg, body_inertia_kg_m2=1.05 * robots.body_inertia_kg_m2
+    )
+    knowing = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), CALIBRATION)
+    varied = evaluator(DESIGNS, variations=neutral(masses=np.full((2, 3), 1.05)))
+    np.testing.assert_allclose(varied.mass_kg, knowing.mass_kg)
+    # Its m g is too small, so that it pushes less. With a feed-forward of 1 / 1.05 the other one does the same.
+    less = replace(
+        CALIBRATION,
+        controller=replace(
+            CALIBRATION.controller, gravity_feed_forward=CALIBRATION.controller.gravity_feed_forward / 1.05
+        ),
+    )
+    unknowing = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), less)
+    np.testing.assert_allclose(varied.height_m, unknowing.height_m, rtol=1e-9)
+    assert (np.abs(varied.height_m - knowing.height_m) > 1e-6).any()
+
+
+def test_stiffer_stops_take_the_same_jump_up_to_the_stop(evaluator):
+    varied, plain = evaluator(DESIGNS, variations=neutral(stop_stiffness=np.full(2, 1.3))), evaluator(DESIGNS)
+    assert (varied.peak_stop_torque_n_m > plain.peak_stop_torque_n_m).any()
+    assert (varied.stop_compression_knee < plain.stop_compression_knee).any()
+    np.testing.assert_array_equal(varied.peak_torque_hip_n_m, plain.peak_torque_hip_n_m)
