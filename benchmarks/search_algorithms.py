@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from search_reference import FOLDER, read
+from search_reference import FOLDER, corner_of, read
 
 from pareto_monoped.jump.calibration import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
@@ -100,7 +100,7 @@ class Archive:
 def search(
     simulator: Simulator, studies: list[Study], evaluations: int, marks: tuple[int, ...]
 ) -> tuple[list[Archive], float]:
-    """Searches that advance together; their archives, and the seconds of the algorithm per 1,000 jumps."""
+    """Searches that advance together; their archives, and the algorithm's processor time in seconds per 1,000 jumps."""
     coordinates = simulator.coordinates(studies[0])
     corner, constraints, objectives = studies[0].reference_point, studies[0].constraints, studies[0].objectives
     running: list[tuple[Algorithm, Archive]] = [
@@ -109,9 +109,9 @@ def search(
     archives = [archive for _, archive in running]
     thinking = 0.0
     while running:
-        began = time.perf_counter()
+        began = time.process_time()
         asked = [(run, run[0].ask()) for run in running if run[1].evaluations < evaluations]
-        thinking += time.perf_counter() - began
+        thinking += time.process_time() - began
         alive = [(run, proposal) for run, proposal in asked if proposal is not None]
         if not alive:
             break
@@ -122,9 +122,9 @@ def search(
         for (algorithm, archive), proposal in alive:
             rows = slice(first, first + len(proposal.values))
             first = rows.stop
-            began = time.perf_counter()
+            began = time.process_time()
             algorithm.tell(all_scores.of(rows))
-            thinking += time.perf_counter() - began
+            thinking += time.process_time() - began
             archive.add(all_scores.values[rows], judgement.state[rows] == "feasible")
         running = [run for run, _ in alive]
     total = sum(archive.evaluations for archive in archives)
@@ -193,9 +193,11 @@ def table(results: dict[str, Any], best: NDArray[np.float64], corner: ReferenceP
         + " | epsilon % | IGD+ % | s / 1,000 |",
         "|---|" + "---|" * (len(MARKS) + 3),
     ]
-    rows = sorted(
-        results["rows"].items(), key=lambda item: -max(statistics.median(v) for v in item[1]["volumes"].values())
-    )
+
+    def best_median(item: tuple[str, dict[str, Any]]) -> float:
+        return max((statistics.median(volumes) for volumes in item[1]["volumes"].values()), default=0.0)
+
+    rows = sorted(results["rows"].items(), key=best_median, reverse=True)
     for name, row in rows:
         fronts = [np.array(front) for front in row["fronts"]]
         cells = [cell(row["volumes"].get(str(mark)), 100.0 / whole) for mark in MARKS]
@@ -239,6 +241,9 @@ def main() -> None:
         "gear_list": True,
         "objectives": arguments.objectives.split(","),
     }
+    default_problem = arguments.calibration == "reference" and arguments.objectives == "height_m,energy_j"
+    if default_problem:
+        problem["reference_point"] = corner_of(arguments.motor)
     first = study(problem, {"name": "random"}, 1, 1)
     simulator = load_simulator(first, workers=default_workers())
     words = [Path(arguments.motor).stem, Path(arguments.calibration).stem, *problem["objectives"]]
@@ -251,7 +256,6 @@ def main() -> None:
     if results.get("probe") != simulator.probe():
         results = {"probe": simulator.probe(), "machine": platform.machine(), "rows": {}}
     stored, points = read(FOLDER / f"{Path(arguments.motor).stem}.csv", simulator.probe(), first.free)
-    default_problem = arguments.calibration == "reference" and arguments.objectives == "height_m,energy_j"
     if default_problem and stored["evaluations"]:
         results["reference"] = {"evaluations": stored["evaluations"], "front": points[:, -2:].tolist()}
     if "reference" not in results:

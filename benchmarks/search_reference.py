@@ -3,6 +3,8 @@
     python benchmarks/search_reference.py                             # a short look: 2 searches of 400 jumps
     python benchmarks/search_reference.py --full                      # VT8020: 25 searches of 8,000 jumps
     python benchmarks/search_reference.py --full --motor U8 --searches 6
+    python benchmarks/search_reference.py --full --first 14 --folder build/second   # 25 more searches at the same time
+    python benchmarks/search_reference.py --full --take build/second                # and their front taken in
 
 Each search has its own seed, from 1001 on, which no other benchmark uses. Its front is added to
 ``benchmarks/search_reference/MOTOR.csv`` as soon as it ends. The script can therefore be stopped at any time; started
@@ -26,13 +28,14 @@ from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.coordinates import coordinates_of
-from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.definition import Study, load_study, study_from_dict
 from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "search_reference"
+STUDIES = HERE.parent / "studies"
 FIRST_SEED = 1001
 MOST_KEPT = 1500
 """Designs of a merged front that are stored: the hypervolume of 1,500 is 0.01 percent less than of 10,000."""
@@ -40,9 +43,16 @@ MOST_KEPT = 1500
 Floats = NDArray[np.float64]
 
 
+def corner_of(motor: str) -> dict[str, float]:
+    """Reference point of a motor's studies: what the file of its Case C in ``studies`` has, or the default one."""
+    for path in (STUDIES / "case_c.toml", *sorted(STUDIES.glob("motor_*.toml"))):
+        if (study := load_study(path)).motor == motor:
+            return study.reference_point.as_dict()
+    return {}
+
+
 def study_of(motor: str, seed: int, evaluations: int) -> Study:
     """Case C of a motor under ``reference``, as in studies/motor_*.toml."""
-    corner = {"height_m": 0.55, "energy_j": 200.0 if motor in ("U12", "MN8014") else 100.0}
     values: dict[str, Any] = {
         "name": "r",
         "case": "C",
@@ -50,7 +60,7 @@ def study_of(motor: str, seed: int, evaluations: int) -> Study:
         "calibration": "reference",
         "rules": rules_for("reference"),
     }
-    values |= {"strength": strength_for("reference"), "gear_list": True, "reference_point": corner}
+    values |= {"strength": strength_for("reference"), "gear_list": True, "reference_point": corner_of(motor)}
     values |= {"evaluations": evaluations, "seed": seed, "algorithm": {"name": "surrogate"}}
     return study_from_dict(values, source="benchmark")
 
@@ -120,6 +130,8 @@ def main() -> None:
     parser.add_argument("--evaluations", type=int, help="jumps per search")
     parser.add_argument("--workers", type=int, default=1, help="threads that simulate")
     parser.add_argument("--folder", type=Path, help="where the front is kept")
+    parser.add_argument("--first", type=int, default=1, help="number of the first search, where others run elsewhere")
+    parser.add_argument("--take", type=Path, nargs="*", default=[], help="folders whose fronts are taken in")
     arguments = parser.parse_args()
     searches, evaluations, folder = (25, 8_000, FOLDER) if arguments.full else (2, 400, HERE.parent / "build")
     searches, evaluations = arguments.searches or searches, arguments.evaluations or evaluations
@@ -132,10 +144,14 @@ def main() -> None:
     about, rows = read(path, simulator.probe(), names)
     coordinates = coordinates_of(first, simulator.evaluator.actuator_map)
     free = [name in first.free for name in NAMES]
+    for folder in arguments.take:
+        more, others = read(folder / path.name, simulator.probe(), names)
+        about |= {key: about[key] + more[key] for key in ("seeds", "evaluations", "refinements", "seconds")}
+        rows = np.vstack((rows, others))
     while len(about["seeds"]) < searches or about["refinements"] < arguments.refine:
         began, refining = time.perf_counter(), len(about["seeds"]) >= searches
         count = about["refinements"] if refining else len(about["seeds"])
-        seed = FIRST_SEED + count + (1000 if refining else 0)
+        seed = FIRST_SEED - 1 + arguments.first + count + (1000 if refining else 0)
         designs = np.tile(first.lower, (len(rows), 1))
         designs[:, free] = rows[:, :-2]
         known = coordinates.values(designs)[: MOST_KEPT if refining else 0]

@@ -43,6 +43,17 @@ class Standing:
         """Costs as shares of the front's extent, shape (n, m)."""
         return (costs - self.low) / self.extent
 
+    def away(self, costs: Floats) -> Floats:
+        """Squared distance of n designs from each of k posts, as shares of the front's extent, (n, m) -> (k, n)."""
+        points, posts = self.scaled(costs), self.scaled(self.costs[self.front[self.posts]])
+        return np.stack([np.square(points - post).sum(axis=1) for post in posts])
+
+    def parts(self, costs: Floats) -> NDArray[np.intp]:
+        """Which of the posts is nearest each of n designs, shape (n, m) -> (n,); 0 without a front."""
+        if len(self.posts) == 0:
+            return np.zeros(len(costs), dtype=np.intp)
+        return np.asarray(self.away(costs).argmin(axis=0))
+
 
 class Archive:
     """All designs that a search has simulated."""

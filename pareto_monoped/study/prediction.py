@@ -3,6 +3,7 @@
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from pareto_monoped.study.archive import Archive, Standing
@@ -20,9 +21,15 @@ _LEAST_WEIGHT = 1e-3
 _WORST_SHARE = 1.0
 """Constraints count up to this share of their limit, so that safety factors of 1,000 do not rule the fit."""
 
-_CORRECTING = 600
-"""Points whose errors are interpolated. Our own choice: with 600 the median error of a prediction is a third of the
-polynomial's, and the equations take a quarter of a millisecond per design."""
+_SPREAD_SHARE = 1.0 / 3.0
+"""Share of these points that is spread over all designs instead of being nearest the front. Our own choice: with none,
+a long front leaves no point behind it, and the polynomial swings there."""
+
+_CORRECTING = 150
+"""Points of each part of the front whose errors are interpolated. Our own choice: with as many, errors above half a
+percent of the front's extent are half as frequent as with 600 for the whole front, at the same time per design."""
+_CORRECTED = 0.1
+"""Distance behind the front, as a share of its extent, up to which a point's error is interpolated first."""
 _REACH = 1.0
 """Distance, in features from -1 to 1, over which errors are alike. 0.3 and 0.6 were no better."""
 _NUGGET = 1e-4
@@ -32,9 +39,10 @@ _NUGGET = 1e-4
 class Prediction:
     """Expected costs and missed constraints of designs, from all that have been simulated.
 
-    A weighted cubic follows the course of the measures. Its errors at the simulated designs nearest the front are
-    interpolated by simple kriging with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams 2006, equations 2.25
-    and 4.17). Close to simulated designs, a prediction is therefore as good as exact.
+    A weighted cubic follows the course of the measures. In each part of the front, its errors at the latest designs
+    there are interpolated by simple kriging with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams 2006,
+    equations 2.25 and 4.17). Close to simulated designs, a prediction is therefore as good as exact. The latest designs
+    tell most: a promise that was not kept is not made again.
     """
 
     def __init__(self, archive: Archive, standing: Standing, features: Features) -> None:
@@ -43,7 +51,7 @@ class Prediction:
         weights = np.exp(-standing.behind / _NEARNESS) + _LEAST_WEIGHT
         missed = archive.constraints
         # In the order of the trials, whatever the weights: a sum in another order has other last digits.
-        rows = np.sort(standing.order[:_TRAINING])
+        rows = np.sort(_training(standing.order))
         missed = np.clip(missed[:, (missed[rows] > 0.0).any(axis=0)], -_WORST_SHARE, _WORST_SHARE)
         self._targets = np.hstack((standing.costs, missed))
         self._mean = self._targets[rows].mean(axis=0)
@@ -51,16 +59,22 @@ class Prediction:
         self._coefficients = fitted(
             features.terms(archive.values[rows]), self._targets[rows] - self._mean, weights[rows]
         )
-        self._near = np.sort(standing.order[:_CORRECTING])
+        self._standing = standing
+        self._shares: dict[int, tuple[Floats, Floats]] = {}
 
     def rough(self, values: Floats) -> tuple[Floats, Floats]:
         """Costs, shape (n, m), as ``Standing`` has them, and sum of missed constraints, shape (n,), by the cubic."""
         return self._split(self._cubic(values))
 
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
-        """The same with the cubic's errors corrected."""
-        correction = _kernel(self._features.scaled(values), self._points) @ self._shares
-        return self._split(self._cubic(values) + correction)
+        """The same with the cubic's errors corrected, in the part of the front that the cubic sees a design in."""
+        predicted, points = self._cubic(values), self._features.scaled(values)
+        parts = self._standing.parts(predicted[:, : self._objectives])
+        for part in np.unique(parts).tolist():
+            rows = np.flatnonzero(parts == part)
+            known, shares = self._correction(part)
+            predicted[rows] += _kernel(points[rows], known) @ shares
+        return self._split(predicted)
 
     def _cubic(self, values: Floats) -> Floats:
         return self._features.terms(values) @ self._coefficients + self._mean
@@ -69,17 +83,45 @@ class Prediction:
         costs, missed = predicted[:, : self._objectives], predicted[:, self._objectives :]
         return costs, np.maximum(missed, 0.0).sum(axis=1)
 
-    @cached_property
-    def _points(self) -> Floats:
-        return self._features.scaled(self._values[self._near])
+    def _correction(self, part: int) -> tuple[Floats, Floats]:
+        """Points of a part of the front, shape (p, f), and how much the error of each counts, shape (p, targets)."""
+        if part not in self._shares:
+            rows = np.sort(self._latest(part))
+            values = self._values[rows]
+            points, errors = self._features.scaled(values), self._targets[rows] - self._cubic(values)
+            matrix = _kernel(points, points)
+            matrix[np.diag_indices_from(matrix)] += _NUGGET
+            self._shares[part] = points, np.asarray(cho_solve(cho_factor(matrix, lower=True), errors))
+        return self._shares[part]
+
+    def _latest(self, part: int) -> NDArray[np.intp]:
+        """Rows of the latest designs in a part of the front and close behind it; the nearest others if too few."""
+        standing, known = self._standing, self._known
+        if len(standing.posts) == 0:
+            return standing.order[:_CORRECTING]
+        near = (self._away.argmin(axis=0) == part) & (standing.behind[known] < _CORRECTED)
+        latest, others = known[near][-_CORRECTING:], np.flatnonzero(~near)
+        nearest = others[np.argsort(self._away[part, others], kind="stable")]
+        return np.concatenate((latest, known[nearest[: _CORRECTING - len(latest)]]))
 
     @cached_property
-    def _shares(self) -> Floats:
-        """How much the error of each point counts, shape (points, targets)."""
-        errors = self._targets[self._near] - self._cubic(self._values[self._near])
-        matrix = _kernel(self._points, self._points)
-        matrix[np.diag_indices_from(matrix)] += _NUGGET
-        return np.asarray(cho_solve(cho_factor(matrix, lower=True), errors))
+    def _known(self) -> NDArray[np.intp]:
+        """Rows of the designs that jumped, in the order of the trials."""
+        return np.sort(self._standing.order)
+
+    @cached_property
+    def _away(self) -> Floats:
+        """Squared distance of these designs from each post, shape (posts, designs)."""
+        return self._standing.away(self._standing.costs[self._known])
+
+
+def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Rows that the polynomial is fitted to: the nearest the front, and others spread evenly over all behind them."""
+    if len(order) <= _TRAINING:
+        return order
+    spread_out = round(_SPREAD_SHARE * _TRAINING)
+    nearest, others = np.split(order, [_TRAINING - spread_out])
+    return np.concatenate((nearest, others[np.linspace(0, len(others) - 1, spread_out).astype(np.intp)]))
 
 
 def _kernel(points: Floats, others: Floats) -> Floats:

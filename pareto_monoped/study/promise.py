@@ -31,12 +31,10 @@ def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.i
     if len(standing.front) == 0:
         return np.argsort(violation, kind="stable")
     gain = _gain(costs, violation, standing, _PENALTY)
-    posts = standing.scaled(standing.costs[standing.front[standing.posts]])
-    points = standing.scaled(costs)
-    part = np.stack([np.square(points - post).sum(axis=1) for post in posts]).argmin(axis=0)
+    part = standing.parts(costs)
     order = np.argsort(-gain, kind="stable")
     place = np.empty(len(costs), dtype=np.intp)
-    for k in range(len(posts)):
+    for k in range(len(standing.posts)):
         members = order[part[order] == k]
         place[members] = np.arange(len(members))
     return np.lexsort((-gain, place))

@@ -107,6 +107,31 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
     return _other_choices(space, start, near, generator) if space.motors else near
 
 
+def swaps(space: Space, values: Floats) -> Floats:
+    """Every other choice of one gearbox or of the motor for each of n designs, all else equal, shape (k, d).
+
+    Args:
+        space: the space; without choices, there are no swaps.
+        values: shape (n, d).
+    """
+    found = [values[:0]]
+    for column, name in enumerate(space.names):
+        if name in space.gears:
+            choices = [np.arange(len(space.gears[name]), dtype=np.float64)] * len(values)
+        elif name in space.listed:
+            last = space.last_gears(name)[space.motor_of(values)]
+            choices = [np.arange(most + 1) / max(most, 1) for most in last.tolist()]
+        elif name == MOTOR:
+            choices = [np.arange(len(space.motors), dtype=np.float64)] * len(values)
+        else:
+            continue
+        for design, others in zip(values, choices, strict=True):
+            swapped = np.repeat(design[None], len(others), axis=0)
+            swapped[:, column] = others
+            found.append(swapped)
+    return space.snap(np.vstack(found))
+
+
 def _other_choices(space: Space, start: Floats, near: Floats, generator: np.random.Generator) -> Floats:
     """``near`` with gearboxes and motors chosen from ``start``, where each motor has its own lists, shape (n, d)."""
     dimensions = len(space.names)

@@ -322,9 +322,10 @@ def test_the_drawn_links_hang_together_and_the_foot_is_where_it_was_simulated(ta
         assert down(base, 0.0) == pytest.approx(
             [np.interp(time, j["time_s"], j[name]) for name in ("base_x_m", "base_z_m")], abs=1e-3
         )
-        assert down(thigh, 0.0) == pytest.approx(down(base, 0.0))
-        assert down(thigh, thigh_m) == pytest.approx(down(pin, 0.0))
-        assert down(shank, 0.0) == pytest.approx(down(pin, 0.0))
+        # The browser keeps coordinates in single precision, 1e-7 of a metre; x may be near 0.
+        assert down(thigh, 0.0) == pytest.approx(down(base, 0.0), abs=1e-6)
+        assert down(thigh, thigh_m) == pytest.approx(down(pin, 0.0), abs=1e-6)
+        assert down(shank, 0.0) == pytest.approx(down(pin, 0.0), abs=1e-6)
         foot = down(shank, shank_m)
         assert foot[1] == pytest.approx(np.interp(time, j["time_s"], j["foot_z_m"]), abs=2e-3)
         if time < jump.lift_off_s:

@@ -8,12 +8,12 @@ import pytest
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, shortfall
-from pareto_monoped.study.prediction import Prediction
+from pareto_monoped.study.prediction import Prediction, _training
 from pareto_monoped.study.promise import unlike
-from pareto_monoped.study.protocol import Gear, Scores, Space
+from pareto_monoped.study.protocol import MOTOR, Gear, MotorKind, Scores, Space
 from pareto_monoped.study.response_surface import features_of, fitted
 from pareto_monoped.study.surrogate import SurrogateSearch
-from pareto_monoped.study.variation import offspring, small_steps, spread
+from pareto_monoped.study.variation import offspring, small_steps, spread, swaps
 
 GEARS = tuple(Gear(ratio=4.0 + 0.3 * k, mass_kg=0.5 + 0.02 * (k - 4) ** 2) for k in range(12))
 SPACE = Space(
@@ -174,23 +174,84 @@ def test_small_steps_stay_near_within_the_space_and_reach_its_bounds():
     assert (steps[2000:, 2] == 200.0).mean() > 0.1
 
 
-def test_errors_of_the_cubic_are_interpolated_by_kriging():
+def alike(a, b):
+    r = np.sqrt(3.0 * sum((x - y) ** 2 for x, y in zip(a, b, strict=True)))
+    return (1.0 + r) * np.exp(-r)
+
+
+def part_of(costs, standing):
+    """Place of the post nearest to a design, one after the other."""
+    posts = [standing.scaled(standing.costs[row]) for row in standing.front[standing.posts]]
+    return int(np.argmin([sum((standing.scaled(costs) - post) ** 2) for post in posts]))
+
+
+def test_errors_of_the_cubic_are_interpolated_by_kriging_in_each_part_of_the_front(monkeypatch):
     """The fine prediction is the rough one plus simple kriging of its errors, written out point by point."""
-    archive = archive_of(80)
+    monkeypatch.setattr("pareto_monoped.study.prediction._CORRECTING", 20)
+    archive = archive_of(900)
     standing, features = archive.standing(), features_of(SPACE)
     prediction = Prediction(archive, standing, features)
-    new = spread(SPACE, 10, np.random.default_rng(10))
-    points, wanted = features.scaled(archive.values), features.scaled(new)
+    known, errors = features.scaled(archive.values), standing.costs - prediction.rough(archive.values)[0]
+    parts = [part_of(costs, standing) for costs in standing.costs]
+    full = set()
+    for new in spread(SPACE, 10, np.random.default_rng(10)):
+        rough, fine = prediction.rough(new[None])[0][0], prediction.fine(new[None])[0][0]
+        part = part_of(rough, standing)
+        near = [row for row in range(len(parts)) if parts[row] == part and standing.behind[row] < 0.1]
+        post = standing.scaled(standing.costs[standing.front[standing.posts[part]]])
+        others = [row for row in range(len(parts)) if row not in near]
+        others.sort(key=lambda row: sum((standing.scaled(standing.costs[row]) - post) ** 2))
+        chosen = near[-20:] + others[: max(0, 20 - len(near))]
+        full.add(len(near) >= 20)
+        points, wanted = known[chosen], features.scaled(new[None])[0]
+        matrix = [[alike(a, b) + (1e-4 if i == j else 0.0) for j, b in enumerate(points)] for i, a in enumerate(points)]
+        shares = np.linalg.inv(np.array(matrix)) @ errors[chosen]
+        expected = rough + np.array([alike(wanted, b) for b in points]) @ shares
+        assert fine == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert full == {False, True}
 
-    def alike(a, b):
-        r = np.sqrt(3.0 * sum((x - y) ** 2 for x, y in zip(a, b, strict=True)))
-        return (1.0 + r) * np.exp(-r)
 
-    matrix = [[alike(a, b) + (1e-4 if i == j else 0.0) for j, b in enumerate(points)] for i, a in enumerate(points)]
-    errors = standing.costs - prediction.rough(archive.values)[0]
-    shares = np.linalg.inv(np.array(matrix)) @ errors
-    expected = prediction.rough(new)[0] + np.array([[alike(a, b) for b in points] for a in wanted]) @ shares
-    assert prediction.fine(new)[0] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+def test_a_long_front_leaves_points_behind_it_in_the_fit():
+    order = np.random.default_rng(4).permutation(5000)
+    rows = _training(order)
+    assert len(rows) == len(set(rows.tolist())) == 1700
+    assert rows[:1133].tolist() == order[:1133].tolist()
+    behind = [order.tolist().index(row) for row in rows[1133:]]
+    assert (behind[0], behind[-1]) == (1133, 4999)
+    assert max(np.diff(behind)) - min(np.diff(behind)) <= 1
+    assert _training(order[:1700]).tolist() == order[:1700].tolist()
+
+
+def test_swaps_try_every_other_gearbox_and_nothing_else():
+    designs = spread(SPACE, 3, np.random.default_rng(13))
+    found = swaps(SPACE, designs)
+    assert found.shape == (36, 3)
+    for design, rows in zip(designs, np.split(found, 3), strict=True):
+        assert rows[:, 1].tolist() == list(range(12))
+        assert (rows[:, [0, 2]] == design[[0, 2]]).all()
+    assert swaps(replace(SPACE, gears={}), designs).shape == (0, 3)
+
+
+def test_with_several_motors_swaps_try_every_gearbox_of_the_motor_and_every_motor():
+    motors = tuple(
+        MotorKind(name=name, peak_torque_n_m=torque, no_load_speed_rad_per_s=40.0, gears={"knee_ratio": GEARS[:count]})
+        for name, torque, count in (("A", 10.0, 4), ("B", 20.0, 6))
+    )
+    space = replace(
+        SPACE,
+        names=(*SPACE.names, MOTOR),
+        lower=np.array([0.3, 0.0, 5.0, 0.0]),
+        upper=np.array([0.5, 1.0, 200.0, 1.0]),
+        gears={},
+        motors=motors,
+    )
+    found = swaps(space, np.array([[0.4, 0.2, 50.0, 1.0]]))
+    assert found[:, 0].tolist() == [0.4] * 8
+    gears = sorted(
+        {(int(space.motor_of(row[None])[0]), int(space.gear_of("knee_ratio", row[None])[0])) for row in found}
+    )
+    # The second of six gearboxes has a share of 0.2; with the other motor, of four, that is the first.
+    assert gears == [(0, 0), *((1, k) for k in range(6))]
 
 
 def test_near_simulated_designs_the_prediction_is_many_times_as_good_as_the_cubic():
