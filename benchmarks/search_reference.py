@@ -14,6 +14,7 @@ of from designs spread over the space.
 """
 
 import argparse
+import itertools
 import json
 import time
 from pathlib import Path
@@ -146,12 +147,13 @@ def main() -> None:
     free = [name in first.free for name in NAMES]
     for folder in arguments.take:
         more, others = read(folder / path.name, simulator.probe(), names)
-        about |= {key: about[key] + more[key] for key in ("seeds", "evaluations", "refinements", "seconds")}
-        rows = np.vstack((rows, others))
+        if not set(more["seeds"]) <= set(about["seeds"]):
+            about |= {key: about[key] + more[key] for key in ("seeds", "evaluations", "refinements", "seconds")}
+            rows = np.vstack((rows, others))
     while len(about["seeds"]) < searches or about["refinements"] < arguments.refine:
         began, refining = time.perf_counter(), len(about["seeds"]) >= searches
-        count = about["refinements"] if refining else len(about["seeds"])
-        seed = FIRST_SEED - 1 + arguments.first + count + (1000 if refining else 0)
+        unused = (k for k in itertools.count(FIRST_SEED - 1 + arguments.first) if k not in about["seeds"])
+        seed = FIRST_SEED + 1000 + about["refinements"] if refining else next(unused)
         designs = np.tile(first.lower, (len(rows), 1))
         designs[:, free] = rows[:, :-2]
         known = coordinates.values(designs)[: MOST_KEPT if refining else 0]

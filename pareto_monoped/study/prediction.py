@@ -99,8 +99,11 @@ class Prediction:
         standing, known = self._standing, self._known
         if len(standing.posts) == 0:
             return standing.order[:_CORRECTING]
-        near = (self._away.argmin(axis=0) == part) & (standing.behind[known] < _CORRECTED)
-        latest, others = known[near][-_CORRECTING:], np.flatnonzero(~near)
+        near = self._near == part
+        latest = known[near][-_CORRECTING:]
+        if len(latest) == _CORRECTING:
+            return latest
+        others = np.flatnonzero(~near)
         nearest = others[np.argsort(self._away[part, others], kind="stable")]
         return np.concatenate((latest, known[nearest[: _CORRECTING - len(latest)]]))
 
@@ -113,6 +116,11 @@ class Prediction:
     def _away(self) -> Floats:
         """Squared distance of these designs from each post, shape (posts, designs)."""
         return self._standing.away(self._standing.costs[self._known])
+
+    @cached_property
+    def _near(self) -> NDArray[np.intp]:
+        """Part of the front that each of these designs is in or close behind; -1 if it is far behind."""
+        return np.where(self._standing.behind[self._known] < _CORRECTED, self._away.argmin(axis=0), -1)
 
 
 def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
