@@ -1,4 +1,7 @@
-"""Write files so that they are complete or absent: first beside the target, then renamed."""
+"""Write files so that they are complete or absent: first beside the target, then renamed.
+
+No output replaces a study, and none replaces a file of another kind unless it is told to.
+"""
 
 import os
 import tempfile
@@ -8,16 +11,24 @@ from pathlib import Path
 
 from pareto_monoped.errors import OutputError
 
+_DATABASE = b"SQLite format 3\x00"
+_BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
+
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, which replaces ``path`` if the block succeeds and is deleted if not.
 
     The temporary file keeps the suffix of ``path``, for writers that choose the format by it.
 
+    Args:
+        path: the file to write.
+        force: whether it may replace a file of another kind.
+
     Raises:
-        OutputError: the folder is missing or cannot be written to.
+        OutputError: the folder is missing or cannot be written to, or ``path`` is a database or a file of another kind.
     """
+    refuse_database(path)
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
     except OSError as error:
@@ -26,6 +37,10 @@ def replacing(path: Path) -> Iterator[Path]:
     temporary = Path(name)
     try:
         yield temporary
+        if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):
+            raise OutputError(
+                f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or --force"
+            )
         # mkstemp makes private files, but results should have the permissions of any other file of the user.
         temporary.chmod(0o666 & ~current_umask())
         try:
@@ -34,6 +49,47 @@ def replacing(path: Path) -> Iterator[Path]:
             raise unwritable(path, error, "give the name of a file") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def refuse_database(path: Path) -> None:
+    """Refuse to write over a study, any other database, or a file that belongs to one.
+
+    Raises:
+        OutputError: it is one.
+    """
+    beside = next((end for end in _BESIDE_A_DATABASE if path.name.endswith(end)), None)
+    database = path if beside is None else path.with_name(path.name.removesuffix(beside))
+    if _beginning(database).startswith(_DATABASE):
+        what = "is a database" if beside is None else f"belongs to the database {str(database)!r}"
+        raise OutputError(f"output {str(path)!r}: {what}, which no output replaces; give another name")
+
+
+def _beginning(path: Path) -> bytes:
+    try:
+        if not path.is_file():  # reading a pipe would wait, or take what others should read
+            return b""
+        with path.open("rb") as stream:
+            return stream.read(4096)
+    except OSError:
+        return b""
+
+
+def _kind(path: Path) -> tuple[bytes, ...]:
+    """How files of this kind begin; empty for an empty file.
+
+    Of pictures their magic number, of tables the name of the first column, of other text the beginnings of its lines.
+    """
+    content = _beginning(path)
+    if content.startswith(b"\x89PNG"):
+        return (content[:8],)
+    lines = content.splitlines()
+    if lines and not content.startswith(b"<"):
+        return (lines[0].split(b",")[0],)
+    return tuple(line.strip()[:_TOLD] for line in lines[:_LINES])
+
+
+_LINES, _TOLD = 5, 24
+"""Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
 
 
 def unwritable(path: Path, error: OSError, cure: str) -> OutputError:
@@ -48,13 +104,13 @@ def current_umask() -> int:
     return umask
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write ``text`` as UTF-8 to ``path``, completely or not at all."""
-    with replacing(path) as temporary:
+def write_text(path: Path, text: str, *, force: bool = False) -> None:
+    """Write ``text`` as UTF-8 to ``path``, completely or not at all; see ``replacing``."""
+    with replacing(path, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
-def write_bytes(path: Path, data: bytes) -> None:
-    """Write ``data`` to ``path``, completely or not at all."""
-    with replacing(path) as temporary:
+def write_bytes(path: Path, data: bytes, *, force: bool = False) -> None:
+    """Write ``data`` to ``path``, completely or not at all; see ``replacing``."""
+    with replacing(path, force=force) as temporary:
         temporary.write_bytes(data)

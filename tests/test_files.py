@@ -4,6 +4,7 @@ import pytest
 
 from pareto_monoped.errors import OutputError
 from pareto_monoped.files import current_umask, replacing, write_bytes, write_text
+from tests.study.support import made_database
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -52,3 +53,52 @@ def test_the_permissions_withheld_are_read_without_changing_them():
         assert current_umask() == 0o027
     finally:
         os.umask(before)
+
+
+@pytest.fixture
+def study(tmp_path):
+    made_database(tmp_path / "s.db")
+    return tmp_path / "s.db"
+
+
+@pytest.mark.parametrize("force", [False, True])
+@pytest.mark.parametrize("name", ["s.db", "s.db-wal", "s.db-lock", "s.db-journal", "link.csv"])
+def test_no_output_replaces_a_study_or_what_belongs_to_it(study, name, force):
+    (study.parent / "link.csv").symlink_to(study)
+    before = study.read_bytes()
+    with pytest.raises(OutputError, match="database") as caught:
+        write_text(study.parent / name, "a,b\n", force=force)
+    assert "\n" not in str(caught.value)
+    assert study.read_bytes() == before
+    assert sorted(path.name for path in study.parent.iterdir()) == ["link.csv", "s.db"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "replaced"),
+    [
+        ("trial,height_m\n1,2\n", "trial,mass_kg\n3,4\n", True),
+        ("name,height_m\n1,2\n", "trial,height_m\n3,4\n", False),
+        ("my notes\n", "trial,height_m\n", False),
+        ("name = 's'\n", "<!doctype html>\n", False),
+        ("", "trial,height_m\n", True),
+        ("<!doctype html>\n<html>\n<p>mine", "<!doctype html>\n<html lang='en'>\n", False),
+    ],
+)
+def test_only_a_file_of_its_kind_is_replaced(tmp_path, old, new, replaced):
+    target = tmp_path / "a.txt"
+    target.write_text(old)
+    if replaced:
+        write_text(target, new)
+    else:
+        with pytest.raises(OutputError, match="another kind, which would be lost; give another name, or --force"):
+            write_text(target, new)
+        assert target.read_text() == old
+        assert list(tmp_path.iterdir()) == [target]
+        write_text(target, new, force=True)
+    assert target.read_text() == new
+
+
+def test_a_pipe_is_not_read(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    write_text(tmp_path / "pipe", "x\n")
+    assert (tmp_path / "pipe").read_text() == "x\n"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from pareto_monoped.cli.options import force_option
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ _STANDARD_OUTPUT = Path("-")
     type=_OUTPUT,
     help="Also draw the mass over the ratio, both families and sets of rules: .svg, .png or .pdf.",
 )
+@force_option
 def actuators(
     motor: str,
     ratio: float | None,
@@ -59,6 +61,7 @@ def actuators(
     as_json: bool,
     csv_file: Path | None,
     figure_file: Path | None,
+    force: bool,
 ) -> None:
     """Print the lightest actuator for every gear ratio.
 
@@ -76,7 +79,7 @@ def actuators(
     actuator_map = build_map(load_motor(motor), settings)
     entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
     if csv_file and not entries:
-        _write_csv(csv_file, [], rules)
+        _write_csv(csv_file, [], rules, force=force)
     actuator_map.require_gearbox(motor_source(motor))
     if ratio is not None:
         entries = [actuator_map.entry(ratio)]
@@ -88,14 +91,14 @@ def actuators(
         for other in RULE_SETS:
             if other != rules:
                 maps[other] = build_map(actuator_map.motor, replace(settings, rules=other))
-        write_map_figure(maps, figure_file)
+        write_map_figure(maps, figure_file, force=force)
     sheets = [service_sheet(entry.actuator, settings) for entry in entries if entry.actuator is not None]
     rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]
     stand_in = "" if ratio is None else actuator_map.stand_in(ratio)
     if stand_in:
         click.echo(f"note: {stand_in}", err=True)
     if csv_file:
-        _write_csv(csv_file, rows, rules)
+        _write_csv(csv_file, rows, rules, force=force)
     if csv_file == _STANDARD_OUTPUT:
         return
     if as_json:
@@ -107,7 +110,7 @@ def actuators(
         _print_details(actuator_map, entries[0], sheets[0])
 
 
-def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet) -> None:
+def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet, *, force: bool) -> None:
     from pareto_monoped.files import write_text
 
     text = io.StringIO()
@@ -117,7 +120,7 @@ def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet) -> None:
     if path == _STANDARD_OUTPUT:
         click.echo(text.getvalue(), nl=False)
     else:
-        write_text(path, text.getvalue())
+        write_text(path, text.getvalue(), force=force)
 
 
 def _columns(rules: RuleSet) -> list[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.design import VARIABLES, Variable, in_use
 
@@ -35,9 +36,12 @@ def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objec
 @click.option(
     "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write the designs to a CSV file."
 )
+@force_option
 @click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
 @click.option("--objectives", metavar="A,B", help="Two or three measures to judge by, instead of the study's.")
-def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, objectives: str | None) -> None:
+def front(
+    db: Path, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
+) -> None:
     """List the non-dominated designs by their first objective, from the least value to the greatest.
 
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
@@ -61,7 +65,7 @@ def front(db: Path, as_json: bool, csv_file: Path | None, include_all: bool, obj
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
-        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"))
+        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
         click.echo(f"wrote {csv_file} ({len(rows)} designs)", err=True)
     if as_json:
         click.echo(json.dumps(rows.to_dict(orient="records"), indent=2))

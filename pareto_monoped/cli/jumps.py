@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.options import force_option
 from pareto_monoped.design import (
     CONTROL,
     DEFAULT_RULES,
@@ -51,6 +52,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
+@force_option
 @click.option("--audit", "audited", is_flag=True, help="Check energy balance, finer steps, perturbations.")
 def simulate(
     case: str,
@@ -61,6 +63,7 @@ def simulate(
     as_json: bool,
     trace: Path | None,
     model: Path | None,
+    force: bool,
     audited: bool,
 ) -> None:
     """Simulate one jump and print its measures."""
@@ -88,9 +91,9 @@ def simulate(
     if audited and result.status == "ok":
         report["audit"] = _audit(design, actuator_map, calibration)
     if trace:
-        _write_trace(trace, result)
+        _write_trace(trace, result, force=force)
     if model:
-        _write_model(model, design, motor, actuator_map, calibration)
+        _write_model(model, design, motor, actuator_map, calibration, force=force)
     if as_json:
         click.echo(json.dumps(report, indent=2))
     else:
@@ -175,17 +178,17 @@ def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibratio
     }
 
 
-def _write_trace(path: Path, result: "JumpResult") -> None:
+def _write_trace(path: Path, result: "JumpResult", *, force: bool) -> None:
     """One line per step, every number to its last digit; a cell is empty where there is no number."""
     from pareto_monoped.files import write_text
 
     rows = zip(*(column.tolist() for column in result.trace.values()), strict=True)
     lines = [",".join("" if math.isnan(value) else repr(value) for value in row) for row in rows]
-    write_text(path, "\n".join([",".join(result.trace), *lines]) + "\n")
+    write_text(path, "\n".join([",".join(result.trace), *lines]) + "\n", force=force)
 
 
 def _write_model(
-    path: Path, design: Design, motor: str, actuator_map: "ActuatorMap", calibration: "Calibration"
+    path: Path, design: Design, motor: str, actuator_map: "ActuatorMap", calibration: "Calibration", *, force: bool
 ) -> None:
     from pareto_monoped.files import write_text
     from pareto_monoped.jump.model import mjcf
@@ -193,7 +196,7 @@ def _write_model(
 
     robots = robot_arrays(design.as_array()[None, :], actuator_map, calibration.mass)
     comment = f"design: {json.dumps(design.as_dict())}; motor: {motor}"
-    write_text(path, mjcf(robots, calibration, comment=comment))
+    write_text(path, mjcf(robots, calibration, comment=comment), force=force)
 
 
 def _print(report: dict[str, Any]) -> None:

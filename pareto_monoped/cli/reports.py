@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from pareto_monoped.cli.options import force_option
+
 
 @click.command()
 @click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -22,22 +24,25 @@ import click
     metavar="DIR",
     help="Folder of exported designs, DIR/trial_N.",
 )
-def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exports: Path | None) -> None:
+@force_option
+def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exports: Path | None, force: bool) -> None:
     """Write the report of a study, or of several in comparison.
 
     The page is one file that works without a network.
     """
     if output is None and figures is None:
         raise click.UsageError("no output given: must be -o FILE.html, --figures DIR, or both; add one")
-    from pareto_monoped.files import write_text
+    from pareto_monoped.files import refuse_database, write_text
     from pareto_monoped.report.page import page, payload_of
 
+    if output is not None:
+        refuse_database(output)
     payload = payload_of(dbs, exports=exports, note=lambda text: click.echo(f"note: {text}", err=True))
     if output is not None:
-        write_text(output, page(payload))
+        write_text(output, page(payload), force=force)
         click.echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
     if figures is not None:
         from pareto_monoped.report.figures import write_figures
 
-        for path in write_figures(payload, figures):
+        for path in write_figures(payload, figures, force=force):
             click.echo(f"wrote {path}", err=True)

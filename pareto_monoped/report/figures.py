@@ -24,8 +24,8 @@ _FIXED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDat
 """File information that would change from one run to the next, left out."""
 
 
-def write_figures(payload: Payload, folder: Path) -> list[Path]:
-    """Write every figure that the payload has data for.
+def write_figures(payload: Payload, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write every figure that the payload has data for; ``force`` as for ``files.replacing``.
 
     Returns:
         The files.
@@ -53,7 +53,7 @@ def write_figures(payload: Payload, folder: Path) -> list[Path]:
                 continue
             for kind in _FORMATS:
                 path = folder / f"{name}.{kind}"
-                with replacing(path) as temporary:
+                with replacing(path, force=force) as temporary:
                     figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
                 written.append(path)
     return written
@@ -153,12 +153,13 @@ def _map_axes(axes: Any) -> None:
     axes.legend(loc="upper left")
 
 
-def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path) -> None:
+def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path, *, force: bool = False) -> None:
     """Draw the least mass of both families over the ratio.
 
     Args:
         maps: by what tells them apart in the legend, such as the rules; the first is drawn filled, the others hollow.
         path: ends in .svg, .png or .pdf.
+        force: as for ``files.replacing``.
 
     Raises:
         OutputError: another ending, or the file cannot be written.
@@ -178,7 +179,7 @@ def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path) -> None:
                     _family_points(axes, family, *points, name, hollow=number > 0)
         _map_axes(axes)
         axes.set_title(" and ".join(dict.fromkeys(m.motor.name for m in maps.values())), fontsize=8)
-        with replacing(path) as temporary:
+        with replacing(path, force=force) as temporary:
             figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
 
 

@@ -4,12 +4,14 @@ A database may come from a stranger. It is read with plain SELECTs on known tabl
 on (no trusted schema, no views or triggers, no extensions). It holds only numbers, text and JSON.
 """
 
+import os
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.lock import holder, locked
 
 FORMAT = 2
 """Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, had neither running hash nor
@@ -33,8 +35,10 @@ def translated(path: Path) -> Iterator[None]:
 
 
 def _explained(error: sqlite3.Error) -> str:
-    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
-    match code:
+    extended = getattr(error, "sqlite_errorcode", 0)
+    if extended == sqlite3.SQLITE_READONLY_ROLLBACK:
+        return "is being changed by another process; try again"
+    match extended & 0xFF:
         case sqlite3.SQLITE_FULL:
             return "the disk is full; make room and resume, all acknowledged trials are safe"
         case sqlite3.SQLITE_IOERR:
@@ -67,6 +71,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
         header = stream.read(16)
     if header != b"SQLite format 3\x00":
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
+    _roll_back(path)
     with translated(path):
         connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S)
         try:
@@ -75,6 +80,38 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
             connection.execute("BEGIN")
             check(connection, path)
             yield connection
+        finally:
+            connection.close()
+
+
+def _roll_back(path: Path) -> None:
+    """Roll back what a killed process had not committed, if it left a rollback journal.
+
+    A run changes the journal mode at its start and end, which SQLite does under such a journal. A read-only connection
+    cannot roll back, and would call the database read-only for ever.
+
+    Raises:
+        DatabaseError: the folder cannot be written to.
+    """
+    journal = Path(f"{path.resolve()}-journal")
+    if not (journal.exists() and journal.stat().st_size):
+        return
+    if not _folder_writable(path):
+        raise DatabaseError(
+            f"study database {str(path)!r}: a killed process left {journal.name!r} beside it, which must be "
+            "rolled back; allow writing in its folder, or copy both files to one where it is allowed"
+        )
+    with ExitStack() as stack, translated(path):
+        if (running := holder(path)) != os.getpid():
+            if running is not None:  # it is changing the mode right now, or will roll back itself
+                return
+            try:
+                stack.enter_context(locked(path))
+            except DatabaseError:  # somebody has begun to run it meanwhile
+                return
+        connection = sqlite3.connect(path, timeout=READ_TIMEOUT_S)
+        try:
+            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         finally:
             connection.close()
 
@@ -90,8 +127,6 @@ def _address(path: Path) -> str:
 
 
 def _folder_writable(path: Path) -> bool:
-    import os
-
     return os.access(path.resolve().parent, os.W_OK)
 
 

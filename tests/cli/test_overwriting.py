@@ -1,0 +1,43 @@
+"""Every command that writes a file replaces its own earlier output, but no study and nothing of another kind."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from pareto_monoped.cli import _run as cli
+
+STORED = Path(__file__).parent.parent / "study" / "data" / "plain.db"
+
+COMMANDS = {
+    "front": ("front", "s.db", "--csv"),
+    "report": ("report", "s.db", "-o"),
+    "trace": ("simulate", "--trace"),
+    "model": ("simulate", "--model"),
+    "actuators": ("actuators", "--csv"),
+    "figure": ("actuators", "--figure"),
+}
+
+
+@pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
+def test_targets(tmp_path, monkeypatch, capsys, words):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(STORED, "s.db")
+    study = (tmp_path / "s.db").read_bytes()
+    # The ending says which picture is drawn; for other outputs it says nothing.
+    target, notes = tmp_path / "out.svg", tmp_path / "notes.svg"
+    notes.write_text("my notes\n")
+    victim = tmp_path / "victim.svg"
+    victim.symlink_to("s.db")
+    for force in ([], ["--force"]):
+        assert cli([*words, str(victim), *force]) == 2
+        assert "no output replaces" in capsys.readouterr().err.splitlines()[-1]
+    assert (tmp_path / "s.db").read_bytes() == study
+    assert cli([*words, str(notes)]) == 2
+    assert "would be lost; give another name, or --force" in capsys.readouterr().err
+    assert notes.read_text() == "my notes\n"
+    assert cli([*words, str(notes), "--force"]) == 0
+    assert notes.read_text() != "my notes\n"
+    for _ in range(2):
+        assert cli([*words, str(target)]) == 0
+    assert target.stat().st_size > 0
