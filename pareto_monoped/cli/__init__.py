@@ -21,6 +21,7 @@ _COMMANDS = {
     "resume": "studies",
     "status": "studies",
     "verify": "storage",
+    "repair": "storage",
     "front": "fronts",
     "pick": "fronts",
     "robust": "robustness",

@@ -47,11 +47,14 @@ def front(
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
     """
+    from pareto_monoped.study.foreign import foreign_note
     from pareto_monoped.study.reader import read_front, read_study
 
     if objectives is None and not include_all:
         kept = read_front(db)
         study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
+        if kept.foreign:
+            click.echo(f"note: {foreign_note(kept.foreign)}", err=True)
     else:
         data = read_study(db)
         study, used, sealed = data.study, in_use(data.trials), data.sealed

@@ -1,4 +1,4 @@
-"""Commands that look after a study database: ``verify``."""
+"""Commands that look after a study database: ``verify`` and ``repair``."""
 
 from pathlib import Path
 
@@ -16,6 +16,7 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
 
     Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
     """
+    from pareto_monoped.study.foreign import foreign_note
     from pareto_monoped.study.run import default_workers
     from pareto_monoped.study.seals import UNSEALED
     from pareto_monoped.study.verify import require_sound
@@ -25,7 +26,7 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
     for line in result.findings:
         click.echo(f"found: {line}", err=True)
     if result.foreign:
-        click.echo(f"note: {foreign_note(result.foreign)}", err=True)
+        click.echo(f"note: {foreign_note(len(result.foreign))}", err=True)
     if not result.sealed:
         click.echo(f"note: {UNSEALED}", err=True)
     require_sound(db, result)
@@ -33,10 +34,15 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
     click.echo(f"{db}: sound, {result.trials} trials{again}")
 
 
-def foreign_note(numbers: tuple[int, ...]) -> str:
-    """What is said of trials that are not of this package."""
-    first = ", ".join(map(str, numbers[:3])) + (", ..." if len(numbers) > 3 else "")
-    return (
-        f"{len(numbers)} of Optuna's trials are not of this package (Optuna's numbers {first}); they are ignored here, "
-        "but may be among Optuna's best_trials"
-    )
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+def repair(db: Path) -> None:
+    """Drop trials that an Optuna user has added to a study.
+
+    They are ignored by all other commands, but Optuna and its dashboard count them among the study's.
+    """
+    from pareto_monoped.study.repair import repair as repair_study
+
+    dropped = repair_study(db)
+    numbers = f", which Optuna numbered {', '.join(map(str, dropped))}" if dropped else ""
+    click.echo(f"{db}: dropped {len(dropped)} trials{numbers}")

@@ -93,6 +93,7 @@ def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
 def status(db: Path, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.study.definition import NO_STRENGTH
+    from pareto_monoped.study.foreign import foreign_note
     from pareto_monoped.study.status import status as study_status
 
     facts = study_status(db)
@@ -113,6 +114,7 @@ def status(db: Path, as_json: bool) -> None:
         "evaluations": f"{facts['evaluations']} of {facts['budget']}",
         "feasible": f"{facts['feasible']} ({facts['infeasible']} infeasible, {facts['failed']} failed)",
         "front": f"{facts['front']} designs ({facts['ill_conditioned']} ill-conditioned left out)",
+        **({"foreign": foreign_note(facts["foreign"])} if facts["foreign"] else {}),
         "objectives": ", ".join(facts["objectives"]),
         "hypervolume": f"{facts['hypervolume']:.4f} {facts['hypervolume_unit']} from ({_corner(facts)})",
         **_at_height(facts),

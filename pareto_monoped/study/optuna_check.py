@@ -92,10 +92,16 @@ def _different(
         yield f"trial {lacking[0]} lacks a {what} in Optuna's tables"
 
 
+def sealed_generations(seals: Seals) -> dict[int, int]:
+    """First trial -> number of trials of all links whose rows in Optuna's tables have a digest."""
+    firsts = sorted(int(first) for first in seals.written.get("optuna", {}))
+    return {first: end - first for first, end in zip(firsts, [*firsts[1:], seals.trials], strict=True)}
+
+
 def _digest_findings(connection: sqlite3.Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:
-    sealed = {int(first): digest for first, digest in seals.written.get("optuna", {}).items()}
-    for first, digest in sealed.items():
-        end = min((other for other in sealed if other > first), default=len(numbers))
-        if first >= len(numbers) or stored_digest(connection, numbers[first], end - first) != digest:
+    sealed = seals.written.get("optuna", {})
+    for first, count in sealed_generations(seals).items():
+        end = first + count
+        if end > len(numbers) or stored_digest(connection, numbers[first], count) != sealed[str(first)]:
             yield f"trials {first} to {end - 1} do not match their hash in Optuna's tables"
             return

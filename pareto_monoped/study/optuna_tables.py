@@ -2,7 +2,7 @@
 
 import json
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,23 @@ _WRITTEN = {
     "trial_user_attributes": ("trial_id", "key", "value_json"),
 }
 """Optuna's tables that trials are written into, and the columns that are; the others are numbered by SQLite."""
+
+_OURS = "monoped:trial"
+"""Key of our number in a trial that Optuna writes for us, which tells it from trials of an Optuna user."""
+_OF_TRIALS = ("trial_params", "trial_values", "trial_system_attributes", "trial_user_attributes")
+_OF_OTHERS = ("trial_intermediate_values", "trial_heartbeats")
+
+
+def drop_trials(connection: sqlite3.Connection, foreign: Sequence[int]) -> None:
+    """Delete Optuna's trials of these numbers, and number the others from 0 on, as Optuna would have."""
+    ids = [(n,) for n in foreign]
+    for table in (*_OF_TRIALS, *_OF_OTHERS):
+        connection.executemany(
+            f"DELETE FROM {table} WHERE trial_id IN (SELECT trial_id FROM trials WHERE number = ?)", ids
+        )
+    connection.executemany("DELETE FROM trials WHERE number = ?", ids)
+    kept = connection.execute("SELECT trial_id FROM trials ORDER BY number").fetchall()
+    connection.executemany("UPDATE trials SET number = ? WHERE trial_id = ?", [(n, i) for n, (i,) in enumerate(kept)])
 
 
 def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str:
@@ -188,8 +205,12 @@ class OptunaTables:
 
         storage = _optuna_storage(self._path)
         try:
-            there = storage.get_n_trials(self._study_id)
-            for k in range(max(0, there - generation.first_trial), len(generation.designs)):
+            there: set[Any] = set()
+            if storage.get_n_trials(self._study_id) > generation.first_trial:
+                there = {trial.system_attrs.get(_OURS) for trial in storage.get_all_trials(self._study_id)}
+            for k in range(len(generation.designs)):
+                if generation.first_trial + k in there:
+                    continue
                 bad = generation.judgement.state[k] == "failed"
                 storage.create_new_trial(
                     self._study_id,
@@ -201,7 +222,10 @@ class OptunaTables:
                             for name, text in self._distributions.items()
                         },
                         values=None if bad else values_of(generation.evaluations, self._objectives)[k].tolist(),
-                        system_attrs={"constraints": generation.judgement.constraints[k].tolist()},
+                        system_attrs={
+                            "constraints": generation.judgement.constraints[k].tolist(),
+                            _OURS: generation.first_trial + k,
+                        },
                         user_attrs=_attributes(generation, k),
                     ),
                 )

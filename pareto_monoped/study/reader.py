@@ -19,6 +19,7 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.kept_front import rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
 from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
@@ -227,6 +228,7 @@ class StudyFront:
         db, study, meta, sealed: as in ``StudyData``.
         rows: as by ``StudyData.front``.
         used: the paper's seven variables, and the optional ones of which some trial has another value than the default.
+        foreign: how many of Optuna's trials are not of this package.
     """
 
     db: Path
@@ -234,6 +236,7 @@ class StudyFront:
     meta: StudyMeta
     rows: pd.DataFrame
     used: tuple[Variable, ...]
+    foreign: int
     sealed: bool
 
 
@@ -245,6 +248,7 @@ def read_front(db: Path) -> StudyFront:
     """
     with reading(db) as connection:
         sealed = has_seals(connection)
+        foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
         if sealed:
             rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
             seals = read_seals(connection, db)
@@ -262,7 +266,13 @@ def read_front(db: Path) -> StudyFront:
     if not sealed:
         data = read_study(db)
         return StudyFront(
-            db=db, study=data.study, meta=data.meta, rows=data.front(), used=in_use(data.trials), sealed=False
+            db=db,
+            study=data.study,
+            meta=data.meta,
+            rows=data.front(),
+            used=in_use(data.trials),
+            foreign=foreign,
+            sealed=False,
         )
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
@@ -271,7 +281,7 @@ def read_front(db: Path) -> StudyFront:
     )
     optional = set(json.loads(rows["front"][0][5]))
     used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in optional)
-    return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, sealed=True)
+    return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, foreign=foreign, sealed=True)
 
 
 def seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:

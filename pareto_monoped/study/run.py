@@ -13,6 +13,7 @@ from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.foreign import foreign_note
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import StudyMeta
@@ -209,6 +210,8 @@ def _go_on(
     _refuse_other_results(data, simulator, db)
     coordinates = simulator.coordinates(study)
     with Store(db, study, coordinates=coordinates) as store:
+        if foreign := store.foreign_count():
+            notify(f"note: {foreign_note(foreign)}")
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
         session = Session(data, study, simulator.evaluator, store, budget, progress, coordinates)
         with Interrupt(notify) as interrupt:

@@ -39,6 +39,7 @@ def status(db: Path) -> dict[str, Any]:
         "evaluations_per_second": done / seconds if seconds > 0.0 else None,
         "front": len(data.front),
         "ill_conditioned": data.ill_conditioned,
+        "foreign": data.foreign,
         "hypervolume": hypervolume(data.front, data.study.reference_point),
         "hypervolume_unit": objectives.volume_unit,
         "objectives": objectives.directions,

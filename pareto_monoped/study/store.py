@@ -16,11 +16,18 @@ from pareto_monoped.study.columns import COLUMNS, LATER
 from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.kept_front import FRONT, KeptFront
 from pareto_monoped.study.meta import StudyMeta, strict_json
 from pareto_monoped.study.motor_choice import AnyCoordinates
-from pareto_monoped.study.optuna_tables import KNOWN_SCHEMAS, OptunaTables, create_tables
+from pareto_monoped.study.optuna_tables import (
+    KNOWN_SCHEMAS,
+    OptunaTables,
+    create_tables,
+    drop_trials,
+    stored_digest,
+)
 from pareto_monoped.study.robust_rows import CREATE, INSERT, SEALED_AS, Row
 from pareto_monoped.study.seals import ROWS, SEALS, Sealer, row_digests
 
@@ -206,6 +213,28 @@ class Store:
             self._connection.execute(CREATE)
             self._connection.executemany(INSERT, rows)
             self._sealer.add({SEALED_AS: row_digests(rows)})
+
+    def foreign_count(self) -> int:
+        """How many of Optuna's trials are not of this package."""
+        with translated(self.path):
+            return int(self._connection.execute(FOREIGN_COUNT).fetchone()[0])
+
+    def drop_foreign(self, numbers: Sequence[int], generations: Mapping[int, int]) -> None:
+        """Delete trials of an Optuna user.
+
+        Args:
+            numbers: Optuna's numbers of these trials.
+            generations: first trial -> number of trials of everything that the running hash has a digest of in Optuna's
+                tables; it gets new ones, because Optuna's numbers change.
+        """
+        with translated(self.path), _transaction(self._connection):
+            drop_trials(self._connection, numbers)
+            self._sealer.add(
+                {
+                    "optuna": {str(n): stored_digest(self._connection, n, count) for n, count in generations.items()},
+                    "optuna_first": {str(n): str(n) for n in generations},
+                }
+            )
 
     def add(self, generation: Generation) -> None:
         """Store a generation. When this returns, its trials are safe.

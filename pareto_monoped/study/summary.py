@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.kept_front import STATES, rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
 from pareto_monoped.study.seals import has_seals
@@ -27,6 +28,7 @@ class Summary:
         ill_conditioned: number of trials that failed their audit.
         front: values of the objectives of the designs on the front, shape (n, m), by the first of them.
         heights_m, energies_j: of the designs on the front, shape (n,).
+        foreign: how many of Optuna's trials are not of this package.
         sealed: whether the study has a running hash.
     """
 
@@ -38,6 +40,7 @@ class Summary:
     front: NDArray[np.float64]
     heights_m: NDArray[np.float64]
     energies_j: NDArray[np.float64]
+    foreign: int
     sealed: bool
 
 
@@ -62,6 +65,7 @@ def read_summary(db: Path) -> Summary:
             last = connection.execute("SELECT seconds FROM monoped_history ORDER BY generation DESC LIMIT 1").fetchone()
             bad = connection.execute("SELECT count(*) FROM monoped_audits WHERE NOT well_conditioned").fetchone()
             seconds = float(last[0]) if last else 0.0
+            foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
         except (TypeError, ValueError, RecursionError) as error:
             raise DatabaseError(f"study database {str(db)!r}: is damaged ({error}); restore a copy") from None
     return Summary(
@@ -73,6 +77,7 @@ def read_summary(db: Path) -> Summary:
         front=values[:, :-2],
         heights_m=values[:, -2],
         energies_j=values[:, -1],
+        foreign=foreign,
         sealed=sealed,
     )
 

@@ -37,13 +37,14 @@ def test_status_reads_the_same(name):
     facts = status(DATA / f"{name}.db")
     del facts["database"]
     wanted = expected(name)["status"]
-    later = {key: facts.pop(key) for key in ("hypervolume_unit", "objectives", "best_at_0_8_m", "strength")}
+    later = {key: facts.pop(key) for key in ("hypervolume_unit", "objectives", "best_at_0_8_m", "strength", "foreign")}
     assert json.loads(json.dumps(facts)) == wanted
     assert later == {
         "hypervolume_unit": "m J",
         "objectives": {"height_m": "maximise", "energy_j": "minimise"},
         "best_at_0_8_m": {"energy_j": wanted["least_energy_at_0_8_m_j"]},
         "strength": False,
+        "foreign": 0,
     }
 
 
