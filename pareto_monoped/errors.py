@@ -7,6 +7,7 @@
     |   |-- CalibrationError    a calibration name or a calibration file
     |   |-- StudyError          a study file, or a change that the stored study forbids
     |   |-- DatabaseError       a database that is missing, damaged, locked or not a study
+    |   |   `-- LostTrialsError a database that lacks trials which were safe
     |   |-- SelectionError      a selection that no design on the front meets
     |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
     |-- SimulationError         a simulation that should have worked failed
@@ -49,6 +50,10 @@ class StudyError(InputError):
 
 class DatabaseError(InputError):
     """A study database that is missing, damaged, in use, newer than this package, or no study at all."""
+
+
+class LostTrialsError(DatabaseError):
+    """A study that lacks trials which a killed run had stored: its log was deleted, or an old copy is back."""
 
 
 class SelectionError(InputError):

@@ -1,13 +1,15 @@
-"""Ctrl-C in two steps: the first asks for an orderly end, the second ends at once."""
+"""Ctrl-C in two steps: the first asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise."""
 
 import signal
 import threading
 from collections.abc import Callable
 from types import FrameType
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 
 class Interrupt:
-    """A context that catches the first SIGINT and sets ``asked``.
+    """A context that catches the first SIGINT, SIGTERM or SIGHUP and sets ``asked``.
 
     Outside the main thread, where Python allows no signal handlers, it does nothing.
     """
@@ -19,14 +21,16 @@ class Interrupt:
 
     def __enter__(self) -> "Interrupt":
         if self._main:
-            self._before = signal.signal(signal.SIGINT, self._first)
+            self._before = {number: signal.signal(number, self._first) for number in _SIGNALS}
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._main:
-            signal.signal(signal.SIGINT, self._before)
+            for number, handler in self._before.items():
+                signal.signal(number, handler)
 
     def _first(self, number: int, frame: FrameType | None) -> None:
         self.asked = True
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for each in _SIGNALS:
+            signal.signal(each, signal.default_int_handler)
         self._notify("interrupted: ending after this generation; press Ctrl-C again to end at once")

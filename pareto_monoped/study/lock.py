@@ -2,28 +2,51 @@
 
 import fcntl
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pareto_monoped.errors import DatabaseError, OutputError
+from pareto_monoped.errors import DatabaseError, LostTrialsError, OutputError
+
+
+class Lock:
+    """A lock that this process holds; its file has the process id and how much of the study is safe."""
+
+    def __init__(self, descriptor: int, path: Path, before: int) -> None:
+        self.path = path
+        self.before = before
+        """Links of the running hash that were safe when the last holder was killed; 0 if it ended in order."""
+        self._descriptor = descriptor
+
+    def acknowledge(self, links: int) -> None:
+        """Note that so many links of the running hash are safe; what survives a kill tells if they get lost."""
+        os.pwrite(self._descriptor, _content(links), 0)
+
+
+def _content(links: int) -> bytes:
+    # Always of the same length, so that one write replaces the other.
+    return f"{os.getpid():<10}\n{links:<10}\n".encode("ascii")
 
 
 @contextmanager
-def locked(db: Path) -> Iterator[None]:
-    """Lock the study for this process. The file ``DB-lock`` beside the database holds the process id.
+def locked(db: Path) -> Iterator[Lock]:
+    """Lock the study for this process. The file ``DB-lock`` beside the database, links resolved, holds the process id.
 
     The kernel releases the lock when the process ends in any way, so a killed run never blocks the next one.
 
     Raises:
         DatabaseError: another process holds the study.
-        OutputError: the folder cannot be written to.
+        OutputError: the folder cannot be written to, or something else has the lock's name.
     """
     path = _lock_path(db)
     while True:
         try:
-            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+            # A link of that name must not lead to a file that the lock would overwrite.
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
         except OSError as error:
+            if path.is_symlink() or path.is_dir():
+                raise _in_the_way(path) from None
             raise OutputError(
                 f"study database {str(db)!r}: its folder cannot be written to ({error.strerror}); "
                 "give --db FILE in a writable folder"
@@ -32,37 +55,58 @@ def locked(db: Path) -> Iterator[None]:
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                holder = os.pread(descriptor, 32, 0).decode("ascii", "replace").strip() or "unknown"
                 raise DatabaseError(
-                    f"study database {str(db)!r}: is being run by process {holder}; wait for it, stop it, "
-                    "or give another --db"
+                    f"study database {str(db)!r}: is being run by process {_words(descriptor)[0]}; wait for it, stop "
+                    "it, or give another --db"
                 ) from None
             # The previous holder removes the file. If that happened between our opening and our locking it, we have
             # locked a file that nobody else can find, and must try again.
             if not _same_file(descriptor, path):
                 continue
+            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+                raise _in_the_way(path)
+            words = _words(descriptor)
+            if not all(word.isdigit() for word in words[1:]):
+                raise _in_the_way(path)
+            before = int(words[1]) if len(words) > 1 else 0
             os.ftruncate(descriptor, 0)
-            os.pwrite(descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
+            os.pwrite(descriptor, _content(before), 0)
             try:
-                yield
-            finally:
+                yield Lock(descriptor, path, before)
+            except LostTrialsError:
+                raise  # the file stays: it is what says that they are lost
+            except BaseException:
                 path.unlink(missing_ok=True)
+                raise
+            path.unlink(missing_ok=True)
             return
         finally:
             os.close(descriptor)
 
 
+def _in_the_way(path: Path) -> OutputError:
+    return OutputError(f"lock file {str(path)!r}: something else has its name; move that away, or give another --db")
+
+
+def _words(descriptor: int) -> list[str]:
+    """The words of a lock file: process id, and how many links are safe; a first one that is no number is unknown."""
+    words = os.pread(descriptor, 64, 0).decode("ascii", "replace").split()
+    return words if words and words[0].isdigit() else ["unknown", *words]
+
+
 def holder(db: Path) -> int | None:
     """Process id of the run that holds the study, or None."""
     try:
-        descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC)
+        descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
         return None
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
-        text = os.pread(descriptor, 32, 0).decode("ascii", "replace").strip()
-        return int(text) if text.isdigit() else None
+        word = _words(descriptor)[0]
+        return int(word) if word.isdigit() else None
+    except OSError:
+        return None
     else:
         return None
     finally:
@@ -70,7 +114,9 @@ def holder(db: Path) -> int | None:
 
 
 def _lock_path(db: Path) -> Path:
-    return db.with_name(f"{db.name}-lock")
+    # Two links to a study are the same study.
+    resolved = db.resolve()
+    return resolved.with_name(f"{resolved.name}-lock")
 
 
 def _same_file(descriptor: int, path: Path) -> bool:

@@ -57,6 +57,7 @@ class StudyData:
         audits: one row per audited trial: trial, well_conditioned, the measures of the audit, reason.
         checkpoint: for resuming.
         sealed: whether it has a running hash, against which everything above was checked.
+        links: length of its running hash.
     """
 
     db: Path
@@ -67,6 +68,7 @@ class StudyData:
     audits: pd.DataFrame
     checkpoint: Checkpoint
     sealed: bool = True
+    links: int = 0
 
     @cached_property
     def motors(self) -> "tuple[Motor, ...]":
@@ -175,12 +177,8 @@ class StudyData:
         return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
-def read_study(db: Path, *, check: bool = True) -> StudyData:
-    """Read a study database, finished or still growing.
-
-    Args:
-        db: the database.
-        check: whether to check everything against the running hash of the study.
+def read_study(db: Path) -> StudyData:
+    """Read a study database, finished or still growing, and check it against its running hash.
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
@@ -190,7 +188,7 @@ def read_study(db: Path, *, check: bool = True) -> StudyData:
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
         trials = _frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
-        seals = read_seals(connection, db) if sealed and check else None
+        seals = read_seals(connection, db) if sealed else None
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     try:
@@ -208,6 +206,7 @@ def read_study(db: Path, *, check: bool = True) -> StudyData:
     named = _with_motors(trials, study, meta, db)
     if seals is not None and (findings := seal_findings(seals, trials, rows)):
         raise damaged(db, findings)
+    links = 0 if seals is None else seals.links
     return StudyData(
         db=db,
         study=study,
@@ -217,6 +216,7 @@ def read_study(db: Path, *, check: bool = True) -> StudyData:
         audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=checkpoint,
         sealed=sealed,
+        links=links,
     )
 
 

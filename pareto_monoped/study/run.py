@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import LostTrialsError, StudyError
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import make_algorithm
@@ -15,7 +15,7 @@ from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.foreign import foreign_note
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.lock import locked
+from pareto_monoped.study.lock import Lock, locked
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
@@ -91,20 +91,20 @@ def run(
     """
     if seed is not None:
         study = replace(study, seed=seed)
-    with locked(db):
+    with locked(db) as lock:
         threads = workers or default_workers()
         if not db.exists():
+            lock.acknowledge(0)
             simulator = load_simulator(study, workers=threads)
             algorithm = make_algorithm(study, simulator.coordinates(study))
             create_database(db, study, _meta(study, simulator), algorithm.state())
             data = read_study(db)
         else:
-            data = read_study(db)
+            data = _checked(db, lock)
             simulator = continued_simulator(data, study, workers=threads)
             _refuse_changes(data, study, simulator, db)
-        return _go_on(
-            db, data, study, simulator, evaluations or study.evaluations, progress or _silent, notify or _silent
-        )
+        budget = evaluations or study.evaluations
+        return _go_on(db, data, study, simulator, budget, progress or _silent, notify or _silent, lock)
 
 
 def resume(
@@ -129,12 +129,24 @@ def resume(
         DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     read_study(db)
-    with locked(db):
-        data = read_study(db)
+    with locked(db) as lock:
+        data = _checked(db, lock)
         simulator = stored_simulator(data, workers=workers or default_workers())
         _refuse_changes(data, data.study, simulator, db)
         budget = evaluations or data.meta.budget
-        return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent)
+        return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock)
+
+
+def _checked(db: Path, lock: Lock) -> StudyData:
+    """The study, if it has everything that was safe when its last run was killed."""
+    data = read_study(db)
+    if data.links < lock.before:
+        raise LostTrialsError(
+            f"study database {str(db)!r}: lacks the last {lock.before - data.links} transactions of a killed run, "
+            f"which were safe: its log {db.name + '-wal'!r} was deleted, or an older copy was put back; restore both, "
+            f"or delete {lock.path.name!r} to go on from here"
+        )
+    return data
 
 
 def _meta(study: Study, simulator: Simulator) -> StudyMeta:
@@ -204,12 +216,13 @@ def _go_on(
     budget: int,
     progress: Callable[[Progress], None],
     notify: Callable[[str], None],
+    lock: Lock,
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
         return _summary(db, data, data, 0.0)
     _refuse_other_results(data, simulator, db)
     coordinates = simulator.coordinates(study)
-    with Store(db, study, coordinates=coordinates) as store:
+    with Store(db, study, coordinates=coordinates, lock=lock) as store:
         if foreign := store.foreign_count():
             notify(f"note: {foreign_note(foreign)}")
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})

@@ -96,9 +96,10 @@ class Sealer:
         self._connection = connection
         self._names: list[str] = []
         self._names_link = -1
+        self.links = 0
 
     def add(self, written: Written, first: int = 0, names: Sequence[str] = (), values: Any = None) -> None:
-        """Add a link.
+        """Add a link; ``links`` then counts it.
 
         Args:
             written: digests of the rows written into other tables than that of the trials.
@@ -120,6 +121,7 @@ class Sealer:
         self._connection.execute(
             "INSERT INTO monoped_seals VALUES (?, ?, ?, ?, ?, ?)", (link, first, columns, trials, text, digest)
         )
+        self.links = link + 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

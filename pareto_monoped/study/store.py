@@ -6,7 +6,8 @@ hundred times faster, and the state of the search algorithm as JSON.
 
 import json
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from pareto_monoped.study.definition import Study
 from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.kept_front import FRONT, KeptFront
+from pareto_monoped.study.lock import Lock
 from pareto_monoped.study.meta import StudyMeta, strict_json
 from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.optuna_tables import (
@@ -89,6 +91,7 @@ class Store:
         *,
         coordinates: AnyCoordinates | None = None,
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
+        lock: Lock | None = None,
     ) -> None:
         """Open an existing study for writing.
 
@@ -97,12 +100,14 @@ class Store:
             study: its definition.
             coordinates: what is searched; every free variable within its bounds if None.
             known_schemas: revisions of Optuna's schema that are written directly.
+            lock: is told what is safe.
 
         Raises:
             DatabaseError: not a study, damaged, read-only, or of a newer version.
         """
         self.path = path
         self._objectives = study.objectives
+        self._lock = lock
         # A file marked read-only is meant to stay as it is. SQLite would ask the system, which lets root write anyway.
         if not path.stat().st_mode & 0o222:
             raise DatabaseError(
@@ -139,6 +144,8 @@ class Store:
         connection.execute("PRAGMA journal_mode = WAL")
         # What was acknowledged must survive a power cut too, not only a killed process.
         connection.execute("PRAGMA synchronous = FULL")
+        self._files: dict[Path, tuple[int, int]] = {}
+        self._require_files()
 
     def _add_later_columns(self) -> None:
         """Give a database of an earlier version the columns that trials have now."""
@@ -189,16 +196,45 @@ class Store:
         finally:
             self._connection.close()
 
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """A transaction; what it wrote is acknowledged only if the files it went to are still those of the study."""
+        with translated(self.path), _transaction(self._connection):
+            yield
+        self._require_files()
+        if self._lock is not None:
+            self._lock.acknowledge(self._sealer.links)
+
+    def _require_files(self) -> None:
+        """Check that the database and its log are the files that were opened.
+
+        A file that is deleted or replaced while it is open takes everything with it that is still written to it.
+        """
+        path = self.path.resolve()
+        for file in (path, Path(f"{path}-wal")):
+            try:
+                found = file.stat()
+            except OSError:
+                found = None
+            place = None if found is None else (found.st_dev, found.st_ino)
+            if file not in self._files and place is not None:
+                self._files[file] = place
+            elif place != self._files.get(file):
+                raise DatabaseError(
+                    f"study database {str(self.path)!r}: {file.name!r} was deleted, renamed or replaced during "
+                    "the run; see what is there, put it back or restore a copy, then resume"
+                )
+
     def set_meta(self, values: Mapping[str, Any]) -> None:
         """Replace the values of some fields of ``StudyMeta``."""
-        with translated(self.path), _transaction(self._connection):
+        with self._writing():
             rows = [(key, strict_json(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
             self._sealer.add({"meta": row_digests(rows)})
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
         """Store audits of trials: number of the trial, whether it is well-conditioned, measures of the audit."""
-        with translated(self.path), _transaction(self._connection):
+        with self._writing():
             rows = [(trial, int(good), json.dumps(dict(measures))) for trial, good, measures in audits]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_audits VALUES (?, ?, ?)", rows)
             written = {"audits": row_digests(rows)}
@@ -227,7 +263,7 @@ class Store:
             generations: first trial -> number of trials of everything that the running hash has a digest of in Optuna's
                 tables; it gets new ones, because Optuna's numbers change.
         """
-        with translated(self.path), _transaction(self._connection):
+        with self._writing():
             drop_trials(self._connection, numbers)
             self._sealer.add(
                 {
@@ -242,12 +278,12 @@ class Store:
         Raises:
             DatabaseError: the disk is full, or the file cannot be written.
         """
-        with translated(self.path):
-            if not self._direct:
+        if not self._direct:
+            with translated(self.path):
                 self._optuna.add_by_optuna(generation)
-            with _transaction(self._connection):
-                written = self._optuna.insert(self._connection, generation) if self._direct else {}
-                self._add_to_our_tables(generation, written)
+        with self._writing():
+            written = self._optuna.insert(self._connection, generation) if self._direct else {}
+            self._add_to_our_tables(generation, written)
 
     def _add_to_our_tables(self, generation: Generation, written: dict[str, dict[str, str]]) -> None:
         """Add a generation to our tables; ``written`` is what the running hash has of Optuna's."""

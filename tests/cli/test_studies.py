@@ -143,6 +143,7 @@ FACTS = {
     "evaluations_per_second": 2.43,
     "front": 9,
     "ill_conditioned": 1,
+    "foreign": 0,
     "hypervolume": 12.34567,
     "reference_point": {"height_m": 0.55, "energy_j": 100.0},
     "hypervolume_unit": "m J",
