@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pareto_monoped.errors import DatabaseError, LostTrialsError, OutputError
+from pareto_monoped.errors import DatabaseError, OutputError
 
 
 class Lock:
@@ -17,10 +17,13 @@ class Lock:
         self.path = path
         self.before = before
         """Links of the running hash that were safe when the last holder was killed; 0 if it ended in order."""
+        self.settled = before == 0
+        """Whether the study is known to have all that was safe; otherwise the file stays, to say so to the next run."""
         self._descriptor = descriptor
 
     def acknowledge(self, links: int) -> None:
         """Note that so many links of the running hash are safe; what survives a kill tells if they get lost."""
+        self.settled = True
         os.pwrite(self._descriptor, _content(links), 0)
 
 
@@ -71,14 +74,12 @@ def locked(db: Path) -> Iterator[Lock]:
             before = int(words[1]) if len(words) > 1 else 0
             os.ftruncate(descriptor, 0)
             os.pwrite(descriptor, _content(before), 0)
+            lock = Lock(descriptor, path, before)
             try:
-                yield Lock(descriptor, path, before)
-            except LostTrialsError:
-                raise  # the file stays: it is what says that they are lost
-            except BaseException:
-                path.unlink(missing_ok=True)
-                raise
-            path.unlink(missing_ok=True)
+                yield lock
+            finally:
+                if lock.settled:
+                    path.unlink(missing_ok=True)
             return
         finally:
             os.close(descriptor)

@@ -146,6 +146,7 @@ def _checked(db: Path, lock: Lock) -> StudyData:
             f"which were safe: its log {db.name + '-wal'!r} was deleted, or an older copy was put back; restore both, "
             f"or delete {lock.path.name!r} to go on from here"
         )
+    lock.acknowledge(data.links)
     return data
 
 

@@ -245,7 +245,7 @@ class Store:
 
     def set_robustness(self, rows: Sequence[Row]) -> None:
         """Store how trials do under uncertainty."""
-        with translated(self.path), _transaction(self._connection):
+        with self._writing():
             self._connection.execute(CREATE)
             self._connection.executemany(INSERT, rows)
             self._sealer.add({SEALED_AS: row_digests(rows)})

@@ -245,7 +245,7 @@ def test_the_figure_shows_both_sets_of_rules(capsys, tmp_path, monkeypatch):
     from pareto_monoped.report import figures
 
     drawn = []
-    monkeypatch.setattr(figures, "write_map_figure", lambda maps, path: drawn.append(maps))
+    monkeypatch.setattr(figures, "write_map_figure", lambda maps, path, *, force: drawn.append(maps))
     run(capsys, "--rules", "iso6336", "--figure", str(tmp_path / "map.svg"), "--json")
     (maps,) = drawn
     assert list(maps) == ["iso6336", "paper"]
