@@ -106,8 +106,9 @@ def test_gains_and_lengths_are_those_of_another_design_with_the_same_masses(eval
 
 def test_a_lower_voltage_is_a_lower_no_load_speed(evaluator):
     robots = robot_arrays(DESIGNS, evaluator.actuator_map)
-    slower = replace(robots, no_load_speed_rad_per_s=0.9 * robots.no_load_speed_rad_per_s)
-    varied = evaluator(DESIGNS, variations=neutral(no_load_speeds=np.full(2, 0.9)))
+    slower = replace(robots, no_load_speed_rad_per_s=0.15 * robots.no_load_speed_rad_per_s)
+    varied = evaluator(DESIGNS, variations=neutral(no_load_speeds=np.full(2, 0.15)))
+    assert (varied.energy_j != evaluator(DESIGNS).energy_j).any()
     same(varied, evaluate_robots(slower, complete_control(DESIGNS[:, 4:7]), CALIBRATION))
 
 
