@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
@@ -41,7 +41,7 @@ class Built:
 
 def built_of(
     design: Design,
-    actuator_map: ActuatorMap,
+    maps: Maps,
     calibration: Calibration,
     *,
     hip_rad: float | None = None,
@@ -52,42 +52,40 @@ def built_of(
     Raises:
         DesignError: the robot cannot be built, or its actuators do not fit one leg.
     """
-    design = as_built(design, actuator_map)
-    robot = build_robot(design, actuator_map)
-    require_fit(robot, leg_dimensions(actuator_map))
-    arrays = robot_arrays(design.as_array(), actuator_map, calibration.mass)
+    design = as_built(design, maps)
+    robot = build_robot(design, maps)
+    require_fit(robot, leg_dimensions(maps))
+    arrays = robot_arrays(design.as_array(), maps, calibration.mass)
     pose = assembly_pose(arrays, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
     return Built(design=design, robot=robot, arrays=arrays, pose=pose)
 
 
-def as_built(design: Design, actuator_map: ActuatorMap) -> Design:
+def as_built(design: Design, maps: Maps) -> Design:
     """The design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
 
     Raises:
-        DesignError: no gearbox of this motor has the ratio.
+        DesignError: no gearbox of the joint's motor has the ratio.
     """
+    both = joint_maps(maps)
     return design.replace(
         {
             "thigh_length_m": round(round(design.thigh_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
             "shank_length_m": round(round(design.shank_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
-            "hip_ratio": actuator_map.lookup(design.hip_ratio).ratio,
-            "knee_ratio": actuator_map.lookup(design.knee_ratio).ratio,
+            "hip_ratio": both.hip.lookup(design.hip_ratio).ratio,
+            "knee_ratio": both.knee.lookup(design.knee_ratio).ratio,
         }
     )
 
 
 def require_fit(robot: Robot, leg: LegDimensions) -> None:
-    """Refuse actuators that do not fit the leg: it has one bolt circle at either end, and its chain one strength.
+    """Refuse actuators that do not fit the leg: each joint has one bolt circle at either end, the chain one strength.
 
     Raises:
         DesignError: a bolt circle differs from the leg's, or the knee's torque exceeds what the chain carries.
     """
-    drilled = {
-        "bolt circle": 2.0 * leg.mount_pitch_radius_mm,
-        "back's bolt circle": 2.0 * leg.back_pitch_radius_mm,
-    }
     for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
-        mount = actuator.mount
+        mount, fit = actuator.mount, leg.of(joint)
+        drilled = {"bolt circle": 2.0 * fit.mount_pitch_radius_mm, "back's bolt circle": 2.0 * fit.back_pitch_radius_mm}
         circles = (mount.bolts.pitch_circle_mm, mount.back_bolts.pitch_circle_mm)
         for (name, allowed), circle in zip(drilled.items(), circles, strict=True):
             if abs(circle - allowed) > _SAME_CIRCLE_MM:

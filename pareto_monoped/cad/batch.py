@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.made import is_made
@@ -46,7 +45,7 @@ def run(
     """
     summary = export_design(
         job.design,
-        map_of(job.motor, job.rules),
+        job.maps(),
         job.calibration,
         job.folder,
         formats=job.formats,

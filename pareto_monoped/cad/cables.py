@@ -23,7 +23,7 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.leg.electronics import BoardPlace, board_place
 from pareto_monoped.leg.journal import far_cheek_z_mm
-from pareto_monoped.leg.motor_drivers import peak_current_a
+from pareto_monoped.leg.motor_drivers import MotorDriver, peak_current_a
 from pareto_monoped.robot.build import Robot, Unit
 
 Points = NDArray[np.float64]
@@ -145,14 +145,14 @@ def cables(robot: Robot) -> tuple[Cable, ...]:
     leg, units = robot.leg, {unit.name: unit for unit in robot.units}
     base = next(unit for unit in robot.units if any(part.role is Role.ROD for part in unit.parts))
     far_mm = float(far_cheek_z_mm(1e-3 * robot.knee.length_mm, leg)) + leg.far_cheek_mm
-    hip = _hip(robot.hip, units["hip_actuator"], board_place(leg.hip_mount_mm, -1.0, leg), base, robot)
-    knee = _knee(robot.knee, units["knee_actuator"], board_place(far_mm, 1.0, leg), base, robot)
+    hip = _hip(robot.hip, units["hip_actuator"], board_place("hip", leg.hip_mount_mm, -1.0, leg), base, robot)
+    knee = _knee(robot.knee, units["knee_actuator"], board_place("knee", far_mm, 1.0, leg), base, robot)
     return (*hip, *knee)
 
 
 def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
     """Over the back, along the outside of the casing below the board, and up behind it."""
-    wire, wire_mm = _wire(actuator, robot)
+    wire, wire_mm = _wire(actuator, robot.leg.of("hip").driver)
     back, rim = _back_mm(actuator, unit), _rim_mm(actuator)
     found: list[_Run] = []
     for diameter, side, start in (
@@ -176,7 +176,7 @@ def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: R
 
 def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
     """Outwards past the far cheek, on the hip's axis, and up behind the board."""
-    wire_mm = _wire(actuator, robot)[1]
+    wire_mm = _wire(actuator, robot.leg.of("knee").driver)[1]
     hole = _hole(actuator, unit, np.array([0.0, -1.0]))
     motor = board.behind_mm(0.5 * wire_mm + _PLAY_MM)
     encoder = board.behind_mm(0.5 * _ENCODER_MM + _PLAY_MM)
@@ -219,7 +219,7 @@ def _named(
 ) -> tuple[Cable, Cable]:
     """The cables of a joint's motor and encoder, with their corners in the assembly's frame."""
     frame = unit_frame(base)
-    area, diameter = _wire(actuator, robot)
+    area, diameter = _wire(actuator, robot.leg.of(joint).driver)
     section = 0.25 * np.pi * diameter**2
     made = []
     for what, (one_mm, radius, corners, notes, cure) in zip(("motor", "encoder"), found, strict=True):
@@ -228,7 +228,7 @@ def _named(
         cable = Cable(
             name=f"{joint}_{what}",
             start=f"{joint} motor {actuator.motor.name}" if motor else f"{joint} encoder",
-            end=f"{joint} driver {robot.leg.driver.name}",
+            end=f"{joint} driver {robot.leg.of(joint).driver.name}",
             wires=3 if motor else 1,
             designation=f"wire SiF {area:g} mm2, fine-stranded" if motor else "cable that comes with the encoder",
             diameter_mm=one_mm,
@@ -244,9 +244,9 @@ def _named(
     return made[0], made[1]
 
 
-def _wire(actuator: Actuator, robot: Robot) -> tuple[float, float]:
+def _wire(actuator: Actuator, driver: MotorDriver) -> tuple[float, float]:
     """Copper and diameter of the thinnest wire for the largest current that motor and driver let flow."""
-    amplitude = min(peak_current_a(actuator.motor), robot.leg.driver.peak_current_a)
+    amplitude = min(peak_current_a(actuator.motor), driver.peak_current_a)
     needed = amplitude / np.sqrt(2.0) / _CURRENT_A_PER_MM2
     return next((wire for wire in _WIRES if wire[0] >= needed), _WIRES[-1])
 

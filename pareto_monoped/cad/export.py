@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.search import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.run import run_checks
@@ -61,7 +61,7 @@ class ExportSummary:
 
 def export_design(
     design: Design,
-    actuator_map: ActuatorMap,
+    maps: Maps,
     calibration: Calibration,
     out_dir: Path,
     *,
@@ -77,7 +77,7 @@ def export_design(
 
     Args:
         design: as searched; it is built with lengths of whole 0.1 mm and the real ratios, and simulated again.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         calibration: the jump model, for the second simulation and the MJCF.
         out_dir: the folder to make; its parent is made too.
         formats: some of ``FORMATS``; default all.
@@ -98,13 +98,13 @@ def export_design(
     wanted = chosen_formats(formats)
     require_free(out_dir, force=force)
     with _collecting_rarely(), _second_process(draws=bool({"assembly", "png"} & set(wanted))):
-        built = built_of(design, actuator_map, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
+        built = built_of(design, maps, calibration, hip_rad=hip_rad, knee_rad=knee_rad)
         progress("building")
         product = build_product(built.robot, built.pose)
         record = design_record(
             searched=design,
             built=built,
-            actuator_map=actuator_map,
+            maps=joint_maps(maps),
             jumps={},
             calibration=calibration,
             source=source,
@@ -114,17 +114,17 @@ def export_design(
         ordered = order(product, record, wanted)
         progress("simulating")
         designs = {"searched": design, "as_built": built.design}
-        results = _evaluated(designs, actuator_map, calibration)
+        results = _evaluated(designs, maps, calibration)
         loads = _loads(built.design, results, list(designs).index("as_built"))
-        factors = joint_factors(built.design, actuator_map, loads)
-        life = gear_life(built.design, actuator_map, loads)
+        factors = joint_factors(built.design, maps, loads)
+        life = gear_life(built.design, maps, loads)
         record["jumps"] = _jumps(designs, results)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
         part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
         checks = run_checks(
             product,
-            robot_arrays(built.design.as_array(), actuator_map),
+            robot_arrays(built.design.as_array(), maps),
             part_files=part_files,
             other_files=other_files,
             factors=factors if strength else None,
@@ -136,7 +136,7 @@ def export_design(
             files.write_drawings(folder, product, wanted)
             files.write_assembly_sheet(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
-            _write_tables(folder, product, record, checks, factors, life, leg_dimensions(actuator_map))
+            _write_tables(folder, product, record, checks, factors, life, leg_dimensions(maps))
             ordered.write(folder)
             record["files"] = [*files_in(folder), RECORD]
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")
@@ -200,14 +200,14 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
 
 
 def simulated_jumps(
-    designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration
+    designs: Mapping[str, Design], maps: Maps, calibration: Calibration
 ) -> dict[str, dict[str, Any]]:
     """Status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
-    return _jumps(designs, _evaluated(designs, actuator_map, calibration))
+    return _jumps(designs, _evaluated(designs, maps, calibration))
 
 
-def _evaluated(designs: Mapping[str, Design], actuator_map: ActuatorMap, calibration: Calibration) -> Evaluations:
-    return Evaluator(actuator_map, calibration)(np.stack([design.as_array() for design in designs.values()]))
+def _evaluated(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> Evaluations:
+    return Evaluator(maps, calibration)(np.stack([design.as_array() for design in designs.values()]))
 
 
 def _loads(design: Design, results: Evaluations, row: int) -> Loads:

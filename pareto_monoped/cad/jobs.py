@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
+from pareto_monoped.actuator.joint_maps import JointMaps
+from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration, strength_for
-from pareto_monoped.leg.motor_fit import require_leg
+from pareto_monoped.leg.motor_fit import maps_for
 
 if TYPE_CHECKING:
     from pareto_monoped.study.reader import StudyData
@@ -22,7 +23,8 @@ class Job:
 
     Attributes:
         design: as searched.
-        motor: the motor of both actuators.
+        motor: of both actuators, or of the hip's where ``knee_motor`` is another one.
+        knee_motor: of the knee's actuator; None where both have the same.
         calibration: the jump model.
         rules: of the gearboxes.
         folder: where to.
@@ -45,12 +47,25 @@ class Job:
     strength: bool = False
     hip_rad: float | None = None
     knee_rad: float | None = None
+    knee_motor: Motor | None = None
+
+    def maps(self) -> JointMaps:
+        """The gearboxes of both joints.
+
+        Raises:
+            MotorError: a motor has no gearbox at any ratio.
+        """
+        return JointMaps(
+            hip=map_of(self.motor, self.rules),
+            knee=map_of(self.motor if self.knee_motor is None else self.knee_motor, self.rules),
+        )
 
 
 def case_job(
     case: str,
     *,
     motor: str = PAPER_MOTOR,
+    knee_motor: str | None = None,
     rules: RuleSet = DEFAULT_RULES,
     folder: Path,
     formats: Sequence[str] | None = None,
@@ -64,6 +79,7 @@ def case_job(
     Args:
         case: name of the row.
         motor: name or TOML file of the motor; default the paper's.
+        knee_motor: likewise, of the knee's; default the same.
         rules: of the gearboxes.
         folder: where to.
         formats: some of ``FORMATS``; default all.
@@ -76,11 +92,11 @@ def case_job(
         InputError: an unknown format.
         MotorError: an unknown or impossible motor, or one that no gearbox or no leg fits.
     """
-    chosen, source = load_motor(motor), motor_source(motor)
-    require_leg(map_of(chosen, rules, source=source), source)
+    maps = maps_for(motor, knee_motor or motor, rules)
     return Job(
         design=PAPER_CASES[case].design,
-        motor=chosen,
+        motor=maps.hip.motor,
+        knee_motor=maps.knee.motor if maps.knee is not maps.hip else None,
         calibration=load_calibration(DEFAULT),
         rules=rules,
         folder=folder,
@@ -104,7 +120,7 @@ def trial_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for one trial of a study, with its motor and its calibration as the study stores them.
+    """The job for one trial of a study, with its motors and its calibration as the study stores them.
 
     Args:
         data: the study.
@@ -120,10 +136,11 @@ def trial_job(
         InputError: an unknown format.
         DatabaseError: the study's motor or calibration is damaged.
     """
-    row = data.trials.loc[data.trials["trial"] == trial].iloc[0]
+    row, kit = data.trials.loc[data.trials["trial"] == trial].iloc[0], data.kit_of_trial(trial)
     return Job(
         design=Design.from_array([row[name] for name in NAMES]),
-        motor=data.motor_of_trial(trial),
+        motor=kit.hip.motor,
+        knee_motor=kit.knee.motor if kit.knee is not kit.hip else None,
         calibration=data.calibration,
         rules=data.study.rules,
         folder=folder,

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.compare import difference
 from pareto_monoped.cad.jobs import Job
@@ -70,12 +69,12 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
 
 def expected_record(job: Job) -> dict[str, Any]:
     """The record that this version would write, without what is not compared."""
-    actuator_map = map_of(job.motor, job.rules)
-    built = built_of(job.design, actuator_map, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
+    maps = job.maps()
+    built = built_of(job.design, maps, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
     record = design_record(
         searched=job.design,
         built=built,
-        actuator_map=actuator_map,
+        maps=maps,
         jumps={},
         calibration=job.calibration,
         source=job.source,

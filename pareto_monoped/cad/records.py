@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.motors import stored_motor
-from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.compare import Difference, difference
 from pareto_monoped.cad.export import simulated_jumps
@@ -53,7 +52,7 @@ def record_job(
         design = _design(_object(record, "searched"))
         pose = _object(record, "pose")
         angles = {name: _finite(pose, name) for name in ("hip_rad", "knee_rad")}
-        motor, calibration = dict(_object(record, "motor_data")), dict(_object(record, "calibration_data"))
+        (hip, knee), calibration = _motors(record), dict(_object(record, "calibration_data"))
         origin = dict(_object(record, "source"))
         wanted = _names(record, "formats")
         maker = str(record["made_by"])
@@ -64,9 +63,11 @@ def record_job(
     except (KeyError, ValueError) as problem:
         why = f"no {problem}" if isinstance(problem, KeyError) else str(problem)
         raise InputError(f"{source}: is not the record of an export ({why}); give the design.json of one") from None
+    motors = stored_motor(hip, source=source), None if knee is None else stored_motor(knee, source=source)
     job = Job(
         design=design,
-        motor=stored_motor(motor, source=source),
+        motor=motors[0],
+        knee_motor=motors[1],
         calibration=calibration_of(calibration, source=source),
         rules=rules,
         folder=folder,
@@ -102,11 +103,11 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
         if wrong is not None:
             return wrong
         designs = {"searched": job.design, "as_built": _design(expected["as_built"])}
-        simulated = simulated_jumps(designs, map_of(job.motor, job.rules), job.calibration)
+        simulated = simulated_jumps(designs, job.maps(), job.calibration)
         return difference(jumps, simulated, rel_tolerance=_JUMP_REL_TOLERANCE, field="jumps")
-    built = as_built(job.design, map_of(job.motor, job.rules)).as_dict()
+    built = as_built(job.design, job.maps()).as_dict()
     fixed = {
-        "motor": job.motor.name,
+        "motor": job.maps().label,
         "calibration": job.calibration.label,
         "as_built": {name: value for name, value in built.items() if name not in _RATIOS},
     }
@@ -161,6 +162,14 @@ def _object(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     if not isinstance(record[name], dict):
         raise ValueError(f"{name} has no fields")
     return dict(record[name])
+
+
+def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """Values of the motor of a record, or of the hip's, and of the knee's where it has another one."""
+    found = _object(record, "motor_data")
+    if set(found) != {"hip", "knee"}:
+        return dict(found), None
+    return dict(_object(found, "hip")), dict(_object(found, "knee"))
 
 
 def _names(record: Mapping[str, Any], name: str) -> list[str]:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, RuleSet
+from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
     from pareto_monoped.cad.batch import Progress
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
 )
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
-@click.option("--motor", metavar="NAME", help=f"With --case: name or TOML file.  [default: {PAPER_MOTOR}]")
+@motor_options("With --case: ")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="FILE", help="Repeat the export that has this design.json."
@@ -53,6 +54,8 @@ def export(
     output: Path,
     case: str | None,
     motor: str | None,
+    hip_motor: str | None,
+    knee_motor: str | None,
     rules: RuleSet | None,
     record: Path | None,
     whole_front: bool,
@@ -73,7 +76,8 @@ def export(
     so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg, no_strength)
-    for option, value in (("--rules", rules), ("--motor", motor)):
+    given = {"--rules": rules, "--motor": motor, "--hip-motor": hip_motor, "--knee-motor": knee_motor}
+    for option, value in given.items():
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
     from pareto_monoped.cad.interrupt import ending_at
@@ -93,9 +97,17 @@ def export(
         if record is not None:
             _one(_without(dropped, record_job(record, folder=output, formats=names, force=force, note=_note)))
         elif case is not None:
-            kit, chosen = motor or PAPER_MOTOR, rules or DEFAULT_RULES
+            hip, knee = chosen_motors(motor, hip_motor, knee_motor)
             job = case_job(
-                case, motor=kit, rules=chosen, folder=output, formats=names, force=force, strength=strength, **angles
+                case,
+                motor=hip,
+                knee_motor=knee,
+                rules=rules or DEFAULT_RULES,
+                folder=output,
+                formats=names,
+                force=force,
+                strength=strength,
+                **angles,
             )
             _one(_without(dropped, job))
         elif whole_front:

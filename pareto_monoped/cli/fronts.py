@@ -27,7 +27,18 @@ if TYPE_CHECKING:
 def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objectives") -> list[str]:
     """The columns of each design in the output of ``front`` and ``pick``: objectives, variables in use, choices."""
     variables = [variable.name for variable in used]
-    return ["trial", *objectives.names, *variables, *(["motor"] if len(study.motors) > 1 else [])]
+    return ["trial", *objectives.names, *variables, *_motor_columns(study)]
+
+
+_MOTORS = ("motor", "hip_motor", "knee_motor")
+"""Columns with names of motors."""
+
+
+def _motor_columns(study: "Study") -> tuple[str, ...]:
+    """The columns that tell designs' motors apart: none where all have the same."""
+    if len(study.kits) == 1:
+        return ()
+    return ("motor",) if study.motor is not None else ("hip_motor", "knee_motor")
 
 
 @click.command()
@@ -113,23 +124,24 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     shown = [variable for variable in VARIABLES if variable.name in rows.columns]
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
     widths = [max(len(head), 8) for head in heads]
-    # The motors' names stand last, in a column as wide as the longest.
-    motors = ["motor", *rows["motor"]] if "motor" in rows.columns else []
-    last = 1 + max(map(len, motors)) if motors else 0
+    # The motors' names stand last, each in a column as wide as the longest.
+    motors = {name: max(map(len, (name, *rows[name]))) for name in _MOTORS if name in rows.columns}
+    last = sum(width + 1 for width in motors.values())
     wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= _TABLE_WIDTH
     # With a third objective the usual columns do not fit; three digits of each variable then must do.
     number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
     symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
-    click.echo(f"{'trial':>6} {words} {symbols}" + (" motor" if motors else ""))
+    names = "".join(f" {name:<{width}}" for name, width in motors.items())
+    click.echo(f"{'trial':>6} {words} {symbols}{names}".rstrip())
     for _, row in rows.iterrows():
         values = " ".join(number(row[variable.name]) for variable in shown)
         goals = " ".join(
             f"{row[entry.name]:{width}.{_decimals(entry)}f}"
             for entry, width in zip(objectives.measures, widths, strict=True)
         )
-        motor = f" {row['motor']}" if motors else ""
-        click.echo(f"{int(row['trial']):6d} {goals} {values}{motor}")
+        names = "".join(f" {row[name]:<{width}}" for name, width in motors.items())
+        click.echo(f"{int(row['trial']):6d} {goals} {values}{names}".rstrip())
 
 
 @click.command()
@@ -188,7 +200,7 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
         return
     click.echo(_wrapped(picked.why))
     for name in names[1:]:
-        click.echo(f"{name:<34} {row[name]}" if name == "motor" else f"{name:<34} {row[name]:.6g}")
+        click.echo(f"{name:<34} {row[name]}" if name in _MOTORS else f"{name:<34} {row[name]:.6g}")
     click.echo(_wrapped(step.text()))
     click.echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
     if by_robust:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.design import (
     CONTROL,
@@ -25,7 +26,7 @@ from pareto_monoped.errors import DesignError, complaint
 from pareto_monoped.jump.calibration import DEFAULT
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.ratiomap import ActuatorMap
+    from pareto_monoped.actuator.joint_maps import JointMaps
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.jump.single import JumpResult
     from pareto_monoped.jump.table1 import Row
@@ -47,7 +48,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.option(
     "--calibration", "calibration_name", metavar="NAME", default=DEFAULT, show_default=True, help="Name or TOML file."
 )
-@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
+@motor_options()
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
@@ -58,7 +59,9 @@ def simulate(
     case: str,
     changes: tuple[str, ...],
     calibration_name: str,
-    motor: str,
+    motor: str | None,
+    hip_motor: str | None,
+    knee_motor: str | None,
     rules: RuleSet | None,
     as_json: bool,
     trace: Path | None,
@@ -67,33 +70,34 @@ def simulate(
     audited: bool,
 ) -> None:
     """Simulate one jump and print its measures."""
-    from pareto_monoped.actuator.motors import motor_source
-    from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.calibration import load_calibration, rules_for
     from pareto_monoped.jump.single import simulate as jump
-    from pareto_monoped.leg.motor_fit import require_leg
+    from pareto_monoped.leg.motor_fit import maps_for
+    from pareto_monoped.robot.frames import JOINTS
 
     design = _design(case, changes)
     calibration = load_calibration(calibration_name)
-    actuator_map = map_for(motor, rules_for(calibration_name, rules))
-    require_leg(actuator_map, motor_source(motor))
-    for note in filter(None, map(actuator_map.stand_in, sorted({design.hip_ratio, design.knee_ratio}))):
+    hip, knee = chosen_motors(motor, hip_motor, knee_motor)
+    maps = maps_for(hip, knee, rules_for(calibration_name, rules))
+    served = {(maps.of(joint), getattr(design, f"{joint}_ratio")) for joint in JOINTS}
+    for note in filter(None, (one.stand_in(ratio) for one, ratio in sorted(served, key=lambda pair: pair[1]))):
         click.echo(f"note: {note}", err=True)
-    result = jump(design, actuator_map, calibration, trace=trace is not None)
+    result = jump(design, maps, calibration, trace=trace is not None)
     if result.status == "bad_input":
         raise DesignError(result.reason)
     if result.status == "no_gearbox":
         raise DesignError(f"{result.reason}; choose another ratio")
     if result.status == "cannot_stand" and (trace or model):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
-    report = _report(result, motor, actuator_map)
-    _add_gear_life(report, result, actuator_map)
+    motors = _motors(hip, knee)
+    report = _report(result, motors, maps)
+    _add_gear_life(report, result, maps)
     if audited and result.status == "ok":
-        report["audit"] = _audit(design, actuator_map, calibration)
+        report["audit"] = _audit(design, maps, calibration)
     if trace:
         _write_trace(trace, result, force=force)
     if model:
-        _write_model(model, design, motor, actuator_map, calibration, force=force)
+        _write_model(model, design, motors, maps, calibration, force=force)
     if as_json:
         click.echo(json.dumps(report, indent=2))
     else:
@@ -130,20 +134,25 @@ def _plain(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _report(result: "JumpResult", motor: str, actuator_map: "ActuatorMap") -> dict[str, Any]:
-    rules = actuator_map.settings.rules
+def _motors(hip: str, knee: str) -> dict[str, str]:
+    """The motors as they were named: one for both joints, or one of each."""
+    return {"motor": hip} if hip == knee else {"hip_motor": hip, "knee_motor": knee}
+
+
+def _report(result: "JumpResult", motors: dict[str, str], maps: "JointMaps") -> dict[str, Any]:
+    rules = maps.rules
     return {
         "status": result.status,
         "reason": result.reason,
         "calibration": result.calibration,
-        "motor": motor,
+        **motors,
         **({} if rules == "paper" else {"rules": rules}),
         **{name: _plain(value) for name, value in result.measures.items()},
         "design": result.design.as_dict(),
     }
 
 
-def _add_gear_life(report: dict[str, Any], result: "JumpResult", actuator_map: "ActuatorMap") -> None:
+def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMaps") -> None:
     """How many jumps the gears last that strike their stops in each; with a note if that is too few."""
     import numpy as np
 
@@ -151,27 +160,25 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", actuator_map: "
     from pareto_monoped.strength.single import gear_life
 
     known = result.measures | result.design.as_dict()
-    life = gear_life(result.design, actuator_map, loads_of({name: np.array([v]) for name, v in known.items()}))
+    life = gear_life(result.design, maps, loads_of({name: np.array([v]) for name, v in known.items()}))
     if life is not None:
         report["gear_life_jumps"] = life.jumps
         if life.advice:
             click.echo(f"note: {life.advice}", err=True)
 
 
-def _audit(design: Design, actuator_map: "ActuatorMap", calibration: "Calibration") -> dict[str, Any]:
+def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
     from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays
 
     values = design.as_array()[None, :]
-    audits = audit(values, actuator_map, calibration).as_columns()
+    audits = audit(values, maps, calibration).as_columns()
     # These stand in the report already.
     first = {
         name: column[0].item() for name, column in audits.items() if name not in ("status", "height_m", "energy_j")
     }
-    balance = energy_balance(
-        robot_arrays(values, actuator_map, calibration.mass), columns(values, CONTROL), calibration
-    )
+    balance = energy_balance(robot_arrays(values, maps, calibration.mass), columns(values, CONTROL), calibration)
     return {
         **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
         "energy": asdict(balance) | {"joint_work_j": balance.joint_work_j, "residual_j": balance.residual_j},
@@ -188,14 +195,21 @@ def _write_trace(path: Path, result: "JumpResult", *, force: bool) -> None:
 
 
 def _write_model(
-    path: Path, design: Design, motor: str, actuator_map: "ActuatorMap", calibration: "Calibration", *, force: bool
+    path: Path,
+    design: Design,
+    motors: dict[str, str],
+    maps: "JointMaps",
+    calibration: "Calibration",
+    *,
+    force: bool,
 ) -> None:
     from pareto_monoped.files import write_text
     from pareto_monoped.jump.model import mjcf
     from pareto_monoped.robot.population import robot_arrays
 
-    robots = robot_arrays(design.as_array()[None, :], actuator_map, calibration.mass)
-    comment = f"design: {json.dumps(design.as_dict())}; motor: {motor}"
+    robots = robot_arrays(design.as_array()[None, :], maps, calibration.mass)
+    named = "; ".join(f"{key.replace('_', ' ')}: {name}" for key, name in motors.items())
+    comment = f"design: {json.dumps(design.as_dict())}; {named}"
     write_text(path, mjcf(robots, calibration, comment=comment), force=force)
 
 

@@ -89,7 +89,7 @@ def pareto(
     if other is not None:
         _print_choices(studies)
     word = "motor" if len(study.motors) == 1 else "motors"
-    click.echo(f"Simulated with {word} {', '.join(study.motors)}, calibration {study.calibration}.")
+    click.echo(f"Simulated with {word} {study.motor_text}, calibration {study.calibration}.")
     if not studies[0].study.strength:
         click.echo(f"Note: {NO_STRENGTH}.")
     counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
@@ -177,7 +177,7 @@ def _print_choices(studies: "list[StudyData]") -> None:
     for row in rows:
         cost = "-" if row.cost is None else f"{100.0 * row.cost:+.1f} %"
         click.echo(f" {row.height_m:.1f} m {_cells(row.mechanical)}  {_cells(row.battery)} {cost:>8}")
-    if len(studies[0].study.motors) > 1:
+    if len(studies[0].study.kits) > 1:
         click.echo("\nMotors")
         for row in rows:
             chosen = "  ".join(f"{'not reached' if c is None else c.motor:>31}" for c in (row.mechanical, row.battery))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
 from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
 from pareto_monoped.jump.closure import balance_errors
@@ -176,7 +176,7 @@ def finer(calibration: Calibration, parts: int) -> Calibration:
 
 def audit(
     designs: ArrayLike,
-    actuator_map: ActuatorMap,
+    actuator_map: Maps,
     calibration: Calibration,
     *,
     workers: int = 1,
@@ -278,7 +278,7 @@ def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
 
 
 def _with_two_periods(
-    values: Floats, actuator_map: ActuatorMap, calibration: Calibration, workers: int, quarter: Evaluations
+    values: Floats, actuator_map: Maps, calibration: Calibration, workers: int, quarter: Evaluations
 ) -> tuple[Evaluations, Evaluations]:
     """Jumps with a quarter of the step: with the control period as it is, and with a quarter of it; without delay.
 

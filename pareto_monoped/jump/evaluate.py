@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, columns, complete, complete_control
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, Records, prepare
@@ -103,28 +103,28 @@ class Evaluations:
 
 
 class Evaluator:
-    """Evaluates designs with the actuators of one motor, or of one of several, under one calibration.
+    """Evaluates designs with the actuators of one kit of motors, or of one of several, under one calibration.
 
     To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
     workers.
 
     Attributes:
-        actuator_map: ratio -> lightest actuator, of the first or only motor.
-        actuator_maps: of every motor.
+        actuator_map: ratio -> lightest actuator of both joints or of each, with the first or only kit of motors.
+        actuator_maps: of every kit.
         calibration: the jump model.
         workers: threads.
     """
 
     def __init__(
         self,
-        actuator_map: ActuatorMap,
+        actuator_map: Maps,
         calibration: Calibration,
         workers: int = 1,
         *,
-        others: Sequence[ActuatorMap] = (),
+        others: Sequence[Maps] = (),
     ) -> None:
         self.actuator_map = actuator_map
-        self.actuator_maps = (actuator_map, *others)
+        self.actuator_maps = tuple(map(joint_maps, (actuator_map, *others)))
         self.calibration = calibration
         self.workers = workers
 
@@ -156,7 +156,7 @@ class Evaluator:
         table: "_Table",
         variations: Variations | None,
     ) -> None:
-        """Fill the table; ``rows_of`` has the rows of each motor."""
+        """Fill the table; ``rows_of`` has the rows of each kit of motors."""
         built = {
             k: robot_arrays(values[rows], self.actuator_maps[k], self.calibration.mass) for k, rows in rows_of.items()
         }
@@ -195,12 +195,12 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
     return table.evaluations()
 
 
-def _add_safeties(values: Floats, actuator_map: ActuatorMap, table: "_Table", rows: NDArray[np.intp]) -> None:
+def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArray[np.intp]) -> None:
     """Fill the measures of strength of ``rows`` from the loads of their jumps."""
     rows = rows[table.status[rows] == "ok"]
     known = dict(zip(NAMES, values.T, strict=True)) | table.columns
     loads = loads_of({name: known[name][rows] for name in LOAD_NAMES})
-    for name, safety in safeties(strength_factors(values[rows], actuator_map, loads)).items():
+    for name, safety in safeties(strength_factors(values[rows], maps, loads)).items():
         table.columns[name][rows] = safety
 
 

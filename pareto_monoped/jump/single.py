@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
@@ -51,20 +51,20 @@ class JumpResult:
     trace: dict[str, Floats]
 
 
-def simulate(design: Design, actuator_map: ActuatorMap, calibration: Calibration, *, trace: bool = False) -> JumpResult:
+def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: bool = False) -> JumpResult:
     """Jump once.
 
     Args:
         design: the design.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         calibration: the jump model.
         trace: whether to record every step.
     """
     values = design.as_array()[None, :]
-    evaluations = Evaluator(actuator_map, calibration)(values)
+    evaluations = Evaluator(maps, calibration)(values)
     rows: dict[str, Floats] = {}
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
-        robots = robot_arrays(values, actuator_map, calibration.mass)
+        robots = robot_arrays(values, maps, calibration.mass)
         rows = trace_of(robots, columns(values, CONTROL), calibration)
     return result_of(design, calibration, evaluations, rows)
 

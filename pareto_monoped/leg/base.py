@@ -76,8 +76,8 @@ def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
 
 def _reliefs(d: LegDimensions) -> Pattern:
     """The holes that lighten the near cheek: one below each gap between the screws, where its dowels are."""
-    low = d.coupler_radius_mm + _BORE_PLAY + _RELIEF_TO_BORE
-    high = d.mount_pitch_radius_mm - 0.5 * d.mount_dowel_mm - _RELIEF_TO_DOWELS
+    low = d.hip.coupler_radius_mm + _BORE_PLAY + _RELIEF_TO_BORE
+    high = d.hip.mount_pitch_radius_mm - 0.5 * d.hip.mount_dowel_mm - _RELIEF_TO_DOWELS
     radius = min(_RELIEF_MOST, 0.5 * (high - low))
     return Pattern(radius_mm=radius, pitch_radius_mm=low + radius, count=6, phase_rad=np.pi / 6)
 
@@ -85,15 +85,15 @@ def _reliefs(d: LegDimensions) -> Pattern:
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
     """The plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
-    mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes)
-    mount_dowels = replace(d.mount_dowel, count=d.mount_dowels // 2)
+    mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.mount_pitch_radius_mm, count=d.hip.mount_holes)
+    mount_dowels = replace(d.hip.mount_dowel, count=d.hip.mount_dowels // 2)
     seats = holes_at(hip_seat_screws(d), M4.hole)
     return (
         dowel_part(
             "hip_mount_dowel",
-            Dowel(diameter_mm=d.mount_dowel_mm),
-            end_mm=z0 - d.mount_thread_mm,
-            room_mm=d.mount_thread_mm + d.cheek_mm,
+            Dowel(diameter_mm=d.hip.mount_dowel_mm),
+            end_mm=z0 - d.hip.mount_thread_mm,
+            room_mm=d.hip.mount_thread_mm + d.cheek_mm,
             direction=1.0,
             material=MATERIALS.steel,
             count=mount_dowels.count,
@@ -109,11 +109,11 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=_cheek_outline(d.rim_radius_mm, d),
+                    outline=_cheek_outline(d.hip.rim_radius_mm, d),
                     z0_mm=z0,
                     z1_mm=z1,
                     holes=(
-                        Circle(radius_mm=d.coupler_radius_mm + _BORE_PLAY),
+                        Circle(radius_mm=d.hip.coupler_radius_mm + _BORE_PLAY),
                         mount,
                         mount_dowels,
                         _reliefs(d),
@@ -128,7 +128,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
                 clearance(M3, (mount,), z0, z1, countersunk="high"),
                 clearance(M4, seats, z0, z1, countersunk="low"),
             ),
-            fits=(Dowel(diameter_mm=d.mount_dowel_mm).hole_fit,),
+            fits=(Dowel(diameter_mm=d.hip.mount_dowel_mm).hole_fit,),
             note=f"{d.cheek_mm:g} mm sheet",
         ),
         screw_part(
@@ -137,11 +137,11 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
             head="countersunk",
             seat_mm=z1,
             grip_mm=d.cheek_mm,
-            room_mm=d.mount_thread_mm,
+            room_mm=d.hip.mount_thread_mm,
             direction=-1.0,
             material=MATERIALS.steel,
-            count=d.mount_holes,
-            pitch_radius_mm=d.mount_pitch_radius_mm,
+            count=d.hip.mount_holes,
+            pitch_radius_mm=d.hip.mount_pitch_radius_mm,
             grade="10.9",
             note="flush, into the hip actuator's case",
         ),

@@ -13,17 +13,12 @@ the knee, one to one. The far cheek carries the knee actuator's free end in a be
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-import numpy as np
-
 from pareto_monoped.actuator.bearings import small_bearing
-from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.errors import DesignError
-from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.leg.actuator_fit import ActuatorFit, actuator_fit
 from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
-from pareto_monoped.leg.motor_drivers import MotorDriver, motor_driver_for
 
-_THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into the axle, cables through the journal
 _LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
 _LEAST_ROD_CIRCLE_MM = 70.0  # 0.9 mm from a rod to an ear with the bumper fully squeezed
@@ -45,19 +40,8 @@ class LegDimensions:
     that a link weighs what the reference link does.
 
     Attributes:
-        mount_pitch_radius_mm, mount_holes: bolts between the actuator's housing and a plate (M3).
-        mount_thread_mm: usable depth of their threads in the housing.
-        mount_dowel_mm, mount_dowels: dowels in gaps between these bolts, as deep as their threads.
-        housing_radius_mm: of the actuator's case.
-        output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3).
-        output_thread_mm: usable depth of their threads in the flange.
-        output_dowel_mm, output_dowels: dowels in gaps between these bolts, as deep as their threads.
-        coupler_radius_mm: of the output flange.
-        back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
-            their diameter.
+        hip, knee: what the actuators of either joint need.
         chain: the thigh's chain and its sprockets.
-        driver: the motor driver on either cheek of the base.
-        driver_note: what the parts list says beside its name: that it limits the motor, where it does.
         bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base.
         plate_mm: thickness of the aluminium plates of the thigh.
         shank_plate_mm: thickness of the aluminium plates of the shank.
@@ -78,24 +62,9 @@ class LegDimensions:
         far_cheek_mm: thickness of the base's far cheek: the bearing's seat and a lip of 1 mm.
     """
 
-    mount_pitch_radius_mm: float
-    mount_holes: int
-    mount_thread_mm: float
-    mount_dowel_mm: float
-    mount_dowels: int
-    housing_radius_mm: float
-    output_pitch_radius_mm: float
-    output_holes: int
-    output_thread_mm: float
-    output_dowel_mm: float
-    output_dowels: int
-    coupler_radius_mm: float
-    back_pitch_radius_mm: float
-    back_holes: int
-    back_screw_mm: float
+    hip: ActuatorFit
+    knee: ActuatorFit
     chain: ChainDrive
-    driver: MotorDriver
-    driver_note: str
     bearing_bore_radius_mm: float
     bearing_outer_radius_mm: float
     bearing_width_mm: float
@@ -127,32 +96,25 @@ class LegDimensions:
         """Height of the thigh plates' outer faces above the middle plane."""
         return 0.5 * self.gap_mm + self.plate_mm
 
-    @property
-    def output_dowel(self) -> Pattern:
-        """Holes of the dowels between the hip's output flange and its coupling, as they are in the actuator's frame."""
-        gap = np.pi / self.output_holes
-        return Dowel(diameter_mm=self.output_dowel_mm).holes(2.0 * self.output_pitch_radius_mm, self.output_dowels, gap)
+    def of(self, joint: str) -> ActuatorFit:
+        """What the actuators of ``hip`` or ``knee`` need."""
+        return {"hip": self.hip, "knee": self.knee}[joint]
 
     @property
     def drive_dowel(self) -> Pattern:
-        """The same between the knee's output flange, whose actuator is turned over, and the drive sprocket."""
-        return replace(self.output_dowel, phase_rad=-self.output_dowel.phase_rad)
-
-    @property
-    def mount_dowel(self) -> Pattern:
-        """Holes of the dowels between the actuator's housing and a plate, likewise."""
-        gap = np.pi / self.mount_holes
-        return Dowel(diameter_mm=self.mount_dowel_mm).holes(2.0 * self.mount_pitch_radius_mm, self.mount_dowels, gap)
+        """Holes of the dowels between drive sprocket and the knee's output flange, whose actuator is turned over."""
+        holes = self.knee.output_dowel
+        return replace(holes, phase_rad=-holes.phase_rad)
 
     @property
     def rim_radius_mm(self) -> float:
-        """Radius of the round plates that carry an actuator's housing: 6 mm of plate outside the screws' circle."""
-        return self.mount_pitch_radius_mm + 6.0
+        """Radius of the round plates that carry an actuator's housing, of the wider actuator."""
+        return max(self.hip.rim_radius_mm, self.knee.rim_radius_mm)
 
     @property
     def first_bridge_mm(self) -> float:
-        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the actuator's case."""
-        return self.housing_radius_mm + 8.5
+        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the knee actuator's case."""
+        return self.knee.housing_radius_mm + 8.5
 
     @property
     def rod_circle_mm(self) -> float:
@@ -198,46 +160,24 @@ class LegDimensions:
         return self.thigh_face_mm
 
 
-@lru_cache(maxsize=16)
-def leg_dimensions(actuator_map: ActuatorMap) -> LegDimensions:
-    """The leg that fits a motor: its plates are drilled for its actuators, its chain carries their largest torque.
+@lru_cache(maxsize=64)
+def leg_dimensions(maps: Maps) -> LegDimensions:
+    """The leg that fits the motors of both joints.
 
-    All actuators of a map have the same output. Where its two families have different mounts, the leg fits the mount of
-    the lowest ratio; an export refuses the other one.
+    Its plates are drilled for their actuators, the chain carries the knee's largest torque, and the wider actuator sets
+    the places of the base's rods.
 
     Raises:
-        DesignError: the map has no actuator.
+        DesignError: a map has no actuator.
     """
-    actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
-    if not actuators:
-        raise DesignError(
-            f"actuators of {actuator_map.motor.name} = 0: a leg needs at least one to be drilled for; "
-            "choose another motor or other actuator settings"
-        )
-    mount, output = actuators[0].mount, actuators[0].output
+    both = joint_maps(maps)
+    hip, knee = actuator_fit(both.hip), actuator_fit(both.knee)
     bearing = small_bearing(_BEARING_BORE_MM)
-    torque_n_m = max(actuator.peak_torque_n_m for actuator in actuators)
-    motor = actuator_map.motor
-    driver = motor_driver_for(motor)
+    torque_n_m = max(hip.torque_n_m, knee.torque_n_m)  # inner and outer plate have the same windows
     return LegDimensions(
-        mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
-        mount_holes=mount.bolts.count,
-        mount_thread_mm=mount.thread_depth_mm - _THREAD_SPARE_MM,
-        mount_dowel_mm=mount.dowels.diameter_mm,
-        mount_dowels=mount.dowels.count,
-        housing_radius_mm=mount.housing_radius_mm,
-        output_pitch_radius_mm=0.5 * output.bolts.pitch_circle_mm,
-        output_holes=output.bolts.count,
-        output_thread_mm=output.thread_depth_mm - _THREAD_SPARE_MM,
-        output_dowel_mm=output.dowels.diameter_mm,
-        output_dowels=output.dowels.count,
-        coupler_radius_mm=output.flange_radius_mm,
-        back_pitch_radius_mm=0.5 * mount.back_bolts.pitch_circle_mm,
-        back_holes=mount.back_bolts.count,
-        back_screw_mm=mount.back_bolts.diameter_mm,
-        chain=chain_drive_for(torque_n_m),
-        driver=driver,
-        driver_note="" if driver.carries(motor) else f"; {driver.limit(motor)}",
+        hip=hip,
+        knee=knee,
+        chain=chain_drive_for(knee.torque_n_m),
         bearing_bore_radius_mm=0.5 * float(bearing.inner_diameter_mm),
         bearing_outer_radius_mm=0.5 * float(bearing.outer_diameter_mm),
         bearing_width_mm=float(bearing.width_mm),

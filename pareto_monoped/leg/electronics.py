@@ -13,6 +13,7 @@ from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.motor_drivers import MotorDriver
 from pareto_monoped.leg.outlines import rounded
 from pareto_monoped.leg.sandwich import Place, holes_at
 from pareto_monoped.materials import ALLOYS, MATERIALS
@@ -58,38 +59,40 @@ class BoardPlace:
         return self.plate_mm + float(np.sign(self.inner_mm - self.plate_mm)) * off_mm
 
 
-def board_place(face_mm: float, direction: float, d: LegDimensions) -> BoardPlace:
+def board_place(joint: str, face_mm: float, direction: float, d: LegDimensions) -> BoardPlace:
     """The place of a driver's board; see ``driver_parts``."""
-    plate, middle = face_mm + direction * DRIVER_PLATE_MM, _lower_row_mm(d) + 0.5 * d.driver.hole_length_mm
+    driver = d.of(joint).driver
+    plate, middle = face_mm + direction * DRIVER_PLATE_MM, _lower_row_mm(d) + 0.5 * driver.hole_length_mm
     return BoardPlace(
         plate_mm=plate,
         inner_mm=plate + direction * _STANDOFF,
-        low_mm=middle - 0.5 * d.driver.length_mm,
-        high_mm=middle + 0.5 * d.driver.length_mm,
+        low_mm=middle - 0.5 * driver.length_mm,
+        high_mm=middle + 0.5 * driver.length_mm,
         tie_x_mm=0.5 * sum(_TIES_X),
-        tie_y_mm=_lower_row_mm(d) + d.driver.hole_length_mm,
+        tie_y_mm=_lower_row_mm(d) + driver.hole_length_mm,
     )
 
 
-def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:
+def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:
     """The driver of one motor on the outside of a cheek, in the frame of the base.
 
     Args:
-        motor: whose driver it is, ``hip`` or ``knee``: the parts' names begin with it.
+        joint: whose driver it is, ``hip`` or ``knee``: the parts' names begin with it.
         face_mm: height z of the cheek's outer face, float or shape (n,).
         direction: outwards along z, -1 or 1.
         d: dimensions.
     """
-    driver, holes = d.driver, _hole_places(d)
+    driver = d.of(joint).driver
+    holes = _hole_places(driver, d)
     back, under = face_mm + direction * DRIVER_PLATE_MM, face_mm + direction * (DRIVER_PLATE_MM + _STANDOFF)
     over = under + direction * _BOARD
     return (
         Part(
-            name=f"{motor}_driver_plate",
+            name=f"{joint}_driver_plate",
             role=Role.BRACKET,
             material=MATERIALS.aluminium,
             process="laser cut",
-            prisms=(between(_plate_outline(d), face_mm, back, *_plate_holes(d)),),
+            prisms=(between(_plate_outline(driver, d), face_mm, back, *_plate_holes(driver, d)),),
             grade=ALLOYS["aw_6082_t6"],
             features=(
                 clearance(
@@ -104,7 +107,7 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
         ),
         _gently_tightened(
             screw_part(
-                f"{motor}_standoff_screw",
+                f"{joint}_standoff_screw",
                 driver.screw,
                 head="countersunk",
                 seat_mm=face_mm,
@@ -117,7 +120,7 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             )
         ),
         Part(
-            name=f"{motor}_standoff",
+            name=f"{joint}_standoff",
             role=Role.SPACER,
             visibility=Visibility.DETAIL,
             material=MATERIALS.aluminium,
@@ -126,10 +129,10 @@ def driver_parts(motor: str, face_mm: Numbers, direction: float, d: LegDimension
             places_mm=holes,
             note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
         ),
-        _board(motor, under, over, direction, d),
+        _board(joint, under, over, direction, d),
         _gently_tightened(
             screw_part(
-                f"{motor}_driver_screw",
+                f"{joint}_driver_screw",
                 driver.screw,
                 head="cap",
                 seat_mm=over,
@@ -158,29 +161,29 @@ def _lower_row_mm(d: LegDimensions) -> float:
     return d.lower_rod_mm[1] + _ABOVE_ROD
 
 
-def _hole_places(d: LegDimensions) -> tuple[Place, ...]:
+def _hole_places(driver: MotorDriver, d: LegDimensions) -> tuple[Place, ...]:
     """The board's four mounting holes."""
-    x, low = 0.5 * d.driver.hole_width_mm, _lower_row_mm(d)
-    return tuple((side * x, y, 0.0) for y in (low, low + d.driver.hole_length_mm) for side in (-1.0, 1.0))
+    x, low = 0.5 * driver.hole_width_mm, _lower_row_mm(d)
+    return tuple((side * x, y, 0.0) for y in (low, low + driver.hole_length_mm) for side in (-1.0, 1.0))
 
 
-def _plate_outline(d: LegDimensions) -> Shape:
+def _plate_outline(driver: MotorDriver, d: LegDimensions) -> Shape:
     """A rectangle around the board's holes; the upper rods lie within."""
     return rounded(
-        half_width_mm=max(0.5 * d.driver.hole_width_mm, d.upper_rod_mm[0]) + _RIM,
-        high_mm=_lower_row_mm(d) + d.driver.hole_length_mm + _RIM,
+        half_width_mm=max(0.5 * driver.hole_width_mm, d.upper_rod_mm[0]) + _RIM,
+        high_mm=_lower_row_mm(d) + driver.hole_length_mm + _RIM,
         low_mm=_lower_row_mm(d) - _RIM,
         corner_mm=_CORNER,
     )
 
 
-def _plate_holes(d: LegDimensions) -> tuple[Shape, ...]:
+def _plate_holes(driver: MotorDriver, d: LegDimensions) -> tuple[Shape, ...]:
     """For the rods' screws, the standoffs' screws and cable ties, and the window that lightens the plate."""
     rod_x, rod_y = d.upper_rod_mm
-    low, high = _lower_row_mm(d), _lower_row_mm(d) + d.driver.hole_length_mm
+    low, high = _lower_row_mm(d), _lower_row_mm(d) + driver.hole_length_mm
     ties = tuple((side * x, high, 0.0) for x in _TIES_X for side in (-1.0, 1.0))
     window = rounded(
-        half_width_mm=min(0.5 * d.driver.hole_width_mm, rod_x) - _FRAME,
+        half_width_mm=min(0.5 * driver.hole_width_mm, rod_x) - _FRAME,
         high_mm=high - _FRAME,
         low_mm=low + _FRAME,
         corner_mm=_CORNER,
@@ -188,18 +191,18 @@ def _plate_holes(d: LegDimensions) -> tuple[Shape, ...]:
     return (
         window,
         *holes_at(((-rod_x, rod_y, 0.0), (rod_x, rod_y, 0.0)), M4.hole),
-        *holes_at(_hole_places(d), d.driver.screw.hole),
+        *holes_at(_hole_places(driver, d), driver.screw.hole),
         *holes_at(ties, _TIE_HOLE),
     )
 
 
-def _board(motor: str, under_mm: Numbers, over_mm: Numbers, direction: float, d: LegDimensions) -> Part:
+def _board(joint: str, under_mm: Numbers, over_mm: Numbers, direction: float, d: LegDimensions) -> Part:
     """The driver: a bare board, and a block for what stands on it between the rows of its screws."""
-    driver = d.driver
+    driver = d.of(joint).driver
     middle = _lower_row_mm(d) + 0.5 * driver.hole_length_mm
     block = driver.hole_length_mm - 2.0 * _CLEAR_OF_HOLES
     return Part(
-        name=f"{motor}_driver",
+        name=f"{joint}_driver",
         role=Role.ELECTRONICS,
         material=MATERIALS.electronics,
         process="bought",
@@ -208,7 +211,7 @@ def _board(motor: str, under_mm: Numbers, over_mm: Numbers, direction: float, d:
                 rectangle(width_mm=driver.width_mm, height_mm=driver.length_mm, y_mm=middle),
                 under_mm,
                 over_mm,
-                *holes_at(_hole_places(d), driver.screw.hole),
+                *holes_at(_hole_places(driver, d), driver.screw.hole),
             ),
             between(
                 rectangle(width_mm=driver.width_mm, height_mm=block, y_mm=middle),
@@ -217,5 +220,5 @@ def _board(motor: str, under_mm: Numbers, over_mm: Numbers, direction: float, d:
             ),
         ),
         catalogue_mass_kg=driver.mass_kg,
-        note=f"motor driver {driver.name}, bare board{d.driver_note}",
+        note=f"motor driver {driver.name}, bare board{d.of(joint).driver_note}",
     )

@@ -8,6 +8,7 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
+from pareto_monoped.leg.actuator_fit import ActuatorFit
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, NECK_RADIUS, SEAT_RADIUS, support_parts
 from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
@@ -25,16 +26,16 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
     return (*_hip_coupling(d), _knee_mount_screw(d), _knee_mount_dowels(d), *_knee_drive(d))
 
 
-def _coupling_holes(d: LegDimensions, dowels: Pattern) -> tuple[Shape, ...]:
+def _coupling_holes(fit: ActuatorFit, dowels: Pattern) -> tuple[Shape, ...]:
     """Holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
     return (
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
+        Pattern(radius_mm=M3.hole, pitch_radius_mm=fit.output_pitch_radius_mm, count=fit.output_holes),
         dowels,
         Pattern(
             radius_mm=_RELIEF_RADIUS,
-            pitch_radius_mm=d.output_pitch_radius_mm,
+            pitch_radius_mm=fit.output_pitch_radius_mm,
             count=dowels.count,
-            phase_rad=dowels.phase_rad + 2.0 * np.pi / d.output_holes,
+            phase_rad=dowels.phase_rad + 2.0 * np.pi / fit.output_holes,
         ),
     )
 
@@ -45,7 +46,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
     bore, seat, holes = (
         Circle(radius_mm=_BORE_RADIUS),
         Circle(radius_mm=SEAT_RADIUS),
-        _coupling_holes(d, d.output_dowel),
+        _coupling_holes(d.hip, d.hip.output_dowel),
     )
     layers: tuple[tuple[float, float, float, tuple[Shape, ...]], ...] = (
         (_RADIUS, d.hip_mount_mm, BACK, (bore, *holes)),
@@ -62,15 +63,15 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
                 Prism(outline=Circle(radius_mm=radius), z0_mm=z0, z1_mm=z1, holes=cut) for radius, z0, z1, cut in layers
             ),
             grade=ALLOYS["aw_6082_t6"],
-            fits=(_output_dowel(d).hole_fit, Fit(diameter_mm=2.0 * SEAT_RADIUS, zone="R6", seat=True)),
+            fits=(_output_dowel(d.hip).hole_fit, Fit(diameter_mm=2.0 * SEAT_RADIUS, zone="R6", seat=True)),
             note="between hip output and inner plate",
         ),
         _output_dowels(
             "hip_coupling_dowel",
-            d,
-            d.output_dowel,
+            d.hip,
+            d.hip.output_dowel,
             end_mm=-half_gap,
-            room_mm=-half_gap - d.hip_mount_mm + d.output_thread_mm,
+            room_mm=-half_gap - d.hip_mount_mm + d.hip.output_thread_mm,
             direction=-1.0,
             partner="hip_coupling",
         ),
@@ -80,25 +81,25 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             head="cap",
             seat_mm=-half_gap,
             grip_mm=-half_gap - d.hip_mount_mm,
-            room_mm=d.output_thread_mm,
+            room_mm=d.hip.output_thread_mm,
             direction=-1.0,
             material=MATERIALS.steel,
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
+            count=d.hip.output_holes,
+            pitch_radius_mm=d.hip.output_pitch_radius_mm,
             grade="10.9",
             note="from inside the thigh into the hip's output flange",
         ),
     )
 
 
-def _output_dowel(d: LegDimensions) -> Dowel:
+def _output_dowel(fit: ActuatorFit) -> Dowel:
     """Between an output flange and what it turns: these dowels carry its torque, the screws only clamp."""
-    return Dowel(diameter_mm=d.output_dowel_mm)
+    return Dowel(diameter_mm=fit.output_dowel_mm)
 
 
 def _output_dowels(
     name: str,
-    d: LegDimensions,
+    fit: ActuatorFit,
     holes: Pattern,
     *,
     end_mm: float,
@@ -108,10 +109,10 @@ def _output_dowels(
     group: Group = Group.FIXED,
 ) -> Part:
     """The dowels into an output flange, in the middle of their holes, which begin at ``end_mm``."""
-    spare_mm = room_mm - float(_output_dowel(d).length_mm(room_mm))
+    spare_mm = room_mm - float(_output_dowel(fit).length_mm(room_mm))
     return dowel_part(
         name,
-        _output_dowel(d),
+        _output_dowel(fit),
         end_mm=end_mm + direction * 0.5 * spare_mm,
         room_mm=room_mm,
         direction=direction,
@@ -127,12 +128,12 @@ def _output_dowels(
 
 def _knee_mount_dowels(d: LegDimensions) -> Part:
     """The dowels between the outer plate and the knee actuator's case: they carry its torque and the chain's pull."""
-    holes = d.mount_dowel
+    holes = d.knee.mount_dowel
     return dowel_part(
         "knee_mount_dowel",
-        Dowel(diameter_mm=d.mount_dowel_mm),
-        end_mm=d.knee_mount_mm + d.mount_thread_mm,
-        room_mm=d.mount_thread_mm + d.plate_mm + _DOWEL_STANDS_OUT,
+        Dowel(diameter_mm=d.knee.mount_dowel_mm),
+        end_mm=d.knee_mount_mm + d.knee.mount_thread_mm,
+        room_mm=d.knee.mount_thread_mm + d.plate_mm + _DOWEL_STANDS_OUT,
         direction=-1.0,
         material=MATERIALS.steel,
         count=holes.count,
@@ -151,11 +152,11 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
         head="cap",
         seat_mm=0.5 * d.gap_mm,
         grip_mm=d.plate_mm,
-        room_mm=d.mount_thread_mm,
+        room_mm=d.knee.mount_thread_mm,
         direction=1.0,
         material=MATERIALS.steel,
-        count=d.mount_holes,
-        pitch_radius_mm=d.mount_pitch_radius_mm,
+        count=d.knee.mount_holes,
+        pitch_radius_mm=d.knee.mount_pitch_radius_mm,
         grade="8.8",
         note="from inside the thigh into the knee actuator's case",
     )
@@ -163,7 +164,7 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
 
 def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
     """What turns with the knee actuator's output: sprocket, coupling, screws."""
-    half_tooth, holes = 0.5 * d.chain.sprocket_width_mm, _coupling_holes(d, d.drive_dowel)
+    half_tooth, holes = 0.5 * d.chain.sprocket_width_mm, _coupling_holes(d.knee, d.drive_dowel)
     return (
         *support_parts(d, _RADIUS, holes),
         Part(
@@ -174,7 +175,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             prisms=sprocket_prisms(d, M3.head + HEAD_PLAY),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["aw_7075_t6"],
-            fits=(Fit(diameter_mm=2.0 * NECK_RADIUS, zone="H7"), _output_dowel(d).hole_fit),
+            fits=(Fit(diameter_mm=2.0 * NECK_RADIUS, zone="H7"), _output_dowel(d.knee).hole_fit),
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
         Part(
@@ -192,15 +193,15 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             ),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["aw_6082_t6"],
-            fits=(_output_dowel(d).hole_fit,),
+            fits=(_output_dowel(d.knee).hole_fit,),
             note="between knee output and drive sprocket",
         ),
         _output_dowels(
             "drive_dowel",
-            d,
+            d.knee,
             d.drive_dowel,
-            end_mm=d.knee_mount_mm + d.output_thread_mm,
-            room_mm=d.knee_mount_mm + half_tooth + d.output_thread_mm,
+            end_mm=d.knee_mount_mm + d.knee.output_thread_mm,
+            room_mm=d.knee_mount_mm + half_tooth + d.knee.output_thread_mm,
             direction=-1.0,
             partner="drive_coupling",
             group=Group.KNEE_DRIVE,
@@ -211,11 +212,11 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             head="cap",
             seat_mm=d.sprocket_recess_mm - half_tooth,
             grip_mm=d.knee_mount_mm + half_tooth - d.sprocket_recess_mm,
-            room_mm=d.output_thread_mm,
+            room_mm=d.knee.output_thread_mm,
             direction=1.0,
             material=MATERIALS.steel,
-            count=d.output_holes,
-            pitch_radius_mm=d.output_pitch_radius_mm,
+            count=d.knee.output_holes,
+            pitch_radius_mm=d.knee.output_pitch_radius_mm,
             group=Group.KNEE_DRIVE,
             grade="10.9",
             note="through the sprocket into the knee's output flange",

@@ -42,8 +42,8 @@ def journal_parts(
     back = d.knee_mount_mm + 1000.0 * knee_actuator_length_m
     flange, seat = _flange_z_mm(knee_actuator_length_m, d), far_cheek_z_mm(knee_actuator_length_m, d)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - _WALL)
-    screw = _motor_screw(d.back_screw_mm)
-    holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.back_pitch_radius_mm, count=d.back_holes)
+    screw = _motor_screw(d.knee.back_screw_mm)
+    holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.knee.back_pitch_radius_mm, count=d.knee.back_holes)
     return (
         Part(
             name="journal",
@@ -52,7 +52,7 @@ def journal_parts(
             process="machined",
             prisms=(
                 Prism(
-                    outline=Circle(radius_mm=d.back_pitch_radius_mm + _FLANGE_RIM),
+                    outline=Circle(radius_mm=d.knee.back_pitch_radius_mm + _FLANGE_RIM),
                     z0_mm=back,
                     z1_mm=flange,
                     holes=(bore, holes),
@@ -79,8 +79,8 @@ def journal_parts(
             room_mm=_THREAD,
             direction=-1.0,
             material=MATERIALS.steel,
-            count=d.back_holes,
-            pitch_radius_mm=d.back_pitch_radius_mm,
+            count=d.knee.back_holes,
+            pitch_radius_mm=d.knee.back_pitch_radius_mm,
             note="into the knee motor's own mounting pattern",
         ),
     )

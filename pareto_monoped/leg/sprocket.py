@@ -58,7 +58,7 @@ def sprocket_outline(drive: ChainDrive) -> Path:
 
 def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
     """The holes of its screws."""
-    return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes)
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.knee.output_pitch_radius_mm, count=d.knee.output_holes)
 
 
 def relief_holes(d: LegDimensions) -> Pattern:

@@ -28,7 +28,7 @@ from pareto_monoped.leg.sandwich import (
     with_rungs,
 )
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
-from pareto_monoped.leg.thigh_outline import thigh_outline
+from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm, thigh_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
@@ -85,7 +85,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _standoff_angles(d: LegDimensions) -> tuple[float, ...]:
-    small = d.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
+    small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
     return _SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES
 
 
@@ -131,7 +131,7 @@ def _plates(
             ),
             grade=ALLOYS["aw_6082_t6"],
             features=flush(-face, "low"),
-            fits=(Dowel(diameter_mm=d.output_dowel_mm).hole_fit,),
+            fits=(Dowel(diameter_mm=d.hip.output_dowel_mm).hole_fit,),
             note=note,
         ),
         Part(
@@ -141,7 +141,7 @@ def _plates(
             process="laser cut",
             prisms=(
                 Prism(
-                    outline=thigh_outline(d.rim_radius_mm, length, d),
+                    outline=thigh_outline(outer_hip_radius_mm(d), length, d),
                     z0_mm=half_gap,
                     z1_mm=face,
                     holes=(*common, *screwed, *outer_hip_holes(d)),
@@ -149,7 +149,7 @@ def _plates(
             ),
             grade=ALLOYS["aw_6082_t6"],
             features=(*flush(half_gap, "high"), clearance(M3, screwed, half_gap, face, countersunk="high")),
-            fits=(Dowel(diameter_mm=d.mount_dowel_mm).hole_fit,),
+            fits=(Dowel(diameter_mm=d.knee.mount_dowel_mm).hole_fit,),
             note=note + "; carries the knee actuator",
         ),
     )
@@ -159,21 +159,21 @@ def inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """The inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
     return (
         Circle(radius_mm=BOSS_RADIUS + _BOSS_PLAY),
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.output_pitch_radius_mm, count=d.output_holes),
-        d.output_dowel,
+        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.output_pitch_radius_mm, count=d.hip.output_holes),
+        d.hip.output_dowel,
         Pattern(radius_mm=_INNER_RELIEF_RADIUS, pitch_radius_mm=_INNER_RELIEF_PITCH_RADIUS, count=6),
     )
 
 
 def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """The outer plate's holes around the hip axis: bore, screws into the knee actuator's case, lightening."""
-    outside_mm = d.mount_pitch_radius_mm - _OUTER_RELIEF_TO_SCREWS
-    inside_mm = d.coupler_radius_mm + _OUTER_RELIEF_TO_FLANGE
+    outside_mm = d.knee.mount_pitch_radius_mm - _OUTER_RELIEF_TO_SCREWS
+    inside_mm = d.knee.coupler_radius_mm + _OUTER_RELIEF_TO_FLANGE
     relief = min(_OUTER_RELIEF_MOST, 0.5 * (outside_mm - inside_mm))
     return (
-        Circle(radius_mm=d.coupler_radius_mm + _OUTER_BORE_PLAY),
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.mount_pitch_radius_mm, count=d.mount_holes),
-        d.mount_dowel,
+        Circle(radius_mm=d.knee.coupler_radius_mm + _OUTER_BORE_PLAY),
+        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.knee.mount_pitch_radius_mm, count=d.knee.mount_holes),
+        d.knee.mount_dowel,
         Pattern(radius_mm=relief, pitch_radius_mm=outside_mm - relief, count=6),
     )
 

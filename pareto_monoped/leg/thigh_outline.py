@@ -68,12 +68,21 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
     return Pulley(x_mm=x, y_mm=y, radius_mm=_CORNER)
 
 
+def outer_hip_radius_mm(d: LegDimensions) -> float:
+    """Radius of the outer plate's round end at the hip, which carries the knee actuator.
+
+    Where that actuator is narrower than the hip's, the round end still reaches the ears of the hip's stop.
+    """
+    least = _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0])
+    return max(d.knee.rim_radius_mm, min(d.rim_radius_mm, least))
+
+
 def hip_short_mm(d: LegDimensions) -> float:
     """By how much the round end at the hip is too small for the ears of the hip's stop; 0 or less where it is not.
 
     The other plate's round end is the same for every motor, and larger.
     """
-    return _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0]) - d.rim_radius_mm
+    return _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0]) - outer_hip_radius_mm(d)
 
 
 def _least_hip_radius_mm(face: Face) -> float:

@@ -1,12 +1,13 @@
 """One study -> its part of the page: pure functions of the stored study and of what was simulated again for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import leg_dimensions
@@ -47,6 +48,19 @@ class MapPlace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Places:
+    """Where the page has what the designs of a study are built from.
+
+    Attributes:
+        maps: name of a motor -> its stage 1 map.
+        kits: label of a kit of motors -> number of the kit.
+    """
+
+    maps: Mapping[str, MapPlace]
+    kits: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
     """A stored study, what was simulated again for it, and its exported models by trial."""
 
@@ -59,7 +73,7 @@ def study_card(
     source: Source,
     label: str,
     most_rows: int,
-    maps: Mapping[str, MapPlace],
+    places: Places,
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
 ) -> StudyCard:
@@ -69,7 +83,7 @@ def study_card(
         source: the study.
         label: its name on the page.
         most_rows: trials that the page may hold of it.
-        maps: name of each of its motors -> where the page has that motor's stage 1 map.
+        places: of its motors.
         variables: those that the page shows.
         goals: the objectives of all studies on the page.
     """
@@ -83,20 +97,18 @@ def study_card(
     feasible_kg = data.trials.loc[state == "feasible", "mass_kg"]
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
-    several = len(study.motors) > 1
+    several = len(study.kits) > 1
     return StudyCard(
         label=label,
         name=study.name,
         description=study.description,
         database=str(data.db),
-        motor=", ".join(data.actuator_maps),
-        case_motor=data.motor.name,
-        motor_names={
-            str(maps[motor].number): given for motor, given in zip(data.actuator_maps, study.motors, strict=True)
-        },
+        motor=", ".join(kit.label for kit in data.kits) if study.motor is not None else study.motor_text,
+        case_motor=data.case_kit.label,
+        motor_names={str(places.kits[kit.label]): given for kit, given in zip(data.kits, study.kits, strict=True)},
         calibration=data.meta.calibration,
         calibration_name=study.calibration,
-        map=maps[data.motor.name].number,
+        kit=places.kits[data.case_kit.label],
         algorithm=study.algorithm.name,
         seed=study.seed,
         objectives=study.objectives.names,
@@ -118,8 +130,8 @@ def study_card(
         notes=notes(data, again),
         trials=trial_columns(
             trials,
-            _gearboxes(data, trials, maps)
-            | ({"motor": [maps[name].number for name in trials["motor"]]} if several else {}),
+            _gearboxes(trials, data.kit_rows(trials), places.maps)
+            | ({"motor": [places.kits[name] for name in trials["motor"]]} if several else {}),
             len(data.trials),
             variables,
             goals,
@@ -132,7 +144,7 @@ def study_card(
         jumps={str(trial): jump for trial, jump in again.jumps.items()},
         models={str(trial): model for trial, model in source.models.items()},
         cases=again.cases,
-        case_gearboxes=_gearboxes(data, cases.assign(motor=data.motor.name), maps, suffix=""),
+        case_gearboxes=_gearboxes(cases, [(data.case_kit, np.arange(len(cases)))], places.maps, suffix=""),
         history=history_columns(data.history),
         weighted=[[weight, row_of[trial]] for weight, trial in weights],
         floor_mass_kg=float(feasible_kg.min()) if len(feasible_kg) else None,
@@ -144,13 +156,17 @@ def study_card(
 
 
 def _gearboxes(
-    data: StudyData, designs: pd.DataFrame, maps: Mapping[str, MapPlace], suffix: str = "_gearbox"
+    designs: pd.DataFrame,
+    kit_rows: Iterable[tuple[JointMaps, NDArray[np.intp]]],
+    maps: Mapping[str, MapPlace],
+    suffix: str = "_gearbox",
 ) -> dict[str, list[int]]:
-    """Numbers of the designs' gearboxes on the page, by joint."""
+    """Numbers of the designs' gearboxes on the page, by joint; ``kit_rows`` has the positions of each kit's designs."""
     found = {joint: np.full(len(designs), -1) for joint in ("hip", "knee")}
-    for actuator_map, rows in data.motor_rows(designs):
-        first = maps[actuator_map.motor.name].first_gearbox
+    for kit, rows in kit_rows:
         for joint, numbers in found.items():
+            actuator_map = kit.of(joint)
+            first = maps[actuator_map.motor.name].first_gearbox
             ratios = designs[f"{joint}_ratio"].to_numpy(dtype=float)[rows]
             numbers[rows] = gearbox_numbers(actuator_map, ratios, first)
     return {f"{joint}{suffix}": numbers.tolist() for joint, numbers in found.items()}
@@ -159,15 +175,15 @@ def _gearboxes(
 def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float64]:
     """Masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
     masses = np.zeros((len(designs), 3))
-    for actuator_map, rows in data.motor_rows(designs):
+    for kit, rows in data.kit_rows(designs):
         values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
-        masses[rows] = robot_arrays(values, actuator_map, data.calibration.mass).body_mass_kg
+        masses[rows] = robot_arrays(values, kit, data.calibration.mass).body_mass_kg
     return masses
 
 
 def _foot(data: StudyData) -> tuple[float, float]:
     """Mass in kg, which the shank's mass includes, and radius in m of the simulated foot; no motor changes it."""
-    given, leg = data.calibration.mass, leg_dimensions(data.actuator_map)
+    given, leg = data.calibration.mass, leg_dimensions(data.case_kit)
     mass_kg = float(foot_part(0.0, leg).mass_kg()) if given.foot_mass_kg is None else given.foot_mass_kg
     radius_m = 1e-3 * leg.foot_radius_mm if given.foot_radius_m is None else given.foot_radius_m
     return mass_kg, radius_m

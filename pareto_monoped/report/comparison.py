@@ -42,7 +42,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
         rows.append(
             {
                 "label": label,
-                "motor": ", ".join(data.study.motors),
+                "motor": data.study.motor_text,
                 "calibration": data.meta.calibration,
                 "algorithm": data.study.algorithm.name,
                 "seed": data.study.seed,

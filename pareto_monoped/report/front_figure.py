@@ -115,7 +115,7 @@ def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, thi
 
 
 def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: Sequence[str]) -> None:
-    """The designs on the front with a colour and a mark for each motor, where the study has several."""
+    """The designs on the front with a colour and a mark for each kit of motors, where the study has several."""
     if "motor" not in card.trials.columns:
         return
     across, up = _places(card, card.front, places)
@@ -126,7 +126,7 @@ def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: 
             tint, symbol = STYLES[k % len(STYLES)]
             # A third objective keeps the colour; the marks then stand around its dots.
             fill = {"mfc": "none", "mew": 0.5} if third else {}
-            label = payload.maps[number].motor
+            label = payload.kits[number].motor
             axes.plot(across[rows], up[rows], symbol, ls="", ms=4.5 if third else 3, color=tint, label=label, **fill)
 
 

@@ -12,6 +12,7 @@ from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
+from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm
 from pareto_monoped.report.rounding import column
 from pareto_monoped.report.schema import Gearbox, LegTable, MapPoint, MotorMap
 
@@ -84,12 +85,12 @@ def leg_table(d: LegDimensions) -> LegTable:
         length_m=column(_LENGTHS_M),
         thigh_kg=column(sum(part.mass_kg() for part in thigh_parts(_LENGTHS_M, d))),
         shank_kg=column(sum(part.mass_kg() for part in shank_parts(_LENGTHS_M, d))),
-        housing_radius_m=1e-3 * d.housing_radius_mm,
-        output_radius_m=1e-3 * d.coupler_radius_mm,
+        housing_radius_m=1e-3 * max(d.hip.housing_radius_mm, d.knee.housing_radius_mm),
+        output_radius_m=1e-3 * d.knee.coupler_radius_mm,
         base_top_m=1e-3 * float(top.y_mm),
         base_top_radius_m=1e-3 * float(top.radius_mm),
         thigh_half_width_m=1e-3 * d.thigh_half_width_mm,
-        thigh_hip_radius_m=1e-3 * d.rim_radius_mm,
+        thigh_hip_radius_m=1e-3 * outer_hip_radius_mm(d),
         thigh_knee_radius_m=1e-3 * d.knee_radius_mm,
         shank_knee_radius_m=1e-3 * d.shank_top_radius_mm,
         shank_foot_radius_m=1e-3 * d.shank_bottom_radius_mm,

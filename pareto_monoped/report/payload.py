@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from pareto_monoped import __version__
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
+from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.report.card import HEADLINES_M, MapPlace, Source, study_card
+from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
 from pareto_monoped.report.comparison import compare
-from pareto_monoped.report.motors import motor_tables
+from pareto_monoped.report.motors import leg_table, motor_tables
 from pareto_monoped.report.quantities import QUANTITIES
-from pareto_monoped.report.schema import Constants, Gearbox, MotorMap, Payload, StudyCard
+from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard
 from pareto_monoped.report.trials import rows_per_study
 from pareto_monoped.study.choices import WORDS
 
@@ -47,6 +48,13 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
                 mapped.append(_origin(actuator_map))
                 maps.append(tables.map)
                 gearboxes.extend(tables.gearboxes)
+    kits: dict[tuple[int, int], Kit] = {}
+    for source in sources:
+        for kit in source.data.kits:
+            hip, knee = (mapped.index(_origin(one)) for one in (kit.hip, kit.knee))
+            if (hip, knee) not in kits:
+                leg = None if hip == knee else leg_table(leg_dimensions(kit))
+                kits[hip, knee] = Kit(motor=kit.label, hip=hip, knee=knee, leg=leg)
     labels = _labels(sources)
     used = {variable.name for source in sources for variable in in_use(source.data.trials)}
     variables = [variable for variable in VARIABLES if variable.name in used]
@@ -55,8 +63,11 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     for source, label, most_rows in zip(
         sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
     ):
-        own = {name: places[mapped.index(_origin(one))] for name, one in source.data.actuator_maps.items()}
-        cards.append(study_card(source, label, most_rows, own, variables, goals))
+        own = {name: mapped.index(_origin(one)) for name, one in source.data.actuator_maps.items()}
+        ends = {kit.label: (own[kit.hip.motor.name], own[kit.knee.motor.name]) for kit in source.data.kits}
+        numbers = {label: list(kits).index(pair) for label, pair in ends.items()}
+        found = Places(maps={name: places[place] for name, place in own.items()}, kits=numbers)
+        cards.append(study_card(source, label, most_rows, found, variables, goals))
     return Payload(
         version=__version__,
         title=_title(cards),
@@ -83,6 +94,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         literal=literal,
         gearboxes=gearboxes,
         maps=maps,
+        kits=list(kits.values()),
         studies=cards,
         comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
     )

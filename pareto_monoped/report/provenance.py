@@ -5,7 +5,7 @@ from typing import Any
 
 from pareto_monoped.study.reader import StudyData
 
-_ABOVE = ("name", "description", "seed", "motor", "calibration")
+_ABOVE = ("name", "description", "seed", "motor", "hip_motor", "knee_motor", "calibration")
 """Settings that stand in the first rows of the table or elsewhere on the page."""
 
 
@@ -19,7 +19,7 @@ def provenance(data: StudyData) -> list[list[str]]:
         ("state", "finished" if meta.finished else "unfinished"),
         ("ended because of", meta.stop_reason or "nothing yet"),
         ("seed", study.seed),
-        ("motor", ", ".join(study.motors)),
+        ("motor", study.motor_text),
         ("calibration", meta.calibration),
         ("settings hash (SHA-256)", meta.hash),
         *((f"version of {name}", version) for name, version in meta.versions.items()),

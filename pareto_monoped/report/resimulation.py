@@ -14,7 +14,7 @@ from pareto_monoped.report.schema import Case, Jump
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.ratiomap import ActuatorMap
+    from pareto_monoped.actuator.joint_maps import Maps
     from pareto_monoped.jump.calibration import Calibration
 
 FRAMES = 56
@@ -44,7 +44,7 @@ class Resimulation:
 
     Attributes:
         jumps: of designs on the front, by trial number.
-        cases: the paper's designs, with ``StudyData.motor``.
+        cases: the paper's designs, with ``StudyData.case_kit``.
         drift_m: largest difference between a stored height and the height simulated now.
     """
 
@@ -64,14 +64,14 @@ def resimulate(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Resimulation
         chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
     rows = front.iloc[sorted(chosen)]
     jumps: dict[int, Jump] = {}
-    for actuator_map, places in data.motor_rows(rows):
+    for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
-        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), actuator_map, data.calibration)
+        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration)
         jumps |= zip(members["trial"].astype(int).tolist(), made, strict=True)
     heights = zip(rows["trial"].astype(int), rows["height_m"], strict=True)
     return Resimulation(
         jumps={trial: jumps[trial] for trial in rows["trial"].astype(int)},
-        cases=paper_cases(data.actuator_map, data.calibration),
+        cases=paper_cases(data.case_kit, data.calibration),
         drift_m=max((abs(jumps[trial].height_m - height) for trial, height in heights), default=0.0),
     )
 
@@ -81,7 +81,7 @@ def _spread(n: int, most: int) -> list[int]:
     return sorted(set(np.linspace(0, n - 1, min(n, most)).round().astype(int).tolist())) if n else []
 
 
-def jumps_of(designs: NDArray[np.float64], actuator_map: "ActuatorMap", calibration: "Calibration") -> list[Jump]:
+def jumps_of(designs: NDArray[np.float64], maps: "Maps", calibration: "Calibration") -> list[Jump]:
     """Jumps of designs that can stand, shape (n, number of variables), each in a few frames."""
     from pareto_monoped.jump.rows import take
     from pareto_monoped.jump.single import trace_of
@@ -89,7 +89,7 @@ def jumps_of(designs: NDArray[np.float64], actuator_map: "ActuatorMap", calibrat
 
     if len(designs) == 0:
         return []
-    robots, control = robot_arrays(designs, actuator_map, calibration.mass), columns(designs, CONTROL)
+    robots, control = robot_arrays(designs, maps, calibration.mass), columns(designs, CONTROL)
     return [
         in_few_frames(trace_of(take(robots, np.array([i])), control[i : i + 1], calibration))
         for i in range(len(designs))
@@ -115,13 +115,13 @@ def in_few_frames(trace: Mapping[str, NDArray[np.float64]], frames: int = FRAMES
     return Jump(height_m=float(trace["base_z_m"].max()), lift_off_s=float(time[last]), columns=counts, scale=COUNTS)
 
 
-def paper_cases(actuator_map: "ActuatorMap", calibration: "Calibration") -> list[Case]:
+def paper_cases(maps: "Maps", calibration: "Calibration") -> list[Case]:
     """The paper's designs, simulated."""
     from pareto_monoped.jump.evaluate import Evaluator
 
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
-    result = Evaluator(actuator_map, calibration)(designs)
-    jumps = iter(jumps_of(designs[result.ok], actuator_map, calibration))
+    result = Evaluator(maps, calibration)(designs)
+    jumps = iter(jumps_of(designs[result.ok], maps, calibration))
     return [
         Case(
             name=name,

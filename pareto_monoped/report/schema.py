@@ -98,6 +98,22 @@ class MotorMap:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Kit:
+    """The motors of a robot.
+
+    Attributes:
+        motor: name of the motor of both joints, or names of both motors with the joints.
+        hip, knee: indices of their stage 1 maps.
+        leg: that fits both motors; None where hip and knee have the same, whose map has it.
+    """
+
+    motor: str
+    hip: int
+    knee: int
+    leg: LegTable | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Jump:
     """A jump in a few frames.
 
@@ -173,10 +189,10 @@ class StudyCard:
     Attributes:
         label: short and unique among the page's studies.
         motor, calibration: as shown; several motors with commas between them.
-        case_motor: the motor that ``cases`` were simulated with, as shown.
-        motor_names: index of each motor's stage 1 map on the page -> the motor as the command line takes it.
+        case_motor: the motors that ``cases`` were simulated with, as shown.
+        motor_names: index of each kit of motors on the page -> hip's and knee's motor as the command line takes them.
         calibration_name: as the command line takes it.
-        map: index of the map of ``case_motor``. Trials of a study with several motors have that of theirs as the column
+        kit: index of the kit of ``case_motor``. Trials of a study with several kits have that of theirs as the column
             ``motor``.
         objectives: of the study, which decide what is on its front.
         group: equal for studies that are runs of one study with several seeds.
@@ -198,10 +214,10 @@ class StudyCard:
     database: str
     motor: str
     case_motor: str
-    motor_names: Mapping[str, str]
+    motor_names: Mapping[str, Sequence[str]]
     calibration: str
     calibration_name: str
-    map: int
+    kit: int
     algorithm: str
     seed: int
     objectives: Sequence[str]
@@ -302,5 +318,6 @@ class Payload:
     literal: Sequence[Mapping[str, Any]]
     gearboxes: Sequence[Gearbox]
     maps: Sequence[MotorMap]
+    kits: Sequence[Kit]
     studies: Sequence[StudyCard]
     comparison: Comparison | None = field(default=None)

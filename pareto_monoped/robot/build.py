@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
@@ -67,18 +67,23 @@ class Robot:
         return float(sum(unit.mass_properties().mass_kg for unit in self.units))
 
 
-def build_robot(design: Design, actuator_map: ActuatorMap) -> Robot:
+def build_robot(design: Design, maps: Maps) -> Robot:
     """Make the robot of a design, part by part.
 
+    Args:
+        design: its variables.
+        maps: the gearboxes of both joints, or of hip and knee.
+
     Raises:
-        DesignError: a link has no length, or no gearbox of this motor has the gear ratio.
+        DesignError: a link has no length, or no gearbox of the joint's motor has the gear ratio.
     """
     for name in ("thigh_length_m", "shank_length_m"):
         value = getattr(design, name)
         if not value > 0.0:
             raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
-    hip, knee = actuator_map.lookup(design.hip_ratio), actuator_map.lookup(design.knee_ratio)
-    leg = leg_dimensions(actuator_map)
+    both = joint_maps(maps)
+    hip, knee = both.hip.lookup(design.hip_ratio), both.knee.lookup(design.knee_ratio)
+    leg = leg_dimensions(both)
     units = tuple(
         Unit(
             name=kind.name,

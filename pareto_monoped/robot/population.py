@@ -1,6 +1,6 @@
 """Many robots at once: what the simulation needs to know about a population of designs, as arrays."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import reduce
 from operator import add
@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
 from pareto_monoped.robot.rotation import drive_turning
-from pareto_monoped.robot.tables import ActuatorTable, actuator_table, weighed
+from pareto_monoped.robot.tables import actuator_table, actuator_units, weighed
 from pareto_monoped.robot.units import UNITS, ActuatorSized
 
 
@@ -80,7 +80,7 @@ class RobotArrays:
         torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
             resistance is line to line; shape (n, 2).
         reason: why the robot cannot be built, empty if it can, n strings.
-        stops: the end stops, which all robots of one actuator map share.
+        stops: the end stops, which all robots with the same actuator maps share.
     """
 
     thigh_length_m: NDArray[np.float64]
@@ -111,33 +111,38 @@ class RobotArrays:
         return len(self.thigh_length_m)
 
 
-def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOptions = PARTS_ONLY) -> RobotArrays:
+def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ONLY) -> RobotArrays:
     """Weigh many robots at once, from the same table of units as ``build_robot``.
 
     Links of 0.25 to 0.55 m are interpolated, which gives the same to 12 digits and is many times as fast.
 
     Args:
         designs: shape (n, number of variables), in the order of ``design.NAMES``; finite, with links longer than 0 m.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         options: what replaces the masses of the parts.
 
     Returns:
         One row per design. A row with a ``reason`` has no gearbox of its ratio and holds the numbers of another one.
 
     Raises:
-        DesignError: the map has no actuator.
+        DesignError: a map has no actuator.
     """
-    values = np.atleast_2d(complete(designs))
-    table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
-    intervals = {joint: actuator_map.interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
-    reason = tuple(_missing(actuator_map, intervals, values, i) for i in range(len(values)))
-    hip, knee = (table.row[np.maximum(intervals[joint], 0)] for joint in JOINTS)
+    values, both = np.atleast_2d(complete(designs)), joint_maps(maps)
+    leg = leg_dimensions(both)
+    intervals = {joint: both.of(joint).interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
+    reason = tuple(_missing(both, intervals, values, i) for i in range(len(values)))
+    tables = {joint: actuator_table(both.of(joint)) for joint in JOINTS}
+    rows = {joint: tables[joint].row[np.maximum(intervals[joint], 0)] for joint in JOINTS}
 
-    bodies = _body_masses(_unit_masses(table, leg, values, {"hip": hip, "knee": knee}), options)
-    rows = np.stack([hip, knee], axis=1)
-    turning = _turning(table, leg, rows, values[:, NAMES.index("thigh_length_m")], options)
+    def of_actuators(name: str) -> Floats:
+        return np.stack([getattr(tables[joint], name)[rows[joint]] for joint in JOINTS], axis=1)
+
+    def of_motors(name: str) -> Floats:
+        return np.tile([float(getattr(both.of(joint).motor, name)) for joint in JOINTS], (len(values), 1))
+
+    bodies = _body_masses(_unit_masses(both, leg, values, rows), options)
+    turning = _turning(of_actuators, leg, values[:, NAMES.index("thigh_length_m")], options)
     foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
-    motor = actuator_map.motor
     return RobotArrays(
         thigh_length_m=values[:, NAMES.index("thigh_length_m")].copy(),
         shank_length_m=values[:, NAMES.index("shank_length_m")].copy(),
@@ -146,66 +151,66 @@ def robot_arrays(designs: ArrayLike, actuator_map: ActuatorMap, options: MassOpt
         body_inertia_kg_m2=np.stack([body.inertia_kg_m2 for body in bodies], axis=1),
         foot_radius_m=np.full(len(values), foot_radius_m),
         start_height_m=values[:, NAMES.index("start_height_m")].copy(),
-        ratio=table.ratio[rows],
+        ratio=of_actuators("ratio"),
         **turning,
-        peak_torque_n_m=table.peak_torque_n_m[rows],
-        continuous_torque_n_m=table.continuous_torque_n_m[rows],
-        no_load_speed_rad_per_s=table.no_load_speed_rad_per_s[rows],
-        efficiency=table.efficiency[rows],
-        efficiency_total=table.efficiency_total[rows],
-        torque_constant_n_m_per_a=np.full(rows.shape, motor.torque_constant_n_m_per_a),
-        winding_resistance_ohm=np.full(rows.shape, motor.terminal_resistance_ohm),
+        peak_torque_n_m=of_actuators("peak_torque_n_m"),
+        continuous_torque_n_m=of_actuators("continuous_torque_n_m"),
+        no_load_speed_rad_per_s=of_actuators("no_load_speed_rad_per_s"),
+        efficiency=of_actuators("efficiency"),
+        efficiency_total=of_actuators("efficiency_total"),
+        torque_constant_n_m_per_a=of_motors("torque_constant_n_m_per_a"),
+        winding_resistance_ohm=of_motors("terminal_resistance_ohm"),
         reason=reason,
         stops=JointStops(hip=hip_stop(leg), knee=knee_stop(leg)),
     )
 
 
 def _turning(
-    table: ActuatorTable, leg: LegDimensions, rows: NDArray[np.intp], thigh_m: Floats, options: MassOptions
+    of_actuators: Callable[[str], Floats], leg: LegDimensions, thigh_m: Floats, options: MassOptions
 ) -> dict[str, Floats]:
     """What turns in each robot: the fields of ``RobotArrays`` from ``armature_kg_m2`` to ``sprocket_radius_m``.
 
     Args:
-        table: the actuators.
+        of_actuators: name of a column of ``ActuatorTable`` -> its values for the actuators of all joints, shape (n, 2).
         leg: dimensions.
-        rows: of the hip's and the knee's actuator in the table, shape (n, 2).
         thigh_m: thigh lengths, shape (n,).
         options: may set the rotors' inertia, which then stands for everything that turns in an actuator.
     """
-    knee, ratio = rows[:, JOINTS.index("knee")], table.ratio[rows]
-    armature, rotor = table.armature_kg_m2[rows], table.rotor_inertia_kg_m2[rows]
-    coupling, excess = table.coupling_kg_m2[knee], table.rotor_excess_kg_m2[knee]
+    knee, ratio = JOINTS.index("knee"), of_actuators("ratio")
+    armature, rotor = of_actuators("armature_kg_m2"), of_actuators("rotor_inertia_kg_m2")
+    coupling, excess = of_actuators("coupling_kg_m2")[:, knee], of_actuators("rotor_excess_kg_m2")[:, knee]
     if options.rotor_inertia_kg_m2 is not None:
         armature = options.rotor_inertia_kg_m2 * np.square(ratio)
-        rotor = np.full(rows.shape, options.rotor_inertia_kg_m2)
-        coupling, excess = rotor[:, 1] * ratio[:, 1], np.zeros(len(rows))
+        rotor = np.full(ratio.shape, options.rotor_inertia_kg_m2)
+        coupling, excess = rotor[:, knee] * ratio[:, knee], np.zeros(len(ratio))
     drive = drive_turning(leg)
 
     return {
         "armature_kg_m2": armature,
         "rotor_inertia_kg_m2": rotor,
-        "knee_reflected_kg_m2": armature[:, 1] + drive.reflected_kg_m2[0] + drive.reflected_kg_m2[1] * thigh_m,
+        "knee_reflected_kg_m2": armature[:, knee] + drive.reflected_kg_m2[0] + drive.reflected_kg_m2[1] * thigh_m,
         "knee_coupling_kg_m2": coupling + drive.coupling_kg_m2[0] + drive.coupling_kg_m2[1] * thigh_m,
         "rotor_excess_kg_m2": excess,
-        "sprocket_radius_m": np.full(len(rows), 1e-3 * leg.chain.pitch_radius_mm),
+        "sprocket_radius_m": np.full(len(ratio), 1e-3 * leg.chain.pitch_radius_mm),
     }
 
 
 def _unit_masses(
-    table: ActuatorTable, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
+    maps: JointMaps, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
 ) -> dict[str, MassProperties]:
     """Name -> mass properties of every unit in its body frame, one row per design.
 
     Args:
-        table: the actuators.
+        maps: the actuators.
         leg: dimensions.
         values: designs, shape (n, number of variables).
-        rows: joint -> row of each design's actuator in the table, shape (n,).
+        rows: joint -> row of each design's actuator in the joint's table, shape (n,).
     """
     masses: dict[str, MassProperties] = {}
     for unit in UNITS:
         if isinstance(unit, ActuatorSized):
-            masses[unit.name] = table.units[unit.name].rows(rows[unit.joint])
+            units = actuator_units(unit.joint, maps.of(unit.joint), leg)
+            masses[unit.name] = units[unit.name].rows(rows[unit.joint])
         elif unit.name not in masses:  # all units of one length come from one table
             masses |= weighed(unit.length, leg, values[:, NAMES.index(unit.length)])
     return masses
@@ -223,10 +228,10 @@ def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list
     return [reduce(add, (masses[unit.name] for unit in ordered if unit.body == body)) for body in BODIES]
 
 
-def _missing(actuator_map: ActuatorMap, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
+def _missing(maps: JointMaps, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
     """Why robot i has no gearbox, empty if it has both."""
     for joint in JOINTS:
         if intervals[joint][i] < 0:
             ratio = float(values[i, NAMES.index(f"{joint}_ratio")])
-            return f"{joint}_ratio = {ratio:g}: {actuator_map.why_not(ratio)}"
+            return f"{joint}_ratio = {ratio:g}: {maps.of(joint).why_not(ratio)}"
     return ""

@@ -55,7 +55,7 @@ class DriveTurning:
     reflected_kg_m2: tuple[float, float]
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def drive_turning(leg: LegDimensions) -> DriveTurning:
     """The turning parts of the knee's drive in a leg.
 

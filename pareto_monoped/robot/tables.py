@@ -7,11 +7,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.tabulated import Tabulated, tabulate
-from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.robot.frames import Floats
 from pareto_monoped.robot.rotation import actuator_coupling_kg_m2, rotor_excess_kg_m2, rotor_inertia_kg_m2
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
@@ -25,7 +26,6 @@ class ActuatorTable:
 
     Attributes:
         row: row of each interval's actuator, shape (intervals,); any row where the interval has none.
-        units: name -> mass properties of each ``ActuatorSized`` unit in its body frame, one row per actuator.
         ratio: real ratio of the gearbox.
         armature_kg_m2: reflected inertia at the joint.
         coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``.
@@ -34,7 +34,6 @@ class ActuatorTable:
     """
 
     row: NDArray[np.intp]
-    units: Mapping[str, MassProperties]
     ratio: Floats
     armature_kg_m2: Floats
     coupling_kg_m2: Floats
@@ -49,17 +48,11 @@ class ActuatorTable:
 
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
-    """Weigh every actuator of a map. The result is kept, as a map is asked for many times."""
-    actuators = [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
-    leg = leg_dimensions(actuator_map)
+    """The actuators of a map in numbers. The result is kept, as a map is asked for many times."""
+    actuators = _actuators(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     return ActuatorTable(
         row=np.maximum(row, 0),
-        units={
-            unit.name: unit.in_body(_stacked(unit.parts(actuator, leg) for actuator in actuators), leg)
-            for unit in UNITS
-            if isinstance(unit, ActuatorSized)
-        },
         ratio=np.array([a.ratio for a in actuators]),
         armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
         coupling_kg_m2=np.array([actuator_coupling_kg_m2(a) for a in actuators]),
@@ -71,6 +64,30 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         efficiency=np.array([a.efficiency for a in actuators]),
         efficiency_total=np.array([service_sheet(a, actuator_map.settings).losses.efficiency_total for a in actuators]),
     )
+
+
+def _actuators(actuator_map: ActuatorMap) -> list[Actuator]:
+    return [entry.actuator for entry in actuator_map.entries if entry.actuator is not None]
+
+
+@lru_cache(maxsize=128)
+def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) -> Mapping[str, MassProperties]:
+    """Weigh the units that depend on the actuator of a joint, with every actuator of a map. The result is kept.
+
+    Args:
+        joint: ``hip`` or ``knee``.
+        actuator_map: of that joint.
+        leg: dimensions, which depend on the motors of both joints.
+
+    Returns:
+        Name -> mass properties of the joint's ``ActuatorSized`` units in their body frames, one row per actuator.
+    """
+    actuators = _actuators(actuator_map)
+    return {
+        unit.name: unit.in_body(_stacked(unit.parts(actuator, leg) for actuator in actuators), leg)
+        for unit in UNITS
+        if isinstance(unit, ActuatorSized) and unit.joint == joint
+    }
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
@@ -96,7 +113,7 @@ def link_units(length: str) -> list[LinkSized]:
     return [unit for unit in UNITS if isinstance(unit, LinkSized) and unit.length == length]
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=128)
 def _link_table(length: str, leg: LegDimensions) -> Tabulated:
     return tabulate(lambda lengths_m: _weigh(length, leg, lengths_m), *_TABULATED_M)
 

@@ -3,11 +3,12 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.leg.dimensions import leg_dimensions
@@ -36,16 +37,17 @@ Of = Side | Literal["leg"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Capacities:
-    """What the joints of a map carry.
+    """What the joints of robots with the same motors carry.
 
     Attributes:
-        row: interval of the map -> row of its actuator, shape (intervals,), see ``robot.tables.ActuatorTable.row``.
+        row: side -> interval of its map -> row of its actuator, shape (intervals,), see
+            ``robot.tables.ActuatorTable.row``.
         values: of the joints of each side, and of those of the leg: all their capacities side by side, shape
             (actuators, k), or (1, k) for the leg.
         columns: of each row of ``TABLE``: where its capacities stand in ``values``.
     """
 
-    row: NDArray[np.intp]
+    row: Mapping[Side, NDArray[np.intp]]
     values: Mapping[Of, Floats]
     columns: tuple[slice, ...]
 
@@ -71,30 +73,44 @@ _PLAIN_COLUMNS = {of: np.array(rows, dtype=np.intp) for of, rows in _PLAIN.items
 _OTHERS = {of: tuple(k for k in rows if k not in _PLAIN[of]) for of, rows in _ROWS.items()}
 
 
-@lru_cache(maxsize=16)
-def capacities(actuator_map: ActuatorMap) -> Capacities:
+@lru_cache(maxsize=64)
+def capacities(maps: JointMaps) -> Capacities:
     """Compute the capacities of every joint once per gearbox, or once per leg; the result is kept."""
-    present = [entry.actuator for entry in actuator_map.entries]
-    leg, settings = leg_dimensions(actuator_map), actuator_map.settings
-    structures = [
-        Structure(actuator=actuator, leg=leg, settings=settings) for actuator in present if actuator is not None
-    ]
-    # Rows that share a capacity, such as those of hip and knee, have it computed once.
-    wanted = {(joint.capacity, isinstance(joint, ActuatorJoint)) for joint in TABLE}
-    found = {key: _all(key[0], structures if key[1] else structures[:1]) for key in wanted}
+    leg = leg_dimensions(maps)
+    structures = {
+        one: [
+            Structure(actuator=entry.actuator, leg=leg, settings=one.settings)
+            for entry in one.entries
+            if entry.actuator is not None
+        ]
+        for one in (maps.hip, maps.knee)
+    }
+    # Rows that share a capacity, such as those of hip and knee with the same motor, have it computed once.
+    found: dict[Any, Floats] = {}
+
+    def of_joint(joint: ActuatorJoint | LegJoint) -> Floats:
+        own = isinstance(joint, ActuatorJoint)
+        one = maps.of(joint.side) if isinstance(joint, ActuatorJoint) else maps.hip
+        key = (joint.capacity, one, own)
+        if key not in found:
+            chosen = structures[one] if own else structures[one][:1]
+            found[key] = _all(joint.capacity, chosen)
+        return found[key]
+
     columns: list[slice] = [slice(0)] * len(TABLE)
     values: dict[Of, Floats] = {}
     for of, rows in _ROWS.items():
-        own = [found[TABLE[k].capacity, of != "leg"] for k in rows]
+        own = [of_joint(TABLE[k]) for k in rows]
         ends = np.cumsum([block.shape[1] for block in own]).tolist()
         for k, block, end in zip(rows, own, ends, strict=True):
             columns[k] = slice(end - block.shape[1], end)
         values[of] = np.concatenate(own, axis=1) if own else np.zeros((1, 0))
-    return Capacities(
-        row=np.maximum(np.cumsum([actuator is not None for actuator in present]) - 1, 0),
-        values=values,
-        columns=tuple(columns),
-    )
+    return Capacities(row={side: _rows(maps.of(side)) for side in SIDES}, values=values, columns=tuple(columns))
+
+
+def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:
+    present = [entry.actuator is not None for entry in actuator_map.entries]
+    return np.maximum(np.cumsum(present) - 1, 0)
 
 
 def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:
@@ -108,26 +124,27 @@ def _numbers(capacity: float | Sequence[float]) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-def strength_factors(designs: ArrayLike, actuator_map: ActuatorMap, loads: Loads) -> Floats:
+def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:
     """The safety factor of every joint of every design, shape (n, rows of ``TABLE``).
 
     Args:
         designs: shape (n, number of variables), see ``design.complete``; the ratios choose the gearboxes.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         loads: of the designs' jumps.
 
     Returns:
         At most ``MOST_FACTOR``; NaN where a load is unknown. A design without gearbox has NaN loads.
     """
-    values, table = np.atleast_2d(complete(designs)), capacities(actuator_map)
+    values, both = np.atleast_2d(complete(designs)), joint_maps(maps)
+    table = capacities(both)
     acting = np.stack([getattr(loads, name) for name in LOAD_NAMES], axis=1)
     result = np.empty((len(values), len(TABLE)))
     with np.errstate(divide="ignore", invalid="ignore"):
         for of in _ROWS:
             carried = table.values[of]
             if of != "leg":
-                intervals = actuator_map.interval_index(values[:, NAMES.index(f"{of}_ratio")])
-                carried = carried[table.row[np.maximum(intervals, 0)]]
+                intervals = both.of(of).interval_index(values[:, NAMES.index(f"{of}_ratio")])
+                carried = carried[table.row[of][np.maximum(intervals, 0)]]
             result[:, _PLAIN_COLUMNS[of]] = carried[:, table.plain(of)] / acting[:, _PLAIN_LOADS[of]]
             for k in _OTHERS[of]:
                 joint = TABLE[k]

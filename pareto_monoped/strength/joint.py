@@ -35,7 +35,7 @@ class Structure:
 
     Attributes:
         actuator: of the row's side; for a row of the leg that of the hip, which must not matter.
-        leg: the leg that all actuators of the map share.
+        leg: the leg that all actuators of the maps share.
         settings: of stage 1: rules, materials, safety factors of the rating.
     """
 

@@ -58,7 +58,7 @@ def _torque_and_force(pin: Part, *layers: tuple[float, float]) -> tuple[float, f
 def hip_output(s: Structure) -> tuple[float, float]:
     """Torque and force that the dowels between the hip's output flange, its coupling and the thigh's plate carry."""
     d = s.leg
-    pin = _pins(hip_joints(d), d.output_dowel, Group.FIXED)
+    pin = _pins(hip_joints(d), d.hip.output_dowel, Group.FIXED)
     low, high = _ends(pin)
     flange, plate = d.hip_mount_mm - low, high + d.thigh_face_mm
     return _torque_and_force(pin, (flange, ALLOYS[_CARRIER].yield_mpa), (plate, ALLOYS[_PLATE].yield_mpa))
@@ -80,7 +80,7 @@ def knee_output(s: Structure) -> tuple[float, float]:
 def knee_mount(s: Structure) -> tuple[float, float]:
     """Torque and force that the dowels between the knee actuator's housing and the outer plate carry."""
     d = s.leg
-    pin = _pins(hip_joints(d), d.mount_dowel, Group.FIXED)
+    pin = _pins(hip_joints(d), d.knee.mount_dowel, Group.FIXED)
     _, high = _ends(pin)
     layers = ((high - d.knee_mount_mm, ALLOYS[_HOUSING].yield_mpa), (d.plate_mm, ALLOYS[_PLATE].yield_mpa))
     return _torque_and_force(pin, *layers)
@@ -89,7 +89,7 @@ def knee_mount(s: Structure) -> tuple[float, float]:
 def hip_mount(s: Structure) -> tuple[float, float]:
     """Torque and force that the dowels between the hip actuator's housing and the base's cheek carry."""
     d = s.leg
-    pin = _pins(base_parts(_ANY_LENGTH_M, d), d.mount_dowel, Group.FIXED)
+    pin = _pins(base_parts(_ANY_LENGTH_M, d), d.hip.mount_dowel, Group.FIXED)
     low, high = _ends(pin)
     stress = ALLOYS[_HOUSING].yield_mpa, ALLOYS[_PLATE].yield_mpa
     return _torque_and_force(pin, (d.hip_mount_mm - low, stress[0]), (high - d.hip_mount_mm, stress[1]))
@@ -111,10 +111,10 @@ def screws_tightened(s: Structure) -> float:
     sprocket = yield_mpa(next(part for part in thigh if part.role is Role.SPROCKET))
     carrier, housing, plate = (ALLOYS[name].yield_mpa for name in (_CARRIER, _HOUSING, _PLATE))
     return min(
-        tightened(_screws(thigh, d.output_pitch_radius_mm, Group.FIXED), carrier, plate),
-        tightened(_screws(thigh, d.output_pitch_radius_mm, Group.KNEE_DRIVE), carrier, sprocket),
-        tightened(_screws(thigh, d.mount_pitch_radius_mm, Group.FIXED), housing, plate),
-        tightened(_screws(base, d.mount_pitch_radius_mm, Group.FIXED), housing, plate),
+        tightened(_screws(thigh, d.hip.output_pitch_radius_mm, Group.FIXED), carrier, plate),
+        tightened(_screws(thigh, d.knee.output_pitch_radius_mm, Group.KNEE_DRIVE), carrier, sprocket),
+        tightened(_screws(thigh, d.knee.mount_pitch_radius_mm, Group.FIXED), housing, plate),
+        tightened(_screws(base, d.hip.mount_pitch_radius_mm, Group.FIXED), housing, plate),
     )
 
 
@@ -126,8 +126,9 @@ def dowels_pressed(s: Structure) -> float:
     """
     d = s.leg
     rows = (
-        (d.output_dowel_mm, 2.5, ALLOYS[_PLATE].yield_mpa),  # the hip coupling, weaker than the flange
-        (d.mount_dowel_mm, 0.7, ALLOYS[_HOUSING].yield_mpa),
+        # The hip coupling is weaker than the flange.
+        *((fit.output_dowel_mm, 2.5, ALLOYS[_PLATE].yield_mpa) for fit in (d.hip, d.knee)),
+        *((fit.mount_dowel_mm, 0.7, ALLOYS[_HOUSING].yield_mpa) for fit in (d.hip, d.knee)),
         (2.5, 1.6, ALLOYS[_CARRIER].yield_mpa),
     )
     return min(_pressed(Dowel(diameter_mm=size), wall, limit) for size, wall, limit in rows)

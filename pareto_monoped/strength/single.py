@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.design import Design
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength.factors import strength_factors
@@ -35,17 +35,17 @@ class JointFactor:
         return self.factor / self.joint.required
 
 
-def joint_factors(design: Design, actuator_map: ActuatorMap, loads: Loads) -> tuple[JointFactor, ...]:
+def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor, ...]:
     """The factors of one design in the order of the table; none if its jump failed, because loads are unknown then.
 
     Rows that only inform are left out where the rules know no such limit.
 
     Args:
         design: whose gearboxes are looked up.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         loads: of its jump, one row.
     """
-    factors = strength_factors(design.as_array(), actuator_map, loads)[0]
+    factors = strength_factors(design.as_array(), maps, loads)[0]
     known = ~np.isnan(factors)
     if not all(known[k] or joint.informs for k, joint in enumerate(TABLE)):
         return ()
@@ -88,21 +88,24 @@ class GearLife:
         )
 
 
-def gear_life(design: Design, actuator_map: ActuatorMap, loads: Loads) -> GearLife | None:
+def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
     """The life of a design's gears under strikes; None if its jump failed, and under rules that know no fatigue.
 
     Args:
         design: whose gearboxes are looked up.
-        actuator_map: the gearboxes.
+        maps: the gearboxes of both joints, or of hip and knee.
         loads: of its jump, one row.
     """
-    leg, settings = leg_dimensions(actuator_map), actuator_map.settings
+    both = joint_maps(maps)
+    leg, settings = leg_dimensions(both), both.hip.settings
     torques = {side: float(getattr(loads, f"peak_gear_torque_{side}_n_m")[0]) for side in SIDES}
     if settings.rules == "paper" or np.isnan(list(torques.values())).any():
         return None
     jumps = min(
         strike_life_jumps(
-            Structure(actuator=actuator_map.lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings),
+            Structure(
+                actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings
+            ),
             torque,
         )
         for side, torque in torques.items()

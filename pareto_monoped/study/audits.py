@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.study.reader import StudyData, read_study
@@ -39,21 +39,21 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
         if len(fresh) == 0:
             return
         notify(f"auditing {len(fresh)} designs of the front")
-        for actuator_map, rows in _chunks(data, fresh):
-            found = screened(_designs(rows), actuator_map, calibration, _known(rows), workers=workers)
+        for kit, rows in _chunks(data, fresh):
+            found = screened(_designs(rows), kit, calibration, _known(rows), workers=workers)
             clear = found.clear
             columns = {name: values[clear] for name, values in found.as_columns().items()}
             _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
             unclear = rows[~clear]
             for first in range(0, len(unclear), _AUDITED):
-                _audit(store, unclear.iloc[first : first + _AUDITED], actuator_map, calibration, workers)
+                _audit(store, unclear.iloc[first : first + _AUDITED], kit, calibration, workers)
 
 
-def _audit(store: Store, rows: pd.DataFrame, actuator_map: ActuatorMap, calibration: Calibration, workers: int) -> None:
+def _audit(store: Store, rows: pd.DataFrame, kit: JointMaps, calibration: Calibration, workers: int) -> None:
     """Audit trials briefly, and store what was found."""
     from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
 
-    audits = audit(_designs(rows), actuator_map, calibration, workers=workers, known=_known(rows), brief=True)
+    audits = audit(_designs(rows), kit, calibration, workers=workers, known=_known(rows), brief=True)
     columns = {name: values for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL}
     good = columns.pop("well_conditioned")
     _store(store, rows, good, columns)
@@ -88,8 +88,8 @@ def _store(
         )
 
 
-def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[ActuatorMap, pd.DataFrame]]:
-    """Trials that are screened together, all with the same motor, and the gearboxes of that motor."""
-    for actuator_map, places in data.motor_rows(trials):
+def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[JointMaps, pd.DataFrame]]:
+    """Trials that are screened together, all with the same motors, and the gearboxes of these motors."""
+    for kit, places in data.kit_rows(trials):
         for first in range(0, len(places), _SCREENED):
-            yield actuator_map, trials.iloc[places[first : first + _SCREENED]]
+            yield kit, trials.iloc[places[first : first + _SCREENED]]

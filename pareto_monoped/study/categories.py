@@ -8,7 +8,7 @@ from pymoo.core.problem import Problem
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from pareto_monoped.study.protocol import MOTOR, Floats, Space
+from pareto_monoped.study.protocol import Floats, Space
 
 _EXCHANGED = 0.5
 """Probability that two children exchange their choices: uniform crossover (Syswerda 1989)."""
@@ -32,13 +32,14 @@ class MotorSBX(SBX):
 
     def __init__(self, space: Space, **settings: float) -> None:
         super().__init__(**settings)
-        self._place = space.names.index(MOTOR)
+        self._places = space.choice_columns
 
     def _do(
         self, problem: Problem, X: Floats, *more: object, random_state: np.random.Generator, **settings: object
     ) -> Floats:
         children: Floats = super()._do(problem, X, *more, random_state=random_state, **settings)
-        children[:, :, self._place] = exchanged(X[:, :, self._place], random_state)
+        for place in self._places:
+            children[:, :, place] = exchanged(X[:, :, place], random_state)
         return children
 
 
@@ -47,12 +48,13 @@ class MotorPM(PM):
 
     def __init__(self, space: Space, **settings: float) -> None:
         super().__init__(**settings)
-        self._place, self._count = space.names.index(MOTOR), len(space.motors)
+        self._counts = dict(zip(space.choice_columns, (len(one.motors) for one in space.choices), strict=True))
 
     def _do(
         self, problem: Problem, X: Floats, *more: object, random_state: np.random.Generator, **settings: object
     ) -> Floats:
         varied: Floats = super()._do(problem, X, *more, random_state=random_state, **settings)
-        before = X[:, self._place].astype(np.float64)
-        varied[:, self._place] = mutated(before, self._count, 1.0 / X.shape[1], random_state)
+        for place, count in self._counts.items():
+            before = X[:, place].astype(np.float64)
+            varied[:, place] = mutated(before, count, 1.0 / X.shape[1], random_state)
         return varied

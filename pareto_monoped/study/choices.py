@@ -23,7 +23,7 @@ HEIGHTS_M = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:
-    """A design that a front offers for a height: its trial, energies, motor, and the real ratios of its gearboxes."""
+    """A design that a front offers for a height: its trial, energies, motors, and the real ratios of its gearboxes."""
 
     trial: int
     energy_j: float
@@ -88,13 +88,13 @@ def _choice(data: StudyData, height_m: float) -> Choice | None:
     front = data.front()
     with contextlib.suppress(SelectionError):
         trial = pick(front, MinHeight(height_m=height_m), data.study.objectives).trial
-        row, actuator_map = front.set_index("trial").loc[trial], data.map_of_trial(trial)
+        row, kit = front.set_index("trial").loc[trial], data.kit_of_trial(trial)
         return Choice(
             trial=trial,
             energy_j=float(row["energy_j"]),
             electrical_energy_j=float(row["electrical_energy_j"]),
-            hip_ratio=actuator_map.lookup(float(row["hip_ratio"])).ratio,
-            knee_ratio=actuator_map.lookup(float(row["knee_ratio"])).ratio,
-            motor=actuator_map.motor.name,
+            hip_ratio=kit.hip.lookup(float(row["hip_ratio"])).ratio,
+            knee_ratio=kit.knee.lookup(float(row["knee_ratio"])).ratio,
+            motor=kit.label,
         )
     return None

@@ -105,22 +105,34 @@ _JUDGEMENT = (
         values=lambda generation: [generation.height_weight] * len(generation.designs),
     ),
 )
-_MOTOR = Column(
-    name="motor",
-    sql="TEXT",
-    dtype="str",
-    meaning="name of the motor of both joints; NULL in the database of a study with one",
-    values=lambda generation: generation.motors or [None] * len(generation.designs),
+
+
+def _motor(name: str, meaning: str) -> Column:
+    return Column(
+        name=name,
+        sql="TEXT",
+        dtype="str",
+        meaning=meaning,
+        values=lambda generation: generation.motors.get(name) or [None] * len(generation.designs),
+    )
+
+
+_MOTOR = _motor("motor", "name of the motor of both joints; NULL in the database of a study with no choice of it")
+_JOINT_MOTORS = tuple(
+    _motor(f"{joint}_motor", f"name of the {joint}'s motor, where it is chosen for itself; else NULL")
+    for joint in ("hip", "knee")
 )
 _VARIABLES = tuple(_variable(index) for index in range(len(VARIABLES)))
 _MEASURES = tuple(_measure(measure.name, measure.meaning) for measure in MEASURES)
 
-COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_MEASURES)
+COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_MEASURES, *_JOINT_MOTORS)
 """All columns of a trial, in the order of the database."""
 
 REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *HEIGHT_AND_ENERGY.names)
 """Columns that every study has, in the order of the data frame; the others follow as the database has them."""
 
-LATER: tuple[Column, ...] = tuple(column for column in (*_VARIABLES, _MOTOR, *_MEASURES) if column.name not in REQUIRED)
+LATER: tuple[Column, ...] = tuple(
+    column for column in (*_VARIABLES, _MOTOR, *_MEASURES, *_JOINT_MOTORS) if column.name not in REQUIRED
+)
 """Columns that a database of an earlier version may lack. Optional variables then have their defaults, the motor is the
 study's only one, and measures are missing. The columns are added to such a database when its study goes on."""

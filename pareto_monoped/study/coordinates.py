@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, RATIOS
 from pareto_monoped.errors import StudyError
@@ -80,17 +81,17 @@ class Coordinates:
         return {name: np.array([gear.ratio for gear in gears]) for name, gears in self.gears.items()}
 
 
-def coordinates_of(study: Study, actuator_map: ActuatorMap) -> Coordinates:
-    """The coordinates of a study with its map.
+def coordinates_of(study: Study, maps: Maps) -> Coordinates:
+    """The coordinates of a study with its motor, or with one of hip and one of knee.
 
     Raises:
         StudyError: no gearbox has a ratio within the bounds of a free gear ratio.
     """
     if not study.gear_list:
         return plain_coordinates(study)
-    fixed, gears = study.lower, {}
+    fixed, gears, both = study.lower, {}, joint_maps(maps)
     for name in RATIOS:
-        value = study.variables[name]
+        value, actuator_map = study.variables[name], both.of(name.removesuffix("_ratio"))
         if isinstance(value, Bounds):
             gears[name] = gear_list(actuator_map, value)
             if not gears[name]:

@@ -1,6 +1,5 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from pareto_monoped.study.algorithm_settings import (
     WeightedSettings,
 )
 from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
+from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, text_of
 from pareto_monoped.study.weighted_budget import within_budget
 
 NO_STRENGTH = "strength was not asked for: designs may not hold"
@@ -65,7 +65,9 @@ class _File:
     name: Annotated[str, Field(min_length=1, max_length=200)]
     description: Annotated[str, Field(max_length=2000)] = ""
     case: Literal["A", "B", "C"] | None = None
-    motor: Any = "VT8020"
+    motor: Any = None
+    hip_motor: Any = None
+    knee_motor: Any = None
     calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
     rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
@@ -85,7 +87,8 @@ class _File:
 class Study:
     """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
 
-    ``motor`` is the name or file of the motor of both joints, or a tuple of several from which each design has one.
+    ``motor`` is the name or file of the motor of both joints, or a tuple of several from which each design has one. It
+    is None where ``hip_motor`` and ``knee_motor`` say the same of either joint.
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
@@ -95,7 +98,9 @@ class Study:
     name: str
     description: str
     case: str | None
-    motor: str | tuple[str, ...]
+    motor: Named
+    hip_motor: Named = None
+    knee_motor: Named = None
     calibration: str
     rules: RuleSet = "paper"
     evaluations: int
@@ -112,8 +117,23 @@ class Study:
 
     @property
     def motors(self) -> tuple[str, ...]:
-        """Names or files of all motors."""
-        return (self.motor,) if isinstance(self.motor, str) else self.motor
+        """Names or files of all motors, those of the hip first."""
+        return all_names(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def kits(self) -> tuple[tuple[str, str], ...]:
+        """The motors of hip and knee, named as in ``motors``, that a design may have."""
+        return kits_of(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def motor_text(self) -> str:
+        """All motors in one line."""
+        return text_of(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def motor_choices(self) -> tuple[str, ...]:
+        """The keys of the file that name several motors, of ``motor``, ``hip_motor`` and ``knee_motor``."""
+        return tuple(key for key in MOTOR_KEYS if isinstance(getattr(self, key), tuple))
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -136,9 +156,9 @@ class Study:
     def as_dict(self) -> dict[str, Any]:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
-        Left out are optional variables at their defaults, limits that are off and came later, the rules ``paper``,
-        strength that is not asked for, and a list of gearboxes that is not searched. The paper's objectives stand as
-        0.1.0 stored them. So studies stored before there were others keep their hash.
+        Left out are keys of motors that say nothing, optional variables at their defaults, limits that are off and came
+        later, the rules ``paper``, strength that is not asked for, and a list of gearboxes that is not searched. The
+        paper's objectives stand as 0.1.0 stored them. So studies stored before there were others keep their hash.
         """
         plain = asdict(self)
         if self.rules == "paper":
@@ -147,6 +167,9 @@ class Study:
             del plain["strength"]
         if not self.gear_list:
             del plain["gear_list"]
+        for key in MOTOR_KEYS:
+            if plain[key] is None:
+                del plain[key]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
             for name, v in zip(NAMES, self._ordered(), strict=True)
@@ -186,7 +209,7 @@ def load_study(
         file = isinstance(name, str) and name.endswith(".toml")
         return str((path.parent / name).resolve()) if file else name
 
-    for key in ("motor", "calibration"):
+    for key in (*MOTOR_KEYS, "calibration"):
         if key in values:
             given = values[key]
             values[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
@@ -227,7 +250,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         name=file.name,
         description=file.description,
         case=file.case,
-        motor=_motor(file.motor, source),
+        **named_motors(file.motor, file.hip_motor, file.knee_motor, source),
         calibration=file.calibration,
         rules=rules,
         evaluations=file.evaluations,
@@ -242,27 +265,6 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         gear_list=file.gear_list,
         algorithm=_algorithm(file, corner, source),
     )
-
-
-_LONGEST_NAME = 1000
-"""Of a motor, or of the path to its file; longer ones are errors of typing."""
-
-
-def _motor(given: Any, source: str) -> str | tuple[str, ...]:
-    names = given if isinstance(given, list | tuple) else [given]
-    if not all(isinstance(name, str) and 0 < len(name) <= _LONGEST_NAME for name in names):
-        allowed = f"the name of a motor or its TOML file, of at most {_LONGEST_NAME} letters, or a list of such names"
-        raise StudyError(f"{source}: {complaint('motor', given, allowed, 'correct it')}")
-    if isinstance(given, str):
-        return given
-    if len(names) < 2:
-        cure = f"give the name alone: motor = {json.dumps(names[0])}" if names else "name the motors to choose from"
-        raise StudyError(f"{source}: {complaint('motor', list(names), 'a list of at least two motors', cure)}")
-    for place, name in enumerate(names):
-        if name.lower() in [other.lower() for other in names[:place]]:
-            allowed = "a list of different motors"
-            raise StudyError(f"{source}: {complaint('motor', list(names), allowed, f'name {name!r} once')}")
-    return tuple(names)
 
 
 def _algorithm(file: _File, corner: ReferencePoint, source: str) -> AlgorithmSettings:
@@ -287,11 +289,12 @@ def _algorithm(file: _File, corner: ReferencePoint, source: str) -> AlgorithmSet
 
 def _check_weighted(file: _File, corner: ReferencePoint, source: str) -> None:
     """Refuse what the weighted search cannot do: a choice of motor, three objectives, or a scale of zero."""
-    if not isinstance(file.motor, str):
-        raise StudyError(
-            f"{source}: motor = {list(file.motor)}: weighted_cmaes searches with one motor, because a normal "
-            "distribution has no place for a choice; name one, or choose another algorithm"
-        )
+    for key in MOTOR_KEYS:
+        if isinstance(named := getattr(file, key), list | tuple):
+            raise StudyError(
+                f"{source}: {key} = {list(named)}: weighted_cmaes searches with one motor, because a normal "
+                "distribution has no place for a choice; name one, or choose another algorithm"
+            )
     if len(corner.values) != 2:
         raise StudyError(
             f"{source}: objectives: weighted_cmaes weighs two, {len(corner.values)} are named; drop one, or choose "

@@ -136,8 +136,8 @@ def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen)
     # pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
     return kind(
         pop_size=settings.population,
-        crossover=MotorSBX(space, **crossover) if space.motors else SBX(**crossover),
-        mutation=MotorPM(space, **mutation) if space.motors else PM(**mutation),
+        crossover=MotorSBX(space, **crossover) if space.choices else SBX(**crossover),
+        mutation=MotorPM(space, **mutation) if space.choices else PM(**mutation),
         repair=_Snap(space),
         eliminate_duplicates=_Unseen(seen),
         seed=seed,

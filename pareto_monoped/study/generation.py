@@ -1,7 +1,7 @@
 """What a run stores in one transaction."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
@@ -26,7 +26,7 @@ class Generation:
         hypervolume: of all trials up to here.
         seconds: running time up to here, over all sessions.
         started, ended: when these designs were simulated.
-        motors: name of each design's motor; empty where the study has one.
+        motors: coordinate that chooses a motor -> name of each design's; empty where the study has no such choice.
     """
 
     number: int
@@ -40,4 +40,4 @@ class Generation:
     seconds: float
     started: datetime
     ended: datetime
-    motors: tuple[str, ...] = ()
+    motors: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

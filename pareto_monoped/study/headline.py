@@ -32,10 +32,10 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
     Returns:
         Four designs. The front's design that reaches the height of the paper's is left out if there is none.
     """
-    several = len(data.study.motors) > 1
-    evaluations = Evaluator(data.actuator_map, data.calibration)(CASE.design.as_array())
+    several = len(data.study.kits) > 1
+    evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
-        label=f"paper's Case {CASE.name}, simulated here" + (f" with {data.motor.name}" if several else ""),
+        label=f"paper's Case {CASE.name}, simulated here" + (f" with {data.case_kit.label}" if several else ""),
         height_m=float(evaluations.height_m[0]),
         energy_j=float(evaluations.energy_j[0]),
     )

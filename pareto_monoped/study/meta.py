@@ -27,7 +27,7 @@ class StudyMeta:
 
     Attributes:
         study: the settings, as ``Study.as_dict`` gives them.
-        motor: name of the motor, or path of its file, as the study gives it; several with commas between them.
+        motor: ``Study.motor_text``: names of the motors, or paths of their files, as the study gives them.
         calibration: name and version.
         seed: of the search.
         contents: every value of the motors (``motor_keys``) and of the ``calibration``; the study simulates with these.

@@ -10,7 +10,7 @@ import optuna
 
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.algorithm_settings import OptunaSettings
-from pareto_monoped.study.protocol import MOTOR, Floats, Proposal, Scores, Space
+from pareto_monoped.study.protocol import MOTOR_OF, Floats, Proposal, Scores, Space
 from pareto_monoped.study.seen import Seen, drawn
 
 _KNOWN = 20
@@ -31,7 +31,7 @@ class OptunaSampler:
         self._space = space
         self._generation = 0
         self._distributions = _distributions(space)
-        self._motors = [motor.name for motor in space.motors]
+        self._motors = {choice.name: [motor.name for motor in choice.motors] for choice in space.choices}
         self._asked: list[optuna.trial.Trial] = []
         self._seen = Seen()
         with _quiet():
@@ -67,14 +67,15 @@ class OptunaSampler:
         values: dict[str, Any] = dict(zip(self._distributions, row, strict=True))
         for name in self._space.gears:
             values[name] = int(values[name])
-        if self._space.motors:
-            values[MOTOR] = self._motors[int(values[MOTOR])]
+        for choice, names in self._motors.items():
+            values[choice] = names[int(values[choice])]
         return values
 
     def _row(self, trial: optuna.trial.Trial) -> list[float]:
-        if not self._space.motors:
+        if not self._motors:
             return [float(trial.params[name]) for name in self._distributions]
-        numbers = trial.params | {MOTOR: self._motors.index(trial.params[MOTOR])}
+        chosen = {choice: names.index(trial.params[choice]) for choice, names in self._motors.items()}
+        numbers = trial.params | chosen
         point: list[float] = self._space.snap(np.array([[float(numbers[name]) for name in self._distributions]]))[
             0
         ].tolist()
@@ -84,7 +85,7 @@ class OptunaSampler:
         """Complete the trials of the last ``ask``; the violation becomes Optuna's constraint."""
         rows = np.array([self._row(trial) for trial in self._asked])
         with _quiet():
-            if self._space.motors:
+            if self._motors:
                 # Shares of a list of gearboxes have moved to those of their gearbox, and the sampler must learn from
                 # these, as it does after a restore. A trial that was asked for cannot change, so it ends as failed.
                 for trial in self._asked:
@@ -145,8 +146,9 @@ def _distributions(space: Space) -> dict[str, optuna.distributions.BaseDistribut
     for name, low, high in zip(space.names, space.lower.tolist(), space.upper.tolist(), strict=True):
         if name in space.gears:
             found[name] = optuna.distributions.IntDistribution(int(low), int(high))
-        elif name == MOTOR:
-            found[name] = optuna.distributions.CategoricalDistribution([motor.name for motor in space.motors])
+        elif name in MOTOR_OF:
+            motors = next(choice.motors for choice in space.choices if choice.name == name)
+            found[name] = optuna.distributions.CategoricalDistribution([motor.name for motor in motors])
         else:
             found[name] = optuna.distributions.FloatDistribution(low, high)
     return found

@@ -10,8 +10,7 @@ from typing import Any
 from pareto_monoped.design import NAMES
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
-from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
-from pareto_monoped.study.protocol import MOTOR
+from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.scoring import values_of
 from pareto_monoped.study.seals import row_digest
 
@@ -134,11 +133,12 @@ class OptunaTables:
             for name, (low, high) in limits.items()
         }
         # Optuna stores the position of a category, and shows the category itself.
-        self._motors: tuple[str, ...] = ()
-        if isinstance(coordinates, MotorCoordinates):
-            self._motors = coordinates.motors
-            self._distributions[MOTOR] = json.dumps(
-                {"name": "CategoricalDistribution", "attributes": {"choices": self._motors}}
+        self._motors: dict[str, tuple[str, ...]] = {
+            choice.name: tuple(motor.name for motor in choice.motors) for choice in coordinates.space.choices
+        }
+        for name, motors in self._motors.items():
+            self._distributions[name] = json.dumps(
+                {"name": "CategoricalDistribution", "attributes": {"choices": motors}}
             )
 
     def insert(self, connection: sqlite3.Connection, generation: Generation) -> dict[str, dict[str, str]]:
@@ -187,12 +187,12 @@ class OptunaTables:
         return rows, first
 
     def _parameters(self, generation: Generation, k: int, *, position: bool = False) -> dict[str, Any]:
-        """Free variables of trial ``k``; its motor by name, or by its position as in the tables."""
+        """Free variables of trial ``k``; its motors by name, or by their positions as in the tables."""
         row = generation.designs[k].tolist()
         values: dict[str, Any] = {NAMES[i]: row[i] for i in self._free}
-        if self._motors:
-            name = generation.motors[k]
-            values[MOTOR] = float(self._motors.index(name)) if position else name
+        for choice, motors in self._motors.items():
+            name = generation.motors[choice][k]
+            values[choice] = float(motors.index(name)) if position else name
         return values
 
     def add_by_optuna(self, generation: Generation) -> None:

@@ -2,7 +2,7 @@
 
 An algorithm never simulates and never stores. It sees the free variables only, in their own units, and a list of
 gearboxes by position (``study.coordinates``). A choice of motor is one more variable, whose values have no order
-(``study.motor_choice``).
+(``study.motor_choice``): of the motor of both joints, or of that of the hip and that of the knee.
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,8 +16,8 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 Floats = NDArray[np.float64]
 
-MOTOR = "motor"
-"""The coordinate that chooses a motor; it stands last."""
+MOTOR_OF = {"motor": ("hip", "knee"), "hip_motor": ("hip",), "knee_motor": ("knee",)}
+"""Coordinate that chooses a motor -> the joints that it chooses for. Such coordinates stand last."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,18 +45,31 @@ class MotorKind:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MotorChoice:
+    """A coordinate that chooses a motor.
+
+    Attributes:
+        name: of the coordinate, a key of ``MOTOR_OF``.
+        motors: what it chooses from, at least two.
+    """
+
+    name: str
+    motors: tuple[MotorKind, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
     """What is searched, and for what.
 
-    With one motor, a variable that chooses a gearbox has the whole numbers from 0 to n - 1. With several, n differs
-    between motors. Such a variable then goes from 0, the first gearbox of whatever motor, to 1, its last one, and the
-    coordinate ``MOTOR`` has the whole numbers from 0 to the number of motors less 1.
+    Where a joint has one motor, a variable that chooses its gearbox has the whole numbers from 0 to n - 1. Where it has
+    several, n differs between motors. Such a variable then goes from 0, the first gearbox of whatever motor, to 1, its
+    last one, and the coordinate of the choice has the whole numbers from 0 to the number of motors less 1.
 
     Attributes:
         names, lower, upper: names and bounds of the free variables, each of length d.
         objectives: two or three measures.
-        gears: with one motor, the gearboxes of each variable that chooses one.
-        motors: what ``MOTOR`` chooses from; empty with one motor.
+        gears: the gearboxes of each variable that chooses one, for joints with one motor.
+        choices: the coordinates that choose a motor, the last of ``names``; empty where every joint has one.
     """
 
     names: tuple[str, ...]
@@ -64,12 +77,12 @@ class Space:
     upper: Floats
     objectives: Objectives = HEIGHT_AND_ENERGY
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
-    motors: tuple[MotorKind, ...] = ()
+    choices: tuple[MotorChoice, ...] = ()
 
     @property
     def whole(self) -> NDArray[np.bool_]:
         """Which variables are whole numbers, shape (d,)."""
-        return np.array([name in self.gears or name == MOTOR for name in self.names])
+        return np.array([name in self.gears or name in MOTOR_OF for name in self.names])
 
     @property
     def edges(self) -> tuple[Floats, Floats]:
@@ -84,31 +97,44 @@ class Space:
         """
         snapped = np.where(self.whole, np.clip(np.round(values), self.lower, self.upper), values)
         for name in self.listed:
-            last = self.last_gears(name)[self.motor_of(snapped)]
+            last = self.last_gears(name)[self.motor_of(name, snapped)]
             snapped[:, self.names.index(name)] = self.gear_of(name, snapped) / np.maximum(last, 1)
         return snapped
 
     @property
     def listed(self) -> tuple[str, ...]:
-        """The variables that choose a gearbox from the list of the design's motor; none with one motor."""
-        return tuple(name for name in self.names if self.motors and name in self.motors[0].gears)
+        """The variables that choose a gearbox from the list of the joint's motor, for joints with several."""
+        return tuple(name for name in self.names for choice in self.choices if name in choice.motors[0].gears)
 
-    def motor_of(self, values: Floats) -> NDArray[np.intp]:
-        """Which of ``motors`` each of n points has, shape (n, d) -> (n,)."""
-        return np.asarray(values[:, self.names.index(MOTOR)], dtype=np.intp)
+    @property
+    def choice_columns(self) -> tuple[int, ...]:
+        """Places of ``choices`` in ``names``."""
+        return tuple(self.names.index(choice.name) for choice in self.choices)
+
+    def picked(self, choice: MotorChoice, values: Floats) -> NDArray[np.intp]:
+        """Which motor of a choice each of n points has, shape (n, d) -> (n,)."""
+        return np.asarray(values[:, self.names.index(choice.name)], dtype=np.intp)
+
+    def choice_for(self, name: str) -> MotorChoice:
+        """The choice of the motor whose gearboxes a variable of ``listed`` chooses from."""
+        return next(choice for choice in self.choices if name in choice.motors[0].gears)
+
+    def motor_of(self, name: str, values: Floats) -> NDArray[np.intp]:
+        """Which motor of ``choice_for(name)`` each of n points has, shape (n, d) -> (n,)."""
+        return self.picked(self.choice_for(name), values)
 
     def gear_of(self, name: str, values: Floats) -> NDArray[np.intp]:
         """Position of each point's gearbox in its motor's list, shape (n, d) -> (n,).
 
         Every gearbox of a list owns an equal share of the values from 0 to 1.
         """
-        last = self.last_gears(name)[self.motor_of(values)]
+        last = self.last_gears(name)[self.motor_of(name, values)]
         share = values[:, self.names.index(name)]
         return np.minimum(np.floor(share * (last + 1)), last).astype(np.intp)
 
     def last_gears(self, name: str) -> NDArray[np.intp]:
-        """Position of the last gearbox of each motor, shape (number of motors,)."""
-        return np.array([len(motor.gears[name]) - 1 for motor in self.motors], dtype=np.intp)
+        """Position of the last gearbox of each motor of ``choice_for(name)``, shape (number of motors,)."""
+        return np.array([len(motor.gears[name]) - 1 for motor in self.choice_for(name).motors], dtype=np.intp)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,7 @@ from pareto_monoped.study.algorithm_settings import (
     WeightedSettings,
 )
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.named_motors import MOTOR_KEYS
 
 _NOT_RESULTS = ("audit", "description", "evaluations", "stop")
 """Keys of a study that decide when it ends or what follows, but not which trials it has."""
@@ -48,7 +49,12 @@ def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mappin
     """
     settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
     # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
-    settings = {key: value for key, value in settings.items() if key not in ("motor", "calibration")}
+    settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration")}
+    if study.motor is None:
+        # Which joint chooses from which of the motors.
+        places = {name: place for place, name in enumerate(study.motors, 1)}
+        for joint, names in zip(("hip", "knee"), zip(*study.kits, strict=True), strict=True):
+            settings[f"{joint}_motor"] = [f"motor_{places[name]}" for name in dict.fromkeys(names)]
     plain: dict[str, Any] = json.loads(json.dumps({"study": settings, **contents, "versions": dict(package_versions)}))
     return plain
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.joint_maps import motor_label
 from pareto_monoped.design import DEFAULTS, PAPER_MOTOR, VARIABLES, Variable, in_use
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
@@ -22,9 +23,11 @@ from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.kept_front import rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
+from pareto_monoped.study.named_motors import MOTOR_KEYS, names_of
 from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
 
 if TYPE_CHECKING:
+    from pareto_monoped.actuator.joint_maps import JointMaps
     from pareto_monoped.actuator.motors import Motor
     from pareto_monoped.actuator.search import ActuatorMap
     from pareto_monoped.jump.calibration import Calibration
@@ -82,12 +85,6 @@ class StudyData:
         contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
         return tuple(stored_motor(values, source=self._source, error=DatabaseError) for values in contents)
 
-    @property
-    def motor(self) -> "Motor":
-        """The motor of a study with one; of one with several that for the paper's designs: its own, or the first."""
-        papers = [motor for motor in self.motors if motor.name == PAPER_MOTOR]
-        return (papers or self.motors)[0]
-
     @cached_property
     def calibration(self) -> "Calibration":
         """The calibration that the study simulates with, as stored.
@@ -106,30 +103,35 @@ class StudyData:
 
         return {motor.name: map_of(motor, self.study.rules) for motor in self.motors}
 
+    @cached_property
+    def kits(self) -> "tuple[JointMaps, ...]":
+        """The gearboxes of each kit of motors that a design may have, in the order of ``Study.kits``."""
+        from pareto_monoped.study.motor_choice import kit_maps
+
+        return kit_maps(self.study, list(self.actuator_maps.values()))
+
     @property
-    def actuator_map(self) -> "ActuatorMap":
-        """The gearboxes of ``motor``; where a study has several, its trials have those of ``map_of_trial``."""
-        return self.actuator_maps[self.motor.name]
+    def case_kit(self) -> "JointMaps":
+        """The gearboxes of the paper's designs: with the paper's own motor, or with the first kit of the study."""
+        papers = [kit for kit in self.kits if kit.label == PAPER_MOTOR]
+        return (papers or self.kits)[0]
 
-    def map_of_trial(self, trial: int) -> "ActuatorMap":
-        """The gearboxes of a trial's motor."""
-        return self.actuator_maps[self._motor_name(trial)]
+    def kit_of_trial(self, trial: int) -> "JointMaps":
+        """The gearboxes of a trial's motors."""
+        ((kit, _),) = self.kit_rows(self.trials[self.trials["trial"] == trial])
+        return kit
 
-    def motor_of_trial(self, trial: int) -> "Motor":
-        """The motor of both joints of a trial."""
-        name = self._motor_name(trial)
-        return next(motor for motor in self.motors if motor.name == name)
-
-    def _motor_name(self, trial: int) -> str:
-        return str(self.trials.loc[self.trials["trial"] == trial, "motor"].iloc[0])
-
-    def motor_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[ActuatorMap, NDArray[np.intp]]]":
-        """The gearboxes of each motor that some of these trials have, and the positions of those trials."""
-        names = trials["motor"].to_numpy()
-        for name, actuator_map in self.actuator_maps.items():
-            rows = np.flatnonzero(names == name)
+    def kit_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[JointMaps, NDArray[np.intp]]]":
+        """The gearboxes of each kit of motors that some of these trials have, and the positions of those trials."""
+        hip, knee = (trials[name].to_numpy() for name in self._motor_columns)
+        for kit in self.kits:
+            rows = np.flatnonzero((hip == kit.hip.motor.name) & (knee == kit.knee.motor.name))
             if len(rows):
-                yield actuator_map, rows
+                yield kit, rows
+
+    @property
+    def _motor_columns(self) -> tuple[str, str]:
+        return ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
 
     @cached_property
     def coordinates(self) -> "AnyCoordinates":
@@ -137,9 +139,9 @@ class StudyData:
         from pareto_monoped.study.coordinates import plain_coordinates
         from pareto_monoped.study.motor_choice import searched_coordinates
 
-        if not self.study.gear_list and len(self.study.motors) == 1:
+        if not self.study.gear_list and len(self.study.kits) == 1:
             return plain_coordinates(self.study)
-        return searched_coordinates(self.study, list(self.actuator_maps.values()))
+        return searched_coordinates(self.study, self.kits)
 
     @property
     def _source(self) -> str:
@@ -294,17 +296,32 @@ def seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequenc
 
 
 def _with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:
-    """The trials with the name of each one's motor, which the database leaves out where all have the same."""
+    """The trials with the names of each one's motors, which the database leaves out where all have the same.
+
+    The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
+    study names them.
+    """
     contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
-    known = [str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)]
-    if len(known) == 1:
-        return trials.assign(motor=pd.array(known * len(trials), dtype="str"))
-    unknown = trials.loc[~trials["motor"].isin(known), "motor"]
-    if len(unknown):
-        raise DatabaseError(
-            f"study database {str(db)!r}: its trials are damaged (motor {unknown.iloc[0]!r} is not of the study); "
-            "restore a copy"
-        )
+    known = {
+        named.lower(): str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)
+    }
+    for key in MOTOR_KEYS:
+        given = getattr(study, key)
+        if given is None:
+            trials = trials.drop(columns=key)
+            continue
+        names = [known[named.lower()] for named in names_of(given)]
+        if len(names) == 1:
+            trials = trials.assign(**{key: pd.array(names * len(trials), dtype="str")})
+        unknown = trials.loc[~trials[key].isin(names), key]
+        if len(unknown):
+            raise DatabaseError(
+                f"study database {str(db)!r}: its trials are damaged ({key.replace('_', ' ')} {unknown.iloc[0]!r} is "
+                "not of the study); restore a copy"
+            )
+    if study.motor is None:
+        labels = map(motor_label, trials["hip_motor"], trials["knee_motor"])
+        trials = trials.assign(motor=pd.array(list(labels), dtype="str"))
     return trials
 
 

@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.study.protocol import MOTOR, Floats, Space
+from pareto_monoped.study.protocol import MOTOR_OF, Floats, MotorChoice, Space
 
 _DEGREE = 3
 """Of the polynomial. Our own choice: the third degree is what 2,000 jumps can determine, 220 terms of nine features."""
@@ -62,18 +62,19 @@ def features_of(space: Space) -> Features:
 def _extremes(space: Space) -> Floats:
     """Points of a space among which every feature has its least and its greatest value, shape (n, d)."""
     corners = np.vstack((space.lower, space.upper))
-    if space.motors:
-        most = max((len(gears) for motor in space.motors for gears in motor.gears.values()), default=1)
-        every = np.repeat(corners[:1], most * len(space.motors), axis=0)
-        every[:, space.names.index(MOTOR)] = np.repeat(np.arange(len(space.motors)), most)
-        for name in space.listed:
-            every[:, space.names.index(name)] = np.tile(np.linspace(0.0, 1.0, most), len(space.motors))
-        return np.vstack((corners, every))
+    blocks = [corners]
+    for choice in space.choices:
+        most = max((len(gears) for motor in choice.motors for gears in motor.gears.values()), default=1)
+        every = np.repeat(corners[:1], most * len(choice.motors), axis=0)
+        every[:, space.names.index(choice.name)] = np.repeat(np.arange(len(choice.motors)), most)
+        for name in choice.motors[0].gears:
+            every[:, space.names.index(name)] = np.tile(np.linspace(0.0, 1.0, most), len(choice.motors))
+        blocks.append(every)
     most = max((len(gears) for gears in space.gears.values()), default=1)
     every = np.repeat(corners[:1], most, axis=0)
     for name, gears in space.gears.items():
         every[:, space.names.index(name)] = np.arange(most) % len(gears)
-    return np.vstack((corners, every))
+    return np.vstack((*blocks, every))
 
 
 def _raw(space: Space, values: Floats) -> Floats:
@@ -85,27 +86,29 @@ def _raw(space: Space, values: Floats) -> Floats:
             columns += list(table[column.astype(np.intp)].T)
         elif name in space.listed:
             columns += list(_actuators(space, name, values).T)
-        elif name == MOTOR:
+        elif name in MOTOR_OF:
             # The actuators tell the motors apart, unless all their ratios are fixed.
-            columns += [] if space.listed else list(_motors(space)[space.motor_of(values)].T)
+            choice = space.choices[space.choice_columns.index(space.names.index(name))]
+            columns += [] if choice.motors[0].gears else list(_motors(choice)[space.picked(choice, values)].T)
         else:
             columns.append(np.log1p(column) if name in _LOGARITHMIC else column)
     return np.column_stack(columns)
 
 
-def _motors(space: Space) -> Floats:
+def _motors(choice: MotorChoice) -> Floats:
     """Logarithms of greatest torque and speed of each motor, shape (number of motors, 2)."""
-    return np.log([[motor.peak_torque_n_m, motor.no_load_speed_rad_per_s] for motor in space.motors])
+    return np.log([[motor.peak_torque_n_m, motor.no_load_speed_rad_per_s] for motor in choice.motors])
 
 
 def _actuators(space: Space, name: str, values: Floats) -> Floats:
     """Features of the actuators that ``name`` chooses, shape (n, d) -> (n, 3)."""
-    lists = [motor.gears[name] for motor in space.motors]
+    choice = space.choice_for(name)
+    lists = [motor.gears[name] for motor in choice.motors]
     first = np.cumsum([0, *(len(gears) for gears in lists[:-1])])
     table = np.array([[np.log(gear.ratio), gear.mass_kg] for gears in lists for gear in gears])
-    motors = space.motor_of(values)
+    motors = space.picked(choice, values)
     ratio, mass = table[first[motors] + space.gear_of(name, values)].T
-    torque, speed = _motors(space)[motors].T
+    torque, speed = _motors(choice)[motors].T
     return np.column_stack((torque + ratio, speed - ratio, mass))
 
 

@@ -155,7 +155,7 @@ def _meta(study: Study, simulator: Simulator) -> StudyMeta:
     decisive = provenance.decisive(study, simulator.contents, versions)
     return StudyMeta(
         study=study.as_dict(),
-        motor=", ".join(study.motors),
+        motor=study.motor_text,
         calibration=simulator.calibration.label,
         seed=study.seed,
         contents=simulator.contents,

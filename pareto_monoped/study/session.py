@@ -28,6 +28,9 @@ from pareto_monoped.study.scoring import judge, missed, scores, values_of
 from pareto_monoped.study.simulator import Evaluate
 from pareto_monoped.study.store import Store
 
+Motors = dict[str, tuple[str, ...]]
+"""Coordinate that chooses a motor -> name of each design's."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
@@ -135,18 +138,18 @@ class Session:
         designs = self._coordinates.designs(proposal.values)
         motors = self._motors_of(proposal.values)
         there = len(self._designs)
-        if not np.array_equal(designs[:there], self._designs) or motors[:there] != self._motors:
+        if not np.array_equal(designs[:there], self._designs) or _first(motors, there) != self._motors:
             raise DatabaseError(
                 f"study database {str(self._store.path)!r}: trials {self.total - there} to {self.total - 1} do not "
                 "follow from its checkpoint; it is damaged, restore a copy"
             )
         missing = designs[there : there + self._budget - self.total]
-        their_motors = motors[there : there + len(missing)]
+        their_motors = {name: names[there : there + len(missing)] for name, names in motors.items()}
         started = datetime.now(UTC)
         evaluations = self._evaluated(missing, their_motors)
         objectives = self._study.objectives
         judgement = judge(evaluations, self._study.constraints, objectives)
-        self._designs, self._motors = np.vstack((self._designs, missing)), (*self._motors, *their_motors)
+        self._designs, self._motors = np.vstack((self._designs, missing)), _first(motors, there + len(missing))
         self._scores = _joined(self._scores, scores(evaluations, judgement, objectives))
         feasible = judgement.state == "feasible"
         self._add_to_front(values_of(evaluations, objectives)[feasible])
@@ -157,7 +160,11 @@ class Session:
             self._algorithm.tell(self._scores)
             state = self._algorithm.state()
             self._generation += 1
-            self._designs, self._motors, self._scores = self._designs[:0], (), _joined(self._scores, None)
+            self._designs, self._motors, self._scores = (
+                self._designs[:0],
+                _first(motors, 0),
+                _joined(self._scores, None),
+            )
         volume = hypervolume(self._front, self._study.reference_point)
         self._volumes.append((self.total, volume))
         return Generation(
@@ -175,18 +182,16 @@ class Session:
             motors=their_motors,
         )
 
-    def _motors_of(self, values: NDArray[np.float64]) -> tuple[str, ...]:
-        """Names of the designs' motors; empty where the study has one."""
+    def _motors_of(self, values: NDArray[np.float64]) -> Motors:
+        """Names of the designs' motors; empty where the study has no choice of them."""
         where = self._coordinates
-        if not isinstance(where, MotorCoordinates):
-            return ()
-        return tuple(where.motors[k] for k in where.motors_of(values))
+        return where.motors_of(values) if isinstance(where, MotorCoordinates) else {}
 
-    def _evaluated(self, designs: NDArray[np.float64], motors: tuple[str, ...]) -> Evaluations:
+    def _evaluated(self, designs: NDArray[np.float64], motors: Motors) -> Evaluations:
         where = self._coordinates
         if not isinstance(where, MotorCoordinates):
             return self._evaluate(designs)
-        return self._evaluate(designs, [where.motors.index(name) for name in motors])
+        return self._evaluate(designs, where.kits(motors))
 
     def _add_to_front(self, points: NDArray[np.float64]) -> None:
         points = np.vstack((self._front, points))
@@ -212,10 +217,14 @@ class Session:
             self._progress(writing.result())
 
 
-def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], tuple[str, ...], Scores]:
-    """Designs, names of their motors where the study has several, and scores."""
+def _first(motors: Motors, count: int) -> Motors:
+    return {name: names[:count] for name, names in motors.items()}
+
+
+def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Motors, Scores]:
+    """Designs, names of their motors where the study has a choice, and scores."""
     rows, study = data.trials.iloc[first:end], data.study
-    motors = tuple(rows["motor"]) if len(study.motors) > 1 else ()
+    motors = {name: tuple(rows[name]) for name in study.motor_choices}
     measures = {limit.measure: rows[limit.measure].to_numpy() for limit in study.constraints.limits}
     known = Scores(
         objectives=study.objectives,

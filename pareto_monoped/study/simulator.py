@@ -16,12 +16,12 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.motor_fit import require_leg
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.meta import motor_keys
-from pareto_monoped.study.motor_choice import AnyCoordinates, searched_coordinates
+from pareto_monoped.study.motor_choice import AnyCoordinates, kit_maps, searched_coordinates
 from pareto_monoped.study.reader import StudyData
 
 Evaluate = Callable[..., Evaluations]
 """Designs, see ``design.complete``, to their evaluations, in order; the designs are followed by the positions of their
-motors where a study has several."""
+kits of motors where a study has several."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,12 +52,12 @@ class Simulator:
     def probe(self) -> list[list[float | None]]:
         """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.
 
-        With several motors, of these eight designs with each of them. Code, compiler, library versions and processor
-        all show in their last digits.
+        With several kits of motors, of these eight designs with each of them. Code, compiler, library versions and
+        processor all show in their last digits.
         """
         paper = np.array([case.design.as_array() for case in PAPER_CASES.values()])
         drawn = np.random.default_rng(20250101).uniform(LOWER, UPPER, size=(4, len(LOWER)))
-        eight, count = np.vstack((paper, complete(drawn))), len(self.motors)
+        eight, count = np.vstack((paper, complete(drawn))), len(self.evaluator.actuator_maps)
         result = self.evaluator(np.tile(eight, (count, 1)), np.repeat(np.arange(count), len(eight)))
         pairs = np.column_stack((result.height_m, result.energy_j))
         return [[value if np.isfinite(value) else None for value in row] for row in pairs.tolist()]
@@ -116,20 +116,21 @@ def _simulator(study: Study, motors: Sequence[Motor], calibration: Calibration, 
     for name in names:
         if names.count(name) > 1:
             raise StudyError(
-                f"motor = {list(study.motors)}: must be a list of different motors, {name!r} is the name of "
+                f"motor = {list(study.motors)}: must be different motors, {name!r} is the name of "
                 f"{names.count(name)}; drop one, or give the motor in its file another name"
             )
     maps = [
         map_of(motor, study.rules, source=motor_source(named))
         for motor, named in zip(motors, study.motors, strict=True)
     ]
-    for actuator_map, named in zip(maps, study.motors, strict=True):
-        require_leg(actuator_map, motor_source(named))
+    kits = kit_maps(study, maps)
+    for kit, named in zip(kits, study.kits, strict=True):
+        require_leg(kit, *map(motor_source, named))
     keys = motor_keys(len(motors))
     return Simulator(
         motors=tuple(motors),
         calibration=calibration,
-        evaluator=Evaluator(maps[0], calibration, workers=workers, others=maps[1:]),
+        evaluator=Evaluator(kits[0], calibration, workers=workers, others=kits[1:]),
         files={
             **dict(zip(keys, map(_text, study.motors), strict=True)),
             "calibration": _text(study.calibration),
@@ -143,7 +144,7 @@ def stored_simulator(data: StudyData, *, workers: int) -> Simulator:
     Raises:
         DatabaseError: the stored motor or calibration is damaged.
     """
-    first, *others = data.actuator_maps.values()
+    first, *others = data.kits
     return Simulator(
         motors=data.motors,
         calibration=data.calibration,

@@ -7,7 +7,7 @@ from pymoo.operators.mutation.pm import mut_pm
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, Standing
 from pareto_monoped.study.categories import exchanged, mutated
-from pareto_monoped.study.protocol import MOTOR, Floats, Space
+from pareto_monoped.study.protocol import MOTOR_OF, Floats, Space
 
 _PARENTS = 100
 """Fewest parents. A small front is filled up with the designs nearest to it. Our own choice: 2.5 populations."""
@@ -32,10 +32,10 @@ def spread(space: Space, count: int, generator: np.random.Generator, on_bound: f
     strata = np.argsort(generator.random((count, len(lower))), axis=0)
     place = (strata + generator.random(strata.shape)) / count
     # The first motor of a list and the last are no bounds.
-    share = np.where([name == MOTOR for name in space.names], 0.0, on_bound)
+    share = np.where([name in MOTOR_OF for name in space.names], 0.0, on_bound)
     inside = space.snap(lower + np.clip((place - share) / (1.0 - 2.0 * share), 0.0, 1.0) * (upper - lower))
     spread_out = np.where(place < share, space.lower, np.where(place > 1.0 - share, space.upper, inside))
-    return space.snap(spread_out) if space.motors else spread_out
+    return space.snap(spread_out) if space.choices else spread_out
 
 
 def offspring(
@@ -71,8 +71,8 @@ def offspring(
         _EXCHANGED * each,
         random_state=generator,
     )
-    if archive.space.motors:
-        children[:, :, -1] = exchanged(parents_of[:, :, -1], generator)
+    for place in archive.space.choice_columns:
+        children[:, :, place] = exchanged(parents_of[:, :, place], generator)
     children = children.reshape(-1, len(lower))
     varied = mut_pm(
         children,
@@ -83,8 +83,8 @@ def offspring(
         at_least_once=False,
         random_state=generator,
     )
-    if archive.space.motors:
-        varied[:, -1] = mutated(children[:, -1], len(archive.space.motors), 1.0 / len(lower), generator)
+    for place, choice in zip(archive.space.choice_columns, archive.space.choices, strict=True):
+        varied[:, place] = mutated(children[:, place], len(choice.motors), 1.0 / len(lower), generator)
     return archive.space.snap(varied)
 
 
@@ -104,7 +104,7 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
     if space.whole.any():
         steps = np.where(space.whole, _other_gears(start, lower, upper, len(lower), generator), steps)
     near = np.asarray(np.clip(start + steps, lower, upper))
-    return _other_choices(space, start, near, generator) if space.motors else near
+    return _other_choices(space, start, near, generator) if space.choices else near
 
 
 def swaps(space: Space, values: Floats) -> Floats:
@@ -137,10 +137,11 @@ def _other_choices(space: Space, start: Floats, near: Floats, generator: np.rand
     dimensions = len(space.names)
     for name in space.listed:
         gear = space.gear_of(name, start).astype(np.float64)
-        last = space.last_gears(name)[space.motor_of(start)].astype(np.float64)
+        last = space.last_gears(name)[space.motor_of(name, start)].astype(np.float64)
         step = _other_gears(gear, np.zeros(len(gear)), last, dimensions, generator)
         near[:, space.names.index(name)] = np.clip(gear + step, 0.0, last) / np.maximum(last, 1.0)
-    near[:, -1] = mutated(start[:, -1], len(space.motors), 1.0 / dimensions, generator)
+    for place, choice in zip(space.choice_columns, space.choices, strict=True):
+        near[:, place] = mutated(start[:, place], len(choice.motors), 1.0 / dimensions, generator)
     return space.snap(near)
 
 

@@ -65,5 +65,5 @@ def test_the_journal_s_screw_heads_clear_its_shoulder(name):
     leg = leg_dimensions(map_for(name))
     journal, screw = journal_parts(0.06, leg)
     head = max(float(prism.outline.radius_mm) for prism in screw.prisms)
-    assert leg.back_pitch_radius_mm - head > SHOULDER_RADIUS
-    assert leg.back_pitch_radius_mm + head <= float(journal.prisms[0].outline.radius_mm) + 0.1
+    assert leg.knee.back_pitch_radius_mm - head > SHOULDER_RADIUS
+    assert leg.knee.back_pitch_radius_mm + head <= float(journal.prisms[0].outline.radius_mm) + 0.1

@@ -63,7 +63,7 @@ def test_wires_carry_the_peak_current_without_heating(robot):
     for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
         cable = next(c for c in cables(robot) if c.name == f"{joint}_motor")
         area_m2 = 1e-6 * float(cable.designation.split()[2])
-        effective_a = min(peak_current_a(actuator.motor), robot.leg.driver.peak_current_a) / np.sqrt(2.0)
+        effective_a = min(peak_current_a(actuator.motor), robot.leg.of(joint).driver.peak_current_a) / np.sqrt(2.0)
         heating_k_per_s = (effective_a / area_m2) ** 2 * 1.72e-8 / (8960.0 * 385.0)
         assert heating_k_per_s < 6.0
 

@@ -124,9 +124,9 @@ def test_actuators_that_fit_no_one_leg_are_refused_in_one_line(actuator_map):
     weak = dataclasses.replace(leg.chain, breaking_n=1000.0)
     require_fit(robot, leg)
     with pytest.raises(DesignError, match=r"^bolt circle of the hip actuator = 98\.0 mm: must be 100\.0 mm.*drilled"):
-        require_fit(robot, dataclasses.replace(leg, mount_pitch_radius_mm=50.0))
+        require_fit(robot, dataclasses.replace(leg, hip=dataclasses.replace(leg.hip, mount_pitch_radius_mm=50.0)))
     with pytest.raises(DesignError, match=r"^back's bolt circle of the hip actuator = 51\.0 mm: must be 50\.0 mm"):
-        require_fit(robot, dataclasses.replace(leg, back_pitch_radius_mm=25.0))
+        require_fit(robot, dataclasses.replace(leg, hip=dataclasses.replace(leg.hip, back_pitch_radius_mm=25.0)))
     with pytest.raises(DesignError, match=r"^peak torque of the knee .* at most 5\.7 N m.*084.*lower knee_ratio"):
         require_fit(robot, dataclasses.replace(leg, chain=weak))
 

@@ -7,7 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pareto_monoped.actuator.joint_maps import joint_maps
 from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
 from pareto_monoped.cad.write.formats import FORMATS
@@ -26,7 +28,7 @@ def data():
         trials=trials,
         front=lambda: trials.set_index("trial", drop=False).loc[[7, 2, 5, 4, 0]].reset_index(drop=True),
         motor=load_motor("U8"),
-        motor_of_trial=lambda trial: load_motor("U8"),
+        kit_of_trial=lambda trial: joint_maps(map_for("U8")),
         calibration=load_calibration("ideal"),
         study=SimpleNamespace(strength=False, name="mine", rules="iso6336"),
         meta=SimpleNamespace(created="2025-03-04T05:06:07+00:00"),

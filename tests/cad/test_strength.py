@@ -214,12 +214,12 @@ def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, c
     assert len(front) >= 20
     spread = front.iloc[np.unique(np.linspace(0, len(front) - 1, 50).round().astype(int))]
     designs = [Design.from_array(row) for row in spread[list(NAMES)].to_numpy()]
-    stored = array_factors([d.as_array() for d in designs], data.actuator_map, calibration)
+    stored = array_factors([d.as_array() for d in designs], data.case_kit, calibration)
     required = np.array([joint.required for joint in TABLE])
     asked = [not joint.informs for joint in TABLE]
     assert np.all(stored[:, asked] >= required[asked])
     for design, row in zip(designs, stored, strict=True):
-        searched = design_factors(design, data.actuator_map, calibration)
+        searched = design_factors(design, data.case_kit, calibration)
         assert [one.factor for one in searched] == pytest.approx(row[~np.isnan(row)].tolist(), rel=1e-9)
-        built = design_factors(as_built(design, data.actuator_map), data.actuator_map, calibration)
+        built = design_factors(as_built(design, data.case_kit), data.case_kit, calibration)
         assert strength.check(built).passed

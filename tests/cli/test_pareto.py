@@ -81,7 +81,7 @@ class TestMainJob:
                     continue
                 best = able.loc[able[energy].idxmin()]
                 battery.append(best["electrical_energy_j"])
-                gears = [data.actuator_map.lookup(best[f"{side}_ratio"]).ratio for side in ("hip", "knee")]
+                gears = [data.case_kit.of(side).lookup(best[f"{side}_ratio"]).ratio for side in ("hip", "knee")]
                 expected += [f"{best[name]:.2f}" for name in ("energy_j", "electrical_energy_j")]
                 expected += [f"{ratio:.2f}" for ratio in gears]
             expected += [f"{100 * (battery[0] / battery[1] - 1):+.1f}", "%"] if len(battery) == 2 else ["-"]

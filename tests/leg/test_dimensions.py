@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import DesignError
@@ -12,24 +13,38 @@ from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
 from pareto_monoped.leg.dimensions import leg_dimensions
 
 
+@pytest.mark.parametrize("other", ["VT8020", "U12"])
 @pytest.mark.parametrize("motor", motor_names())
-def test_a_leg_is_drilled_for_all_actuators_of_its_motor(motor):
-    actuators = [entry.actuator for entry in map_for(motor).entries if entry.actuator is not None]
-    leg = leg_dimensions(map_for(motor))
-    for actuator in actuators:
-        assert 2.0 * leg.mount_pitch_radius_mm == pytest.approx(actuator.mount.bolts.pitch_circle_mm)
-        assert leg.mount_holes == actuator.mount.bolts.count
-        assert leg.mount_thread_mm == actuator.mount.thread_depth_mm - 0.5
-        assert leg.housing_radius_mm == actuator.mount.housing_radius_mm
-        assert 2.0 * leg.back_pitch_radius_mm == pytest.approx(actuator.mount.back_bolts.pitch_circle_mm)
-        assert (leg.back_holes, leg.back_screw_mm) == (
-            actuator.mount.back_bolts.count,
-            actuator.mount.back_bolts.diameter_mm,
-        )
-        assert 2.0 * leg.output_pitch_radius_mm == actuator.output.bolts.pitch_circle_mm
-        assert leg.output_holes == actuator.output.bolts.count
-        assert leg.output_thread_mm == actuator.output.thread_depth_mm - 0.5
-        assert leg.coupler_radius_mm == actuator.output.flange_radius_mm
+def test_a_leg_is_drilled_for_all_actuators_of_each_joint_s_motor(motor, other):
+    maps = JointMaps(hip=map_for(motor), knee=map_for(other))
+    leg = leg_dimensions(maps)
+    for joint in ("hip", "knee"):
+        fit = leg.of(joint)
+        for actuator in (entry.actuator for entry in maps.of(joint).entries if entry.actuator is not None):
+            assert 2.0 * fit.mount_pitch_radius_mm == pytest.approx(actuator.mount.bolts.pitch_circle_mm)
+            assert fit.mount_holes == actuator.mount.bolts.count
+            assert fit.mount_thread_mm == actuator.mount.thread_depth_mm - 0.5
+            assert fit.housing_radius_mm == actuator.mount.housing_radius_mm
+            assert 2.0 * fit.back_pitch_radius_mm == pytest.approx(actuator.mount.back_bolts.pitch_circle_mm)
+            assert (fit.back_holes, fit.back_screw_mm) == (
+                actuator.mount.back_bolts.count,
+                actuator.mount.back_bolts.diameter_mm,
+            )
+            assert 2.0 * fit.output_pitch_radius_mm == actuator.output.bolts.pitch_circle_mm
+            assert fit.output_holes == actuator.output.bolts.count
+            assert fit.output_thread_mm == actuator.output.thread_depth_mm - 0.5
+            assert fit.coupler_radius_mm == actuator.output.flange_radius_mm
+
+
+@pytest.mark.parametrize(("hip", "knee"), [("U12", "U8"), ("U8", "U12")])
+def test_the_wider_motor_sets_the_rods_and_the_knee_s_the_chain(hip, knee):
+    leg = leg_dimensions(JointMaps(hip=map_for(hip), knee=map_for(knee)))
+    alone = {name: leg_dimensions(map_for(name)) for name in (hip, knee)}
+    assert leg.rod_circle_mm == alone["U12"].rod_circle_mm > alone["U8"].rod_circle_mm
+    assert leg.thigh_window_half_width_mm == alone["U12"].thigh_window_half_width_mm
+    assert leg.chain == alone[knee].chain != alone[hip].chain
+    assert leg.first_bridge_mm == alone[knee].first_bridge_mm
+    assert (leg.hip, leg.knee) == (alone[hip].hip, alone[knee].knee)
 
 
 @pytest.mark.parametrize("motor", motor_names())
@@ -56,8 +71,9 @@ def test_where_mounts_differ_the_leg_fits_that_of_the_lowest_ratio(leg):
 
 def test_the_vt8020_s_leg_has_the_documented_dimensions(leg):
     """Golden values of the default motor's leg: plates, chain and bearings of the example in the docs."""
-    assert (leg.mount_pitch_radius_mm, leg.housing_radius_mm, leg.back_pitch_radius_mm) == (49.0, 51.5, 25.5)
-    assert (leg.back_holes, leg.back_screw_mm, leg.chain.name) == (4, 5.0, "084")
+    fit = leg.hip
+    assert (fit.mount_pitch_radius_mm, fit.housing_radius_mm, fit.back_pitch_radius_mm) == (49.0, 51.5, 25.5)
+    assert (fit.back_holes, fit.back_screw_mm, leg.chain.name) == (4, 5.0, "084")
     bearing = (leg.bearing_bore_radius_mm, leg.bearing_outer_radius_mm, leg.bearing_width_mm, leg.bearing_kg)
     assert bearing == (10.0, 16.0, 7.0, 0.017)  # 6804
     # Derived, from z = 0 in the middle of the leg outwards.
@@ -68,7 +84,7 @@ def test_the_vt8020_s_leg_has_the_documented_dimensions(leg):
 def test_the_u12_s_leg_is_larger():
     """Once the report weighed and drew every leg with the dimensions of the VT8020's."""
     leg = leg_dimensions(map_for("U12"))
-    assert (leg.housing_radius_mm, leg.chain.name) == (60.4, "084")
+    assert (leg.hip.housing_radius_mm, leg.chain.name) == (60.4, "084")
 
 
 def test_a_map_without_actuators_has_no_leg():

@@ -52,9 +52,10 @@ def test_an_arm_has_holes_at_three_rods_and_around_every_hole_metal(leg):
 def test_arms_and_carriages_are_clear_of_the_hip_actuator_and_of_each_other(leg):
     (prism,) = arm(leg).prisms
     (outline,) = (Polygon(ring) for ring in all_polygons([prism.outline], 0.01))
-    assert outline.distance(Point(0.0, 0.0)) > leg.housing_radius_mm + 1.0
+    case_mm = leg.hip.housing_radius_mm
+    assert outline.distance(Point(0.0, 0.0)) > case_mm + 1.0
     (x, low, _), (_, high, _) = carriage_places(leg)
-    assert np.hypot(x + 0.5 * MGN12H.width_mm, max(low - 0.5 * MGN12H.length_mm, 0.0)) > leg.housing_radius_mm + 10.0
+    assert np.hypot(x + 0.5 * MGN12H.width_mm, max(low - 0.5 * MGN12H.length_mm, 0.0)) > case_mm + 10.0
     assert high - low > MGN12H.length_mm + 10.0
 
 

@@ -114,7 +114,7 @@ def test_a_case_has_the_gearboxes_of_its_ratios(tab, data):
     tab.click_point("simulated", 3)
     tab.expects("#subject", "Case C")
     case = PAPER_CASES["C"].design
-    hip, knee = (data.actuator_map.lookup(ratio).gears for ratio in (case.hip_ratio, case.knee_ratio))
+    hip, knee = (data.case_kit.hip.lookup(ratio).gears for ratio in (case.hip_ratio, case.knee_ratio))
     row = " ".join(f"{g.sun_teeth}/{g.planet_teeth}/{g.ring_teeth}" for g in (hip, knee))
     assert row in " ".join(tab.text("#gears").split())
 
@@ -127,7 +127,7 @@ def test_the_drawn_robot_has_the_dimensions_of_its_own_motor(source, source_u12,
         tab.click_point("front", 0)
         tab.expects("#subject", f"{here.data.study.name}")
         radius_m = float(tab.page.get_attribute("#stage g circle[fill='var(--metal)']", "r"))
-        actuator = here.data.actuator_map.lookup(4.05)
+        actuator = here.data.case_kit.hip.lookup(4.05)
         assert radius_m == pytest.approx(1e-3 * actuator.mount.housing_radius_mm)
     tab.scroll_through()
     lines = tab.page.evaluate("document.getElementById('link-chart').data.map((t) => t.name)")

@@ -70,7 +70,7 @@ def test_bounds_foot_and_gearboxes_are_the_studys(payload, data):
     assert 0.02 < foot_kg < 0.3
     for i, case in enumerate(payload.published):
         for joint in ("hip", "knee"):
-            gears = data.actuator_map.lookup(case["design"][f"{joint}_ratio"]).gears
+            gears = data.case_kit.of(joint).lookup(case["design"][f"{joint}_ratio"]).gears
             gearbox = payload.gearboxes[card.case_gearboxes[joint][i]]
             assert (gearbox.sun_teeth, gearbox.planet_teeth) == (gears.sun_teeth, gears.planet_teeth)
 

@@ -40,7 +40,7 @@ def test_every_trial_has_its_own_motor_s_gearboxes(several, payload):
     assert [table.motor for table in payload.maps] == list(MOTORS)
     for row, trial in enumerate(card.trials.trial):
         stored = trials.loc[trial]
-        assert payload.maps[card.trials.columns["motor"][row]].motor == stored["motor"]
+        assert payload.kits[card.trials.columns["motor"][row]].motor == stored["motor"]
         for joint in ("hip", "knee"):
             gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
             assert gearbox.motor == stored["motor"]
@@ -67,18 +67,22 @@ def test_jumps_masses_and_cases_are_those_of_the_motor(several, payload):
 def test_a_study_with_one_motor_has_no_column_of_motors(source):
     (card,) = build([source]).studies
     assert "motor" not in card.trials.columns
-    assert (card.motor, card.case_motor, dict(card.motor_names)) == ("VT8020", "VT8020", {"0": "VT8020"})
+    assert (card.motor, card.case_motor, dict(card.motor_names)) == (
+        "VT8020",
+        "VT8020",
+        {"0": ("VT8020", "VT8020")},
+    )
 
 
 def test_studies_share_maps_of_equal_motors_and_rules(several, source):
     twice = build([several, several])
     assert [table.motor for table in twice.maps] == list(MOTORS)
-    assert dict(twice.studies[1].motor_names) == {str(k): motor for k, motor in enumerate(MOTORS)}
+    assert dict(twice.studies[1].motor_names) == {str(k): (motor, motor) for k, motor in enumerate(MOTORS)}
     # The other study has its gearboxes by other rules, so a map of its own.
     other = build([source, several])
     assert [table.motor for table in other.maps] == ["VT8020", *MOTORS]
     assert set(other.studies[1].motor_names) == {"1", "2", "3"}
-    assert (other.studies[0].map, other.studies[1].map) == (0, 2)
+    assert (other.studies[0].kit, other.studies[1].kit) == (0, 2)
 
 
 def test_the_figure_for_print_names_the_motors(several, payload, tmp_path):

@@ -56,7 +56,7 @@ def test_gearboxes_of_ratios_are_counted_like_those_of_the_map(vt8020):
 
 def test_leg_is_weighed_and_drawn_with_the_dimensions_of_the_studys_own_motor(source_u12):
     """The page once weighed and drew the default motor's leg, whatever the motor."""
-    actuator_map = source_u12.data.actuator_map
+    actuator_map = source_u12.data.case_kit
     robots = [build_robot(case.design, actuator_map) for case in PAPER_CASES.values()]
     arrays = robot_arrays([case.design.as_array() for case in PAPER_CASES.values()], actuator_map)
     (leg,) = (table.leg for table in build([source_u12]).maps)

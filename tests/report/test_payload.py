@@ -53,7 +53,7 @@ def test_gearboxes_are_those_of_the_built_robot(payload, data):
     (card,) = payload.studies
     for row in card.front:
         design = Design.from_array(data.trials.loc[row, list(NAMES)].to_numpy(dtype=float))
-        robot = build_robot(design, data.actuator_map)
+        robot = build_robot(design, data.case_kit)
         for joint, actuator in (("hip", robot.hip), ("knee", robot.knee)):
             gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
             assert (gearbox.sun_teeth, gearbox.ring_teeth) == (actuator.gears.sun_teeth, actuator.gears.ring_teeth)

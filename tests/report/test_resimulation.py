@@ -10,12 +10,12 @@ from pareto_monoped.report.resimulation import COUNTS, FRAMES, in_few_frames, ju
 def best(data):
     row = data.front().iloc[-1]
     design = Design.from_array(row[list(NAMES)].to_numpy(dtype=float))
-    return design, row, simulate(design, data.actuator_map, data.calibration, trace=True)
+    return design, row, simulate(design, data.case_kit, data.calibration, trace=True)
 
 
 def test_frames_follow_the_whole_trace(best, data):
     design, row, result = best
-    jump = jumps_of(design.as_array()[None], data.actuator_map, data.calibration)[0]
+    jump = jumps_of(design.as_array()[None], data.case_kit, data.calibration)[0]
     time = np.array(jump.columns["time_s"]) * jump.scale["time_s"]
     assert len(time) <= FRAMES
     assert time[0] == 0.0
@@ -31,7 +31,7 @@ def test_frames_follow_the_whole_trace(best, data):
 def test_joint_angles_of_the_frames_lead_from_the_base_to_the_foot(best, data):
     """Kinematics as the page's animation has it, against the simulated foot."""
     design, _, _ = best
-    jump = jumps_of(design.as_array()[None], data.actuator_map, data.calibration)[0]
+    jump = jumps_of(design.as_array()[None], data.case_kit, data.calibration)[0]
     frame = {name: np.array(values) * jump.scale[name] for name, values in jump.columns.items()}
     hip, both = frame["hip_rad"], frame["hip_rad"] + frame["knee_rad"]
     foot_z = frame["base_z_m"] - design.thigh_length_m * np.cos(hip) - design.shank_length_m * np.cos(both)

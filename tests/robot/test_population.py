@@ -11,7 +11,7 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.population import PARTS_ONLY, MassOptions, robot_arrays
-from pareto_monoped.robot.tables import actuator_table, weighed
+from pareto_monoped.robot.tables import actuator_table, actuator_units, weighed
 
 
 def assert_same_robot(arrays, i, robot):
@@ -128,12 +128,13 @@ def test_a_ratio_without_gearbox_is_a_reason_not_an_exception(actuator_map):
 def test_a_body_s_actuator_is_added_last(designs, actuator_map, buildable):
     """To the last bit, on which the results of stored studies depend."""
     table, leg = actuator_table(actuator_map), leg_dimensions(actuator_map)
+    units = actuator_units("knee", actuator_map, leg)
     arrays = robot_arrays(designs, actuator_map)
     differs = 0
     for i in buildable:
         knee = int(table.row[actuator_map.interval_index(designs[i, [NAMES.index("knee_ratio")]])[0]])
         thigh = weighed("thigh_length_m", leg, designs[i : i + 1, NAMES.index("thigh_length_m")])["thigh"].mass_kg[0]
-        journal, actuator = (table.units[name].mass_kg[knee] for name in ("journal", "knee_actuator"))
+        journal, actuator = (units[name].mass_kg[knee] for name in ("journal", "knee_actuator"))
         assert arrays.body_mass_kg[i, 1] == (thigh + journal) + actuator
         differs += arrays.body_mass_kg[i, 1] != (thigh + actuator) + journal
     assert differs

@@ -84,8 +84,8 @@ def test_dowels_of_the_outputs_by_hand(vt8020):
     torque, force = mounts.knee_output(s)
     width = s.leg.chain.sprocket_width_mm
     # A pin of 20 mm in the middle of 4.5 mm of flange, 12.2 mm of coupling and the sprocket's width.
-    spare = s.leg.output_thread_mm + s.leg.knee_mount_mm + 0.5 * width - 20.0
-    engaged = min(s.leg.output_thread_mm, width) - 0.5 * spare
+    spare = s.leg.knee.output_thread_mm + s.leg.knee_mount_mm + 0.5 * width - 20.0
+    engaged = min(s.leg.knee.output_thread_mm, width) - 0.5 * spare
     assert 0.0 <= spare < 2.0
     assert force == pytest.approx(min(3 * 4.0 * engaged * 460.0, 9.0 * np.pi * 1300.0 / np.sqrt(3.0)))
     assert torque == pytest.approx(0.012 * force)
@@ -93,7 +93,7 @@ def test_dowels_of_the_outputs_by_hand(vt8020):
     assert mounts.hip_mount(s)[1] == pytest.approx(3 * 3.0 * 4.5 * 250.0)
     torque, force = mounts.knee_mount(s)
     assert force == pytest.approx(6 * 3.0 * s.leg.plate_mm * 250.0)
-    assert torque == pytest.approx(1e-3 * s.leg.mount_pitch_radius_mm * force)
+    assert torque == pytest.approx(1e-3 * s.leg.knee.mount_pitch_radius_mm * force)
 
 
 def test_torque_and_force_add_up():

@@ -78,7 +78,7 @@ def test_every_screw_of_an_actuator_is_held_by_its_thread_and_seat(family):
 def test_the_journal_s_screws_hold_in_the_motor(family, engaged_mm):
     """In the backplate of an ISSPG, and through that of an ESSPG in its motor, 250 MPa; on the journal's flange."""
     s = BOTH[family]
-    size, diameters = D.back_screw_mm, M4 if D.back_screw_mm == 4.0 else M5
+    size, diameters = D.knee.back_screw_mm, M4 if D.knee.back_screw_mm == 4.0 else M5
     found = diameters.fastening("cap", "8.8")
     thread = 0.897 * YIELD / np.sqrt(3.0) * np.pi * size * 0.875 * engaged_mm
     ring = 0.25 * np.pi * (found.bearing_mm**2 - found.hole_mm**2)

@@ -31,7 +31,6 @@ def fronts(tmp_path, monkeypatch):
 
     # The contents of a made study name no motor.
     monkeypatch.setattr(StudyData, "actuator_maps", {"VT8020": map_for("VT8020")})
-    monkeypatch.setattr(StudyData, "actuator_map", map_for("VT8020"))
     mechanical = stored(tmp_path / "a.db", [10.0, 15.0, 22.0], [25.0, 36.0, 55.0])
     battery = stored(tmp_path / "b.db", [12.0, 17.0, 24.0], [20.0, 30.0, np.nan], objectives=BATTERY, evaluations=80)
     return mechanical, battery
@@ -51,7 +50,7 @@ def test_ratios_are_those_of_the_gearboxes(fronts):
     mechanical, battery = fronts
     (pair,) = choices(mechanical, battery, heights_m=(0.65,))
     searched = mechanical.trials.loc[0, "knee_ratio"]
-    assert pair.mechanical.knee_ratio == mechanical.actuator_map.lookup(searched).ratio
+    assert pair.mechanical.knee_ratio == mechanical.case_kit.knee.lookup(searched).ratio
     assert abs(pair.mechanical.knee_ratio - searched) < 0.1
 
 

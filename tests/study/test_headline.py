@@ -3,6 +3,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
+from pareto_monoped.actuator.joint_maps import joint_maps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
@@ -22,10 +23,9 @@ def study(*front, motors=("U8",)):
     table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"]).assign(motor=motors[-1])
     return SimpleNamespace(
         front=lambda: table,
-        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, motors=motors),
-        actuator_map=map_for("U8"),
+        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, kits=[(name, name) for name in motors]),
+        case_kit=joint_maps(map_for("U8")),
         calibration=load_calibration("ideal"),
-        motor=SimpleNamespace(name="U8"),
     )
 
 

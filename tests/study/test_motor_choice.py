@@ -106,18 +106,17 @@ def test_coordinates_and_designs_are_each_others_inverse(unit):
     values = space.snap(lower + np.array(unit) * (upper - lower))
     assert np.array_equal(space.snap(values), values)
     designs, motors = COORDINATES.designs(values), COORDINATES.motors_of(values)
-    names = [COORDINATES.motors[k] for k in motors]
-    assert np.array_equal(COORDINATES.values(designs, names), values)
-    for design, k in zip(designs, motors, strict=True):
+    assert np.array_equal(COORDINATES.values(designs, motors), values)
+    for design, k in zip(designs, COORDINATES.kits(motors), strict=True):
         for ratio in RATIOS:
             real = design[NAMES.index(ratio)]
-            assert COORDINATES.maps[k].lookup(real).ratio == real
+            assert COORDINATES.maps[k].of(ratio.removesuffix("_ratio")).lookup(real).ratio == real
 
 
 @pytest.mark.parametrize("motor", range(len(ALL)))
 def test_both_ends_of_every_list_and_all_between_are_reached_in_equal_shares(motor):
     space = COORDINATES.space
-    place, gears = space.names.index("knee_ratio"), space.motors[motor].gears["knee_ratio"]
+    place, gears = space.names.index("knee_ratio"), space.choices[0].motors[motor].gears["knee_ratio"]
     values = np.tile(space.lower, (20001, 1))
     values[:, place], values[:, -1] = np.linspace(0.0, 1.0, len(values)), motor
     ratios = COORDINATES.designs(space.snap(values))[:, NAMES.index("knee_ratio")]
@@ -135,7 +134,7 @@ def test_changing_the_motor_keeps_the_place_in_the_list():
     for share in (0.0, 1.0):
         values[:, space.names.index("hip_ratio")] = share
         ratios = COORDINATES.designs(space.snap(values))[:, NAMES.index("hip_ratio")]
-        lists = [motor.gears["hip_ratio"] for motor in space.motors]
+        lists = [motor.gears["hip_ratio"] for motor in space.choices[0].motors]
         assert ratios.tolist() == [gears[-1 if share else 0].ratio for gears in lists]
 
 
@@ -144,7 +143,7 @@ def test_a_fixed_ratio_is_each_motor_s_own_real_one():
     values = coordinates.space.snap(np.tile(coordinates.space.lower, (3, 1)))
     values[:, -1] = [0, 1, 2]
     ratios = coordinates.designs(values)[:, NAMES.index("knee_ratio")]
-    assert ratios.tolist() == [one.lookup(5.17).ratio for one in coordinates.maps]
+    assert ratios.tolist() == [one.knee.lookup(5.17).ratio for one in coordinates.maps]
 
 
 @given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=40), st.integers(0, 2**32))
@@ -219,7 +218,7 @@ def test_a_search_ends_when_every_design_with_every_motor_was_tried(name):
     space = coordinates_for(study).space
     _, history = search(study, 60)
     values = np.vstack([asked for asked, _ in history])
-    total = sum(len(motor.gears["knee_ratio"]) for motor in space.motors)
+    total = sum(len(motor.gears["knee_ratio"]) for motor in space.choices[0].motors)
     assert len({row.tobytes() for row in values}) == len(values) == total
 
 
@@ -234,8 +233,10 @@ def test_the_surrogate_tells_actuators_apart_by_what_they_do():
     scaled = features.terms(values)[:, linear]
     assert np.abs(scaled).max() <= 1.0 + 1e-12
     knee = space.names.index("knee_ratio")
-    designs, motors = COORDINATES.designs(values), COORDINATES.motors_of(values)
-    actuators = [COORDINATES.maps[k].lookup(d[NAMES.index("knee_ratio")]) for d, k in zip(designs, motors, strict=True)]
+    designs, kits = COORDINATES.designs(values), COORDINATES.kits_of(values)
+    actuators = [
+        COORDINATES.maps[k].knee.lookup(d[NAMES.index("knee_ratio")]) for d, k in zip(designs, kits, strict=True)
+    ]
     for place, known in (
         (knee, [np.log(a.peak_torque_n_m) for a in actuators]),
         (knee + 1, [np.log(a.no_load_speed_rad_per_s) for a in actuators]),
@@ -262,15 +263,16 @@ def test_the_database_names_the_motor_of_each_design(db):
     assert [motor.name for motor in data.motors] == list(ALL)
     for trial in data.trials["trial"][:20]:
         row = data.trials.iloc[trial]
-        assert data.map_of_trial(trial).motor.name == row["motor"] == data.motor_of_trial(trial).name
-        assert data.map_of_trial(trial).lookup(row["knee_ratio"]).ratio == row["knee_ratio"]
+        kit = data.kit_of_trial(trial)
+        assert [motor.name for motor in kit.motors] == [row["motor"]]
+        assert kit.knee.lookup(row["knee_ratio"]).ratio == row["knee_ratio"]
 
 
 def test_every_stored_measure_is_that_of_the_design_with_its_motor(db):
     data = read_study(db)
-    for actuator_map, rows in data.motor_rows(data.trials):
+    for kit, rows in data.kit_rows(data.trials):
         members = data.trials.iloc[rows]
-        again = Evaluator(actuator_map, data.calibration)(members[list(NAMES)].to_numpy())
+        again = Evaluator(kit, data.calibration)(members[list(NAMES)].to_numpy())
         for name in ("height_m", "energy_j", "mass_kg", "gear_safety"):
             assert getattr(again, name).tobytes() == members[name].to_numpy().tobytes()
 
@@ -293,7 +295,9 @@ def test_tables_that_optuna_writes_itself_say_the_same(db, tmp_path):
         create_database(path, study, made_meta(study), {})
         generation = made_generation(study, 0, 0, made_evaluations([0.8, 0.9, 1.0], [9.0, 10.0, 11.0]), state={})
         values = coordinates.space.snap(np.tile(coordinates.space.lower, (3, 1)))
-        generation = replace(generation, designs=coordinates.designs(values), motors=("U8", "VT8020", "MN8014"))
+        generation = replace(
+            generation, designs=coordinates.designs(values), motors={"motor": ("U8", "VT8020", "MN8014")}
+        )
         with Store(path, study, coordinates=coordinates, known_schemas=schemas) as store:
             store.add(generation)
         stored = optuna.load_study(study_name="made", storage=f"sqlite:///{path}")
@@ -338,5 +342,5 @@ def test_a_study_of_one_motor_stores_no_motor_and_reads_its_name(tmp_path):
     assert "motor" not in names
     data = read_study(path)
     assert set(data.trials["motor"]) == {"U8"}
-    assert data.motor.name == "U8"
+    assert data.case_kit.label == "U8"
     assert list(data.meta.contents) == ["motor", "calibration"]

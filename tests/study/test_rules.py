@@ -42,8 +42,8 @@ def test_a_study_searches_with_the_gearboxes_of_its_rules_and_goes_on_with_them(
     data = read_study(db)
     rated = map_of(load_motor("VT8020"), "iso6336")
     assert data.study == study
-    assert data.actuator_map is rated
-    assert load_simulator(study, workers=1).evaluator.actuator_map is rated
+    assert data.case_kit.hip is rated
+    assert load_simulator(study, workers=1).evaluator.actuator_map.hip is rated
     assert resume(db, evaluations=40).new_evaluations == 20
     run(study, tmp_path / "whole.db")
     assert read_study(db).trials.equals(read_study(tmp_path / "whole.db").trials)

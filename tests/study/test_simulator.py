@@ -48,7 +48,7 @@ def test_stored_contents_give_the_same_motor_and_calibration_to_the_last_bit(dat
     assert repr(again.motors) == repr(first.motors)
     assert repr(again.calibration) == repr(first.calibration)
     assert json.dumps(again.contents) == json.dumps(first.contents)
-    assert again.evaluator.actuator_map is first.evaluator.actuator_map
+    assert again.evaluator.actuator_map == first.evaluator.actuator_map
 
 
 def test_a_users_files_are_not_needed_again(data, tmp_path):

@@ -56,7 +56,7 @@ def test_the_front_reads_the_same(name):
     later = front.drop(columns=wanted["columns"])
     assert tuple(later.columns) == tuple(column.name for column in LATER if column.name not in wanted["columns"])
     assert all((later[column] == DEFAULTS[column]).all() for column in later if column in DEFAULTS)
-    assert set(later["motor"]) == {data.motor.name}
+    assert set(later["motor"]) == {data.motors[0].name}
     assert all(later[column].isna().all() for column in later if column not in (*DEFAULTS, "motor"))
     front = front.drop(columns=later.columns)
     assert front.columns.tolist() == wanted["columns"]

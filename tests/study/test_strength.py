@@ -113,9 +113,7 @@ def test_a_front_under_strength_holds(tmp_path, monkeypatch, algorithm):
     assert (weak["state"] == "infeasible").all()
     assert weak["reason"].str.contains("_safety = ").all()
     # What is stored follows from the stored loads.
-    factors = strength_factors(
-        data.trials[list(data.study.variables)].to_numpy(), data.actuator_map, loads_of(data.trials)
-    )
+    factors = strength_factors(data.trials[list(data.study.variables)].to_numpy(), data.case_kit, loads_of(data.trials))
     for group, name in GROUP_MEASURES.items():
         members = [k for k, joint in enumerate(TABLE) if joint.group == group]
         least = [min((row[k] / TABLE[k].required for k in members), default=1000.0) for row in factors]

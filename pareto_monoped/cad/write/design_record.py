@@ -6,8 +6,8 @@ from typing import Any
 from pareto_monoped import __version__
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.actuator.motors import motor_values
-from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.cad.as_built import Built
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
@@ -24,7 +24,7 @@ def design_record(
     *,
     searched: Design,
     built: Built,
-    actuator_map: ActuatorMap,
+    maps: JointMaps,
     jumps: Mapping[str, Mapping[str, Any]],
     calibration: Calibration,
     source: Mapping[str, Any] | None,
@@ -36,17 +36,19 @@ def design_record(
     Args:
         searched: the design as the search found it.
         built: the same as it was built.
-        actuator_map: where its gearboxes come from.
+        maps: where its gearboxes come from.
         jumps: by ``searched`` and ``as_built``: the results of both simulations.
         calibration: the jump model of both.
         source: where the design comes from.
         formats: what was written.
         strength: whether every joint had to have its required safety factor.
     """
-    rules, motor_data = actuator_map.settings.rules, motor_values(built.robot.hip.motor)
+    rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
+    # Records with one motor hold it alone, as they did before there could be two.
+    motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))
     return {
         "made_by": MADE_BY,
-        "motor": built.robot.hip.motor.name,
+        "motor": maps.label,
         "calibration": calibration.label,
         # Records made before there were other rules do not name them.
         **({} if rules == "paper" else {"rules": rules}),
@@ -59,7 +61,7 @@ def design_record(
         "strength": strength,
         "pose": {"hip_rad": built.pose.hip_rad, "knee_rad": built.pose.knee_rad},
         "actuators": {
-            name: _actuator(actuator) | ({"stand_in": note} if (note := actuator_map.stand_in(ratio)) else {})
+            name: _actuator(actuator) | ({"stand_in": note} if (note := maps.of(name).stand_in(ratio)) else {})
             for name, actuator, ratio in (
                 ("hip", built.robot.hip, searched.hip_ratio),
                 ("knee", built.robot.knee, searched.knee_ratio),

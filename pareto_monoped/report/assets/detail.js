@@ -10,7 +10,7 @@ function showSubject(chosen) {
   }
   const several = page.studies.length > 1 ? `, ${chosen.study.label}` : "";
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
-  const motor = chosen.study.trials.columns.motor ? `${page.maps[chosen.map].motor}; ` : "";
+  const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
   box.append(make("span", {}, `${motor}${chosen.why}`));
   for (const name of new Set([...page.goals, "mass_kg"])) {
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
@@ -158,9 +158,10 @@ function quoted(word) { return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.r
 
 function commandsOf(chosen) {
   const settings = Object.entries(chosen.values).map(([name, value]) => `--set ${name}=${value}`).join(" ");
-  const motor = quoted(chosen.study.motor_names[chosen.map]);
-  const simulate = `pareto-monoped simulate ${settings} --motor ${motor} --calibration ${quoted(chosen.study.calibration_name)}`;
-  if (chosen.kind === "case") return [`pareto-monoped simulate --case ${chosen.name} --motor ${motor} --calibration ${quoted(chosen.study.calibration_name)}`];
+  const [hip, knee] = chosen.study.motor_names[chosen.kit].map(quoted);
+  const motors = hip === knee ? `--motor ${hip}` : `--hip-motor ${hip} --knee-motor ${knee}`;
+  const simulate = `pareto-monoped simulate ${settings} ${motors} --calibration ${quoted(chosen.study.calibration_name)}`;
+  if (chosen.kind === "case") return [`pareto-monoped simulate --case ${chosen.name} ${motors} --calibration ${quoted(chosen.study.calibration_name)}`];
   if (chosen.at < 0) return [simulate];
   const db = quoted(chosen.study.database);
   return [`pareto-monoped pick ${db} --trial ${chosen.number}`, `pareto-monoped export ${db} --trial ${chosen.number} -o cad/trial_${chosen.number}`, simulate];

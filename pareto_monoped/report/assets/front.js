@@ -150,7 +150,7 @@ function traces() {
     const marker = { size: 7.5, symbol: MARKS[study % 6], color: tint, opacity, line: { width: 0.8, color: colour("card") } };
     if (card.trials.columns.motor) {
       // Motors differ in colour and in mark: a third objective takes the colour.
-      const motors = card.front.map((row) => motorTint(mapOf(card, row)));
+      const motors = card.front.map((row) => motorTint(kitOf(card, row)));
       Object.assign(marker, { symbol: motors.map((k) => MARKS[k]), color: motors.map((k) => colour(`c${k}`)) });
     }
     const third = tinted();
@@ -359,30 +359,30 @@ function redrawView() {
   drawFront();
 }
 
-// One of six colours and marks for a motor, by the number of its map.
+// One of six colours and marks for a kit of motors, by its number.
 const MARKS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"];
-function motorTint(map) { return MOTORS.indexOf(map) % MARKS.length; }
+function motorTint(kit) { return MOTORS.indexOf(kit) % MARKS.length; }
 
 const MARK_SHAPES = [
   '<circle cx="7" cy="7" r="4"/>', '<path d="M3 3H11V11H3Z"/>', '<path d="M7 2L12 7L7 12L2 7Z"/>',
   '<path d="M7 3L12 11H2Z"/>', '<path d="M7 11L2 3H12Z"/>', '<path d="M7 2L12 6L10 12H4L2 6Z"/>',
 ];
 
-// A switch for each motor that designs choose from: without it, its designs are out of range everywhere.
+// A switch for each kit of motors that designs choose from: without it, its designs are out of range everywhere.
 function startMotorSwitches() {
   const box = byId("motors");
   box.hidden = MOTORS.length === 0;
-  for (const map of MOTORS) {
-    const input = make("input", { type: "checkbox", "data-motor": map });
+  for (const kit of MOTORS) {
+    const input = make("input", { type: "checkbox", "data-motor": kit });
     input.checked = true;
     input.addEventListener("change", () => {
-      if (input.checked) state.withoutMotors.delete(map);
-      else state.withoutMotors.add(map);
+      if (input.checked) state.withoutMotors.delete(kit);
+      else state.withoutMotors.add(kit);
       tell("view");
     });
-    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true", fill: `var(--c${motorTint(map)})` });
-    symbol.innerHTML = MARK_SHAPES[motorTint(map)]; // constant text from above
-    box.append(make("label", {}, input, symbol, page.maps[map].motor));
+    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true", fill: `var(--c${motorTint(kit)})` });
+    symbol.innerHTML = MARK_SHAPES[motorTint(kit)]; // constant text from above
+    box.append(make("label", {}, input, symbol, page.kits[kit].motor));
   }
 }
 

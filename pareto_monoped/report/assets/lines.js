@@ -125,7 +125,7 @@ function drawAlong() {
       return {
         x: front.map((row) => trials.columns[FIRST][row] * quantity[FIRST].scale), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
         mark: front.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), opacity: front.map((row) => (inRanges(i, row) ? 0.8 : 0.12)),
-        colours: trials.columns.motor ? front.map((row) => `var(--c${motorTint(mapOf(page.studies[i], row))})`) : null,
+        colours: trials.columns.motor ? front.map((row) => `var(--c${motorTint(kitOf(page.studies[i], row))})`) : null,
         colour: several ? `var(--c${i % 6})` : "var(--c0)",
       };
     });
@@ -153,7 +153,9 @@ function drawAlong() {
 // The ratio from which on all gearboxes are external; null if all are of one family.
 function switchRatio() {
   if (current().trials.columns.motor) return null; // each motor has its own
-  const points = page.maps[current().map].points.filter((p) => p.gearbox !== null);
+  const { hip, knee } = page.kits[current().kit];
+  if (hip !== knee) return null;
+  const points = page.maps[hip].points.filter((p) => p.gearbox !== null);
   const at = points.findLastIndex((p) => page.gearboxes[p.gearbox].family === "ISSPG");
   return at >= 0 && at < points.length - 1 ? points[at + 1].ratio_low : null;
 }

@@ -90,7 +90,7 @@ function drawLines() {
   for (const i of state.visible) {
     const own = par.lines.fronts.filter(([study]) => study === i);
     if (page.studies[i].trials.columns.motor) {
-      for (const map of MOTORS) stroke(context, kept(own).filter(([, row]) => mapOf(page.studies[i], row) === map), colour(`c${motorTint(map)}`), 1.2, 0.55);
+      for (const kit of MOTORS) stroke(context, kept(own).filter(([, row]) => kitOf(page.studies[i], row) === kit), colour(`c${motorTint(kit)}`), 1.2, 0.55);
     } else stroke(context, kept(own), several ? studyColour(i) : colour("c0"), 1.2, 0.55);
   }
   context.globalAlpha = 1;

@@ -22,7 +22,7 @@ function buildStage(chosen) {
   stage.replaceChildren();
   parts = null;
   const { values } = chosen;
-  const d = page.maps[chosen.map].leg;
+  const d = legOf(chosen.kit);
   const l1 = values.thigh_length_m, l2 = values.shank_length_m;
   const flight = player.jump;
   const foot = chosen.study.foot_radius_m;

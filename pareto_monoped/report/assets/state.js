@@ -38,13 +38,18 @@ function moveAlongFront(steps) {
   select(state.study, front[Math.min(Math.max(at + steps, 0), front.length - 1)]);
 }
 
-// Number of the stage 1 map of a trial's motor.
-function mapOf(study, row) { return study.trials.columns.motor?.[row] ?? study.map; }
+// Number of a trial's kit of motors.
+function kitOf(study, row) { return study.trials.columns.motor?.[row] ?? study.kit; }
 
-function motorOf(study, row) { return page.maps[mapOf(study, row)].motor; }
+function motorOf(study, row) { return page.kits[kitOf(study, row)].motor; }
 
-// The maps of the motors that the designs of some study choose from; none where each study has one motor.
-const MOTORS = [...new Set(page.studies.flatMap((study) => (study.trials.columns.motor ? Object.keys(study.motor_names).map(Number) : [])))];
+// The leg that fits a kit of motors.
+function legOf(kit) { return page.kits[kit].leg ?? page.maps[page.kits[kit].hip].leg; }
+
+// The kits of motors that the designs of some study choose from; none where each study has one.
+const KITS = [...new Set(page.studies.flatMap((study) => (study.trials.columns.motor ? Object.keys(study.motor_names).map(Number) : [])))];
+// Where there are more than colours, only those on a front.
+const MOTORS = KITS.length <= 6 ? KITS : KITS.filter((kit) => page.studies.some((study) => study.front.some((row) => study.trials.columns.motor?.[row] === kit)));
 
 // Whether something keeps designs out: a range of an axis, or a motor that is not wanted.
 function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
@@ -72,7 +77,7 @@ function subject() {
     const values = published.design;
     return {
       kind: "case", study, name: made.name, values, measures: { ...made.measures, ...made }, more: {}, jump: made.jump, status: made.status,
-      map: study.map, hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
+      kit: study.kit, hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
       why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
     };
   }
@@ -92,7 +97,7 @@ function subject() {
   else if (ill) why = "taken off the front by its audit";
   else if (at < 0) why = { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[letter];
   return {
-    kind: "trial", study, number, row, values, measures, more, at, why, letter, map: mapOf(study, row),
+    kind: "trial", study, number, row, values, measures, more, at, why, letter, kit: kitOf(study, row),
     jump: study.jumps[number] ?? null, audit: study.audits[number] ?? null, model: study.models[number] ?? null,
     hip: page.gearboxes[columns.hip_gearbox[row]] ?? null, knee: page.gearboxes[columns.knee_gearbox[row]] ?? null,
   };
