@@ -114,6 +114,17 @@ class MotorCoordinates:
                 values[rows, space.names.index(name)] /= max(len(part.gears[name]) - 1, 1)
         return values
 
+    def motor_limits(self, name: str) -> tuple[str, dict[str, tuple[float, float]]] | None:
+        """Which choice decides the gearboxes of a variable, and their least and greatest ratio with each motor.
+
+        None for a variable whose limits are the same with every motor.
+        """
+        if name not in self.space.listed:
+            return None
+        choice = self.space.choice_for(name)
+        ratios = {motor.name: [gear.ratio for gear in motor.gears[name]] for motor in choice.motors}
+        return choice.name, {motor: (found[0], found[-1]) for motor, found in ratios.items()}
+
     def limits(self, name: str) -> tuple[float, float]:
         """Least and greatest value of a free variable in a stored design, whatever its motors."""
         lows, highs = zip(*(part.limits(name) for part in self.parts), strict=True)

@@ -11,6 +11,7 @@ from pareto_monoped.measures import measure
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.goals import Limit
+from pareto_monoped.study.motor_choice import MotorCoordinates
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.weighted_budget import sweep_evaluations
 
@@ -31,6 +32,7 @@ class AtBound:
         side: ``lower`` or ``upper``.
         bound: its value there.
         share: of the designs on the front, at most 1.
+        motor: with which it is there, where the bound is that of a motor's gearboxes; else empty.
         parts: least and greatest first objective of each part of the front where it is there, in stored units.
     """
 
@@ -39,6 +41,7 @@ class AtBound:
     bound: float
     share: float
     parts: tuple[tuple[float, float], ...]
+    motor: str = ""
 
 
 def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
@@ -86,13 +89,28 @@ def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
     for name in study.free:
         if not isinstance(study.variables[name], Bounds):
             continue
-        lower, upper = data.coordinates.limits(name)
-        values, near = front[name].to_numpy(dtype=np.float64), _AT * (upper - lower)
-        for side, bound, there in (("lower", lower, values <= lower + near), ("upper", upper, values >= upper - near)):
-            if there.mean() >= _WORTH_TELLING:
-                parts = _parts(along[there], float(np.ptp(along)))
-                found.append(AtBound(name=name, side=side, bound=bound, share=float(there.mean()), parts=parts))
+        values = front[name].to_numpy(dtype=np.float64)
+        for motor, own, (lower, upper) in _ranges(data, front, name):
+            near = _AT * (upper - lower)
+            for side, bound, at in (("lower", lower, values <= lower + near), ("upper", upper, values >= upper - near)):
+                there = at & own
+                share = float(there.mean())
+                if share >= _WORTH_TELLING:
+                    parts = _parts(along[there], float(np.ptp(along)))
+                    found.append(AtBound(name=name, side=side, bound=bound, share=share, parts=parts, motor=motor))
     return sorted(found, key=lambda one: -one.share)
+
+
+def _ranges(
+    data: StudyData, front: pd.DataFrame, name: str
+) -> list[tuple[str, NDArray[np.bool_], tuple[float, float]]]:
+    """Ranges of a variable: motor, designs with it, bounds. One for all designs where no motor decides the bounds."""
+    where = data.coordinates
+    limits = where.motor_limits(name) if isinstance(where, MotorCoordinates) else None
+    if limits is None:
+        return [("", np.full(len(front), True), where.limits(name))]
+    motors = front[limits[0]].to_numpy()
+    return [(motor, np.asarray(motors == motor), bounds) for motor, bounds in limits[1].items()]
 
 
 def _parts(values: NDArray[np.float64], extent: float) -> tuple[tuple[float, float], ...]:
@@ -111,9 +129,10 @@ def _bound_line(data: StudyData, found: AtBound) -> str:
         for low, high in found.parts
     )
     unit = "" if variable.unit == "1" else f" {variable.unit}"
+    whose = f" with {found.motor}" if found.motor else ""
     return (
-        f"{found.name} is at its {found.side} bound of {found.bound:.4g}{unit} in {100.0 * found.share:.0f} % of the "
-        f"front ({entry.short} {where})"
+        f"{found.name} is at its {found.side} bound of {found.bound:.4g}{unit}{whose} in {100.0 * found.share:.0f} % "
+        f"of the front ({entry.short} {where})"
     )
 
 

@@ -43,7 +43,9 @@ def test_the_frame_has_the_types_of_the_table(tmp_path):
         path = tmp_path / f"{generations}.db"
         made_database(path, generations)
         trials = read_study(path).trials
-        assert {name: str(dtype) for name, dtype in trials.dtypes.items()} == {c.name: c.dtype for c in COLUMNS}
+        # The motors of hip and knee stand only where a study names them.
+        known = {c.name: c.dtype for c in COLUMNS if c.name not in ("hip_motor", "knee_motor")}
+        assert {name: str(dtype) for name, dtype in trials.dtypes.items()} == known
         assert tuple(trials.columns[: len(REQUIRED)]) == REQUIRED
 
 

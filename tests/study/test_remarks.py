@@ -59,6 +59,32 @@ def test_bounds_are_told_with_the_share_of_the_front_and_its_parts(data):
     ]
 
 
+def test_each_motor_s_gearboxes_have_bounds_of_their_own(tmp_path):
+    """The greatest of all ratios is one motor's alone: designs with another motor are at a bound below it."""
+    path = tmp_path / "s.db"
+    listed = {"hip_motor": ["VT8020", "U8"], "knee_motor": ["U8", "MN8014"], "rules": "iso6336"}
+    run(made(**listed), path, evaluations=8)
+    data = read_study(path)
+    ends = {motor: data.actuator_maps[motor] for motor in ("VT8020", "U8", "MN8014")}
+    top = {motor: found.lookup(8.7).ratio for motor, found in ends.items()}
+    assert top["U8"] != top["MN8014"]
+    knee = np.repeat(["U8", "MN8014"], 10)
+    front = front_of(
+        data,
+        np.linspace(0.6, 1.0, 20),
+        knee_ratio=[top[name] for name in knee],
+        hip_ratio=5.0,
+        hip_motor="VT8020",
+        knee_motor=knee,
+    )
+    assert [(one.name, one.side, one.motor, one.bound, one.share) for one in at_bounds(data, front)] == [
+        ("knee_ratio", "upper", name, top[name], 0.5) for name in ("U8", "MN8014")
+    ]
+    assert remarks(data, front)[1].startswith(
+        f"knee_ratio is at its upper bound of {top['MN8014']:.4g} with MN8014 in 50 % of the front (height 0.8"
+    )
+
+
 def test_a_front_between_all_bounds_needs_no_remark(data):
     assert remarks(data, front_of(data, np.linspace(0.6, 1.0, 10))) == []
 
