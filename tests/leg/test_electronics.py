@@ -59,12 +59,18 @@ def test_a_board_that_limits_its_motor_says_so_in_the_parts_list():
     assert ODRIVE.limit(high) == "takes 58 V, less than the 60 V of VT8020"
 
 
+def with_driver(leg, driver):
+    """The leg with this driver for both motors."""
+    hip, knee = (dataclasses.replace(fit, driver=driver) for fit in (leg.hip, leg.knee))
+    return dataclasses.replace(leg, hip=hip, knee=knee)
+
+
 @pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
 def test_screws_in_standoffs_are_tightened_as_spacers_for_boards_allow(leg, driver):
     """0.5 N m for M3 (Wuerth's data sheets), 0.3 N m for M2.5 (tables after DIN 267-25)."""
     screws = [
         part
-        for part in base_parts(0.09, dataclasses.replace(leg, driver=driver))
+        for part in base_parts(0.09, with_driver(leg, driver))
         if part.name.endswith(("standoff_screw", "driver_screw"))
     ]
     assert len(screws) == 4
@@ -76,7 +82,7 @@ def test_screws_in_standoffs_are_tightened_as_spacers_for_boards_allow(leg, driv
 
 @pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
 def test_each_joint_s_board_stands_outside_its_cheek(leg, driver):
-    parts = base_parts(0.09, dataclasses.replace(leg, driver=driver))
+    parts = base_parts(0.09, with_driver(leg, driver))
     cheeks = {part.name: part.prisms for part in parts if part.name.endswith("_cheek")}
     found = {part.name: part for part in parts if part.role is Role.ELECTRONICS}
     assert sorted(found) == ["hip_driver", "knee_driver"]
