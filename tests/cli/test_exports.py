@@ -33,6 +33,10 @@ def run(capsys, *words):
         (("export", "study.db", "--knee", "--rules", "paper", "-o", "x"), "--rules goes with --case only"),
         (("export", "study.db", "--knee", "--motor", "U12", "-o", "x"), "--motor goes with --case only"),
         (("export", "--case", "C", "--motor", "U99", "-o", "x"), "motor = 'U99'"),
+        (("export", "study.db", "--knee", "--knee-motor", "U8", "-o", "x"), "--knee-motor goes with --case only"),
+        (("export", "--case", "C", "--hip-motor", "U8", "-o", "x"), "--knee-motor is missing"),
+        (("export", "--case", "C", "--motor", "U8", "--hip-motor", "U8", "-o", "x"), "--motor stands for both joints"),
+        (("export", "--case", "C", "--hip-motor", "U8", "--knee-motor", "U99", "-o", "x"), "motor = 'U99'"),
         (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format 'dwg'"),
     ],
 )
@@ -63,6 +67,36 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
         "thigh_plate_outer.dxf",
     ]
     assert all(check["passed"] for check in json.loads((folder / "checks.json").read_text()))
+
+
+@pytest.mark.parametrize(("hip", "knee"), [("U8", "VT8020"), ("U12", "MN8014")])
+def test_a_case_is_exported_with_different_motors_and_again_from_its_record(capsys, tmp_path, hip, knee):
+    """All checks of the machine hold: sweep, overlap, seats, watertight parts, masses."""
+    words = ("export", "--case", "C", "--hip-motor", hip, "--knee-motor", knee, "--no-strength", "--formats", "dxf")
+    code, _, _ = run(capsys, *words, "-o", tmp_path / "one")
+    record = json.loads((tmp_path / "one" / "design.json").read_text())
+    assert (code, record["motor"]) == (0, f"{hip} hip, {knee} knee")
+    assert {joint: values["name"] for joint, values in record["motor_data"].items()} == {"hip": hip, "knee": knee}
+    assert all(check["passed"] for check in json.loads((tmp_path / "one" / "checks.json").read_text()))
+    assert f"with motor {hip} hip, {knee} knee" in (tmp_path / "one" / "README.md").read_text()
+    code, _, _ = run(capsys, "export", "--record", tmp_path / "one" / "design.json", "-o", tmp_path / "two")
+    assert code == 0
+    for path in (tmp_path / "one").rglob("*"):
+        if path.is_file():
+            assert (tmp_path / "two" / path.relative_to(tmp_path / "one")).read_bytes() == path.read_bytes()
+
+
+def test_a_motor_named_for_both_joints_is_exported_as_one(capsys, tmp_path):
+    """Byte for byte."""
+    for folder, words in (("one", ("--motor", "U8")), ("both", ("--hip-motor", "U8", "--knee-motor", "u8"))):
+        code, _, _ = run(
+            capsys, "export", "--case", "C", *words, "--no-strength", "--formats", "dxf,mjcf", "-o", tmp_path / folder
+        )
+        assert code == 0
+    names = {path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*") if path.is_file()}
+    assert len(names) > 20
+    for name in names:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "both" / name).read_bytes()
 
 
 def test_a_case_is_exported_with_another_motor(capsys, tmp_path):

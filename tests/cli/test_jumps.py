@@ -185,6 +185,20 @@ def test_gears_that_do_not_last_their_duty_get_one_line_of_advice(capsys):
     assert "gear_life_jumps" not in paper
 
 
+def test_hip_and_knee_may_have_different_motors(capsys, tmp_path):
+    both = ("--hip-motor", "U8", "--knee-motor", "VT8020")
+    mixed, swapped, one = (
+        json.loads(run(capsys, "simulate", "--case", "C", "--json", *words)[1])
+        for words in (both, ("--hip-motor", "VT8020", "--knee-motor", "U8"), ("--motor", "U8"))
+    )
+    assert (mixed["hip_motor"], mixed["knee_motor"], "motor" in mixed) == ("U8", "VT8020", False)
+    assert mixed["height_m"] > one["height_m"] > swapped["height_m"]  # the knee does the work, the hip is carried
+    twice = json.loads(run(capsys, "simulate", "--case", "C", "--json", "--hip-motor", "U8", "--knee-motor", "U8")[1])
+    assert twice == one
+    run(capsys, "simulate", "--case", "C", *both, "--model", tmp_path / "m.xml")
+    assert "hip motor: U8; knee motor: VT8020" in (tmp_path / "m.xml").read_text()
+
+
 def test_the_named_motor_and_calibration_are_used(capsys):
     default, other = (
         json.loads(run(capsys, "simulate", "--json", *more)[1])

@@ -73,6 +73,7 @@ def test_killed_with_three_objectives_and_a_constraint(tmp_path):
 
 
 MOTORS = 'motor = ["VT8020", "U8", "MN8014"]\n'
+PAIRS = 'hip_motor = ["VT8020", "U8"]\nknee_motor = ["U8", "MN8014"]\n'
 EVERY = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
 
 
@@ -84,11 +85,13 @@ def test_killed_with_motors_three_objectives_and_a_constraint(tmp_path):
 
 
 @pytest.mark.long
-def test_every_algorithm_with_motors_killed_five_times(tmp_path):
-    for number, top in enumerate((MOTORS, MOTORS + THREE)):
-        place = tmp_path / str(number)
-        place.mkdir()
-        killed(place, [f'name = "{name}"' for name in EVERY], evaluations=400, kills=5, top=top)
+@pytest.mark.parametrize("top", [MOTORS, PAIRS + THREE], ids=["one for both joints", "one per joint"])
+def test_every_algorithm_with_motors_killed_twice(tmp_path, top):
+    """Small generations, so that both kills come between many of them."""
+    settings = [f'name = "{name}"\npopulation = 10' for name in EVERY]
+    killed(tmp_path, settings, evaluations=100, kills=2, top=top)
+    data = read_study(tmp_path / "0" / "killed.db")
+    assert data.trials["motor"].nunique() == len(data.kits)
 
 
 @pytest.mark.long
