@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.joint_maps import Maps
 from pareto_monoped.design import CONTROL, columns
 from pareto_monoped.jump.audit import LIMITS, Floats, Jumps, perturbed
 from pareto_monoped.jump.calibration import Calibration, FadeGate
@@ -77,7 +77,7 @@ def coarser(calibration: Calibration) -> Calibration | None:
 
 def screened(
     designs: Floats,
-    actuator_map: ActuatorMap,
+    actuator_map: Maps,
     calibration: Calibration,
     known: Jumps,
     *,

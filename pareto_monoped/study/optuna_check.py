@@ -8,7 +8,6 @@ import numpy as np
 
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.optuna_tables import stored_digest
-from pareto_monoped.study.protocol import MOTOR
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.seals import Seals
 
@@ -63,9 +62,8 @@ def _trial_findings(connection: sqlite3.Connection, data: StudyData, numbers: Se
     rows = connection.execute("SELECT number, objective, value FROM trial_values JOIN trials USING (trial_id)")
     yield from _different("value", rows, place, {m: values[:, m] for m in range(len(names))}, ~failed)
     wanted_params: dict[Any, Any] = {n: trials[n].to_numpy(dtype=np.float64) for n in data.study.free}
-    if len(data.study.motors) > 1:
-        motors = [motor.name for motor in data.motors]
-        wanted_params[MOTOR] = np.array([motors.index(name) for name in trials["motor"]], dtype=np.float64)
+    for choice, motors in data.motor_choices.items():
+        wanted_params[choice] = np.array([motors.index(name) for name in trials[choice]], dtype=np.float64)
     rows = connection.execute("SELECT number, param_name, param_value FROM trial_params JOIN trials USING (trial_id)")
     yield from _different("parameter", rows, place, wanted_params, np.ones(len(trials), dtype=bool))
 

@@ -85,6 +85,15 @@ class StudyData:
         contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
         return tuple(stored_motor(values, source=self._source, error=DatabaseError) for values in contents)
 
+    @property
+    def motor_choices(self) -> dict[str, tuple[str, ...]]:
+        """Each key of the study that names several motors -> their names, in its order."""
+        called = {named.lower(): motor.name for named, motor in zip(self.study.motors, self.motors, strict=True)}
+        return {
+            key: tuple(called[named.lower()] for named in names_of(getattr(self.study, key)))
+            for key in self.study.motor_choices
+        }
+
     @cached_property
     def calibration(self) -> "Calibration":
         """The calibration that the study simulates with, as stored.

@@ -92,9 +92,9 @@ def _jump_findings(data: StudyData, numbers: "np.typing.NDArray[np.int_]", worke
     simulator = stored_simulator(data, workers=workers)
     refuse_other_code(data, simulator)
     rows = data.trials.iloc[numbers]
-    names = [motor.name for motor in simulator.motors]
+    kits = [kit.label for kit in data.kits]
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
-    which = [names.index(name) for name in rows["motor"]]
+    which = [kits.index(name) for name in rows["motor"]]
     jumps: Evaluations = simulator.evaluator(designs, which)
     for name in MEASURE_NAMES:
         again, stored = getattr(jumps, name), rows[name].to_numpy(dtype=np.float64)

@@ -23,7 +23,8 @@ from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.response_surface import features_of
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
-from tests.study.support import assert_refused, made_study, study_of
+from pareto_monoped.study.verify import verify
+from tests.study.support import assert_refused, change, made_study, study_of
 
 HIP, KNEE = ("U8", "VT8020"), ("VT8020", "MN8014", "U8")
 ALGORITHMS = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
@@ -234,11 +235,21 @@ def test_optuna_sees_two_categorical_distributions(db):
         assert study.trials[0].distributions[name] == optuna.distributions.CategoricalDistribution(motors)
 
 
+def test_optuna_s_tables_are_checked_against_both_motors_and_jumps_made_again(db, tmp_path):
+    assert verify(db, simulate=20).findings == ()
+    copy = tmp_path / "copy.db"
+    copy.write_bytes(db.read_bytes())
+    change(
+        copy,
+        "UPDATE trial_params SET param_value = 1 - param_value WHERE param_name = 'hip_motor' AND trial_id = 4",
+    )
+    assert any("hip_motor" in line for line in verify(copy).findings)
+
+
 def test_a_database_with_an_unknown_motor_is_damaged(db, tmp_path):
     copy = tmp_path / "copy.db"
     copy.write_bytes(db.read_bytes())
-    with sqlite3.connect(copy) as connection:
-        connection.execute("UPDATE monoped_trials SET hip_motor = 'MN8014' WHERE trial = 5")
+    change(copy, "UPDATE monoped_trials SET hip_motor = 'MN8014' WHERE trial = 5")
     with pytest.raises(DatabaseError, match="hip motor 'MN8014' is not of the study"):
         read_study(copy)
 
