@@ -113,8 +113,11 @@ class LegDimensions:
 
     @property
     def first_bridge_mm(self) -> float:
-        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the knee actuator's case."""
-        return self.knee.housing_radius_mm + 8.5
+        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the wider actuator's case.
+
+        Keys for its bolts pass either actuator.
+        """
+        return max(self.hip.housing_radius_mm, self.knee.housing_radius_mm) + 8.5
 
     @property
     def rod_circle_mm(self) -> float:

@@ -43,7 +43,7 @@ def test_the_wider_motor_sets_the_rods_and_the_knee_s_the_chain(hip, knee):
     assert leg.rod_circle_mm == alone["U12"].rod_circle_mm > alone["U8"].rod_circle_mm
     assert leg.thigh_window_half_width_mm == alone["U12"].thigh_window_half_width_mm
     assert leg.chain == alone[knee].chain != alone[hip].chain
-    assert leg.first_bridge_mm == alone[knee].first_bridge_mm
+    assert leg.first_bridge_mm == alone["U12"].first_bridge_mm > alone["U8"].first_bridge_mm
     assert (leg.hip, leg.knee) == (alone[hip].hip, alone[knee].knee)
 
 
