@@ -199,9 +199,7 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
         raise CheckError(f"export of {out_dir}: {'; '.join(failures[:_NAMED_FAILURES])}{more}; nothing was written")
 
 
-def simulated_jumps(
-    designs: Mapping[str, Design], maps: Maps, calibration: Calibration
-) -> dict[str, dict[str, Any]]:
+def simulated_jumps(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> dict[str, dict[str, Any]]:
     """Status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
     return _jumps(designs, _evaluated(designs, maps, calibration))
 

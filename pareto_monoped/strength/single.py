@@ -103,9 +103,7 @@ def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
         return None
     jumps = min(
         strike_life_jumps(
-            Structure(
-                actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings
-            ),
+            Structure(actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings),
             torque,
         )
         for side, torque in torques.items()

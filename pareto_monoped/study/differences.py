@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import LENGTHS, RATIOS, VARIABLES
 from pareto_monoped.study.definition import Bounds
-from pareto_monoped.study.protocol import MOTOR
+from pareto_monoped.study.protocol import MOTOR_OF
 from pareto_monoped.study.reader import StudyData
 
 _VARIABLES = {variable.name: variable for variable in VARIABLES}
@@ -25,7 +25,7 @@ class Scale:
     """Designs as points whose distances say how much they differ.
 
     Attributes:
-        names: of the d free variables, and ``MOTOR`` where the study has several.
+        names: of the d free variables, and of the choices of a motor (``MOTOR_OF``).
         points: shape (n, d): numbers as shares of their ranges, gearboxes by their place in the list of those that the
             study's trials have, motors by number.
         categories: which of them have no order, shape (d,).
@@ -48,14 +48,14 @@ def scale_of(data: StudyData, trials: pd.DataFrame) -> Scale:
             columns.append(np.searchsorted(listed, values) / max(len(listed) - 1, 1))
         else:
             columns.append((values - bounds.lower) / (bounds.upper - bounds.lower))
-    if len(data.study.motors) > 1:
-        names.append(MOTOR)
-        known = np.unique(data.trials[MOTOR].to_numpy(dtype=np.str_))
-        columns.append(np.searchsorted(known, trials[MOTOR].to_numpy(dtype=np.str_)).astype(np.float64))
+    for choice in data.study.motor_choices:
+        names.append(choice)
+        known = np.unique(data.trials[choice].to_numpy(dtype=np.str_))
+        columns.append(np.searchsorted(known, trials[choice].to_numpy(dtype=np.str_)).astype(np.float64))
     return Scale(
         names=tuple(names),
         points=np.stack(columns, axis=1),
-        categories=np.array([name == MOTOR for name in names]),
+        categories=np.array([name in MOTOR_OF for name in names]),
     )
 
 
@@ -77,7 +77,7 @@ def differences(scale: Scale, trials: pd.DataFrame, row: int, given: int) -> tup
     told: list[str] = []
     for place in np.argsort(-apart, kind="stable"):
         name = scale.names[place]
-        always = name == MOTOR or name in RATIOS
+        always = name in MOTOR_OF or name in RATIOS
         if apart[place] == 0.0 or (apart[place] < _WORTH_TELLING and told and not always):
             continue
         phrase = _phrase(name, design, other)
@@ -87,8 +87,8 @@ def differences(scale: Scale, trials: pd.DataFrame, row: int, given: int) -> tup
 
 
 def _phrase(name: str, design: pd.Series, other: pd.Series) -> str:
-    if name == MOTOR:
-        return f"motor {design[name]} instead of {other[name]}"
+    if name in MOTOR_OF:
+        return f"{name.replace('_', ' ')} {design[name]} instead of {other[name]}"
     if name in RATIOS:
         return f"{name.removesuffix('_ratio')} gearbox {design[name]:.3g} instead of {other[name]:.3g}"
     if name in LENGTHS:
