@@ -104,7 +104,8 @@ def test_the_thinner_wires_of_the_cure_have_the_copper_and_the_room():
     assert count * area >= float(thick.designation.split()[2]) > (count - 1) * area
     # The same robot with a driver that lets only so much current flow takes just these wires.
     current_a = 0.999 * area * 32.0 * np.sqrt(2.0)
-    leg = dataclasses.replace(robot.leg, driver=dataclasses.replace(robot.leg.driver, peak_current_a=current_a))
+    driver = dataclasses.replace(robot.leg.hip.driver, peak_current_a=current_a)
+    leg = dataclasses.replace(robot.leg, hip=dataclasses.replace(robot.leg.hip, driver=driver))
     thin = next(c for c in cables(dataclasses.replace(robot, leg=leg)) if c.name == "hip_motor")
     assert float(thin.designation.split()[2]) == area
     assert thin.bend_radius_mm == pytest.approx(4.0 * thin.diameter_mm)

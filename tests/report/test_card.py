@@ -5,10 +5,10 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.design import VARIABLES
-from pareto_monoped.report.card import MapPlace, best_of_weights, study_card
+from pareto_monoped.report.card import MapPlace, Places, best_of_weights, study_card
 from pareto_monoped.study.reader import read_study
 
-PLACES = {"VT8020": MapPlace(number=0, first_gearbox=0)}
+PLACES = Places(maps={"VT8020": MapPlace(number=0, first_gearbox=0)}, kits={"VT8020": 0})
 
 
 @pytest.fixture(scope="module")

@@ -95,5 +95,5 @@ def test_two_studies_share_a_map(source, both):
     other = Source(data=both[1], resimulation=resimulate(both[1], most_jumps=1), models={})
     payload = build([source, other])
     assert len(payload.maps) == 1
-    assert [card.map for card in payload.studies] == [0, 0]
+    assert [card.kit for card in payload.studies] == [0, 0]
     assert len(payload.comparison.rows) == 2

@@ -7,6 +7,7 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.figures import write_figures
 from pareto_monoped.report.page import page
@@ -62,6 +63,38 @@ def test_jumps_masses_and_cases_are_those_of_the_motor(several, payload):
     design = next(c["design"] for c in payload.published if c["name"] == "C")
     alone = Evaluator(data.actuator_maps["VT8020"], data.calibration)(np.array([list(design.values())]))
     assert case.height_m == pytest.approx(alone.height_m[0], abs=1e-4)
+
+
+def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder, tmp_path):
+    listed = {"gear_list": True, "rules": "iso6336", "hip_motor": "U12", "knee_motor": ["VT8020", "U8"]}
+    algorithm = {"name": "random", "population": 60}
+    data = read_study(made(folder, name="pairs", evaluations=120, audit=False, algorithm=algorithm, **listed))
+    again = resimulate(data, most_jumps=3)
+    assert again.drift_m < 1e-9
+    payload = build([Source(data=data, resimulation=again, models={})])
+    (card,) = payload.studies
+    assert [table.motor for table in payload.maps] == ["U12", "VT8020", "U8"]
+    assert [(kit.motor, kit.hip, kit.knee) for kit in payload.kits] == [
+        ("U12 hip, VT8020 knee", 0, 1),
+        ("U12 hip, U8 knee", 0, 2),
+    ]
+    assert dict(card.motor_names) == {"0": ("U12", "VT8020"), "1": ("U12", "U8")}
+    trials = data.trials.set_index("trial")
+    for row, trial in enumerate(card.trials.trial):
+        stored, kit = trials.loc[trial], payload.kits[card.trials.columns["motor"][row]]
+        assert kit.motor == stored["motor"]
+        for joint in ("hip", "knee"):
+            gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
+            assert gearbox.motor == stored[f"{joint}_motor"]
+            assert gearbox.ratio == pytest.approx(stored[f"{joint}_ratio"], abs=1e-4)
+    # The page draws the wider case, and the thigh's plate of the knee's own motor.
+    legs = [leg_dimensions(kit) for kit in data.kits]
+    for kit, leg in zip(payload.kits, legs, strict=True):
+        assert kit.leg.housing_radius_m == pytest.approx(1e-3 * leg.hip.housing_radius_mm)
+        assert kit.leg.thigh_hip_radius_m == pytest.approx(1e-3 * leg.knee.rim_radius_mm)
+    write_figures(payload, tmp_path)
+    text = (tmp_path / "front.svg").read_text()
+    assert all(f">{motor}</text>" in text for motor in set(data.front()["motor"]))
 
 
 def test_a_study_with_one_motor_has_no_column_of_motors(source):

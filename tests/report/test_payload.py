@@ -84,7 +84,7 @@ def test_each_set_of_rules_has_a_map_of_its_own(source, data):
     rated = replace(data, study=replace(data.study, rules="iso6336"))
     page = build([source, replace(source, data=rated), source])
     assert len(page.maps) == 2
-    assert [card.map for card in page.studies] == [0, 1, 0]
+    assert [card.kit for card in page.studies] == [0, 1, 0]
 
 
 def test_same_names_get_labels_that_differ(source):
