@@ -132,15 +132,15 @@ class StudyData:
 
     def kit_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[JointMaps, NDArray[np.intp]]]":
         """The gearboxes of each kit of motors that some of these trials have, and the positions of those trials."""
-        hip, knee = (trials[name].to_numpy() for name in self._motor_columns)
-        for kit in self.kits:
-            rows = np.flatnonzero((hip == kit.hip.motor.name) & (knee == kit.knee.motor.name))
-            if len(rows):
-                yield kit, rows
+        numbers = self.kit_numbers(trials)
+        for k in np.unique(numbers).tolist():
+            yield self.kits[k], np.flatnonzero(numbers == k)
 
-    @property
-    def _motor_columns(self) -> tuple[str, str]:
-        return ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
+    def kit_numbers(self, trials: pd.DataFrame) -> NDArray[np.intp]:
+        """Which of ``kits`` each of n trials has, shape (n,)."""
+        hip, knee = ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
+        known = {(kit.hip.motor.name, kit.knee.motor.name): k for k, kit in enumerate(self.kits)}
+        return np.array([known[pair] for pair in zip(trials[hip], trials[knee], strict=True)], dtype=np.intp)
 
     @cached_property
     def coordinates(self) -> "AnyCoordinates":

@@ -97,7 +97,7 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
         StudyError: a design without variation does not jump as it is stored.
     """
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
-    motors = _motors(data, rows)
+    motors = data.kit_numbers(rows)
     _refuse_other_jumps(data, rows, evaluator(designs, motors).height_m)
     count = len(samples)
     jumps = evaluator(
@@ -110,12 +110,6 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
         int(trial): robustness(jumps, np.arange(k * count, (k + 1) * count), least)
         for k, trial in enumerate(rows["trial"])
     }
-
-
-def _motors(data: StudyData, rows: pd.DataFrame) -> np.ndarray:
-    """Which of the study's motors each trial has, as the evaluator counts them."""
-    names = list(data.actuator_maps)
-    return np.array([names.index(str(name)) for name in rows["motor"]], dtype=np.intp)
 
 
 def _refuse_other_jumps(data: StudyData, rows: pd.DataFrame, height_m: np.ndarray) -> None:

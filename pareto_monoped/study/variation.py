@@ -108,7 +108,7 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
 
 
 def swaps(space: Space, values: Floats) -> Floats:
-    """Every other choice of one gearbox or of the motor for each of n designs, all else equal, shape (k, d).
+    """Every other choice of one gearbox or of one motor for each of n designs, all else equal, shape (k, d).
 
     Args:
         space: the space; without choices, there are no swaps.
@@ -119,10 +119,10 @@ def swaps(space: Space, values: Floats) -> Floats:
         if name in space.gears:
             choices = [np.arange(len(space.gears[name]), dtype=np.float64)] * len(values)
         elif name in space.listed:
-            last = space.last_gears(name)[space.motor_of(values)]
+            last = space.last_gears(name)[space.motor_of(name, values)]
             choices = [np.arange(most + 1) / max(most, 1) for most in last.tolist()]
-        elif name == MOTOR:
-            choices = [np.arange(len(space.motors), dtype=np.float64)] * len(values)
+        elif name in MOTOR_OF:
+            choices = [np.arange(space.upper[column] + 1.0)] * len(values)
         else:
             continue
         for design, others in zip(values, choices, strict=True):

@@ -92,10 +92,8 @@ def _jump_findings(data: StudyData, numbers: "np.typing.NDArray[np.int_]", worke
     simulator = stored_simulator(data, workers=workers)
     refuse_other_code(data, simulator)
     rows = data.trials.iloc[numbers]
-    kits = [kit.label for kit in data.kits]
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
-    which = [kits.index(name) for name in rows["motor"]]
-    jumps: Evaluations = simulator.evaluator(designs, which)
+    jumps: Evaluations = simulator.evaluator(designs, data.kit_numbers(rows))
     for name in MEASURE_NAMES:
         again, stored = getattr(jumps, name), rows[name].to_numpy(dtype=np.float64)
         for k in np.flatnonzero(~((again == stored) | (np.isnan(again) & np.isnan(stored))))[:1]:

@@ -10,7 +10,7 @@ from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, shortfall
 from pareto_monoped.study.prediction import Prediction, _training
 from pareto_monoped.study.promise import unlike
-from pareto_monoped.study.protocol import MOTOR, Gear, MotorKind, Scores, Space
+from pareto_monoped.study.protocol import Gear, MotorChoice, MotorKind, Scores, Space
 from pareto_monoped.study.response_surface import features_of, fitted
 from pareto_monoped.study.surrogate import SurrogateSearch
 from pareto_monoped.study.variation import offspring, small_steps, spread, swaps
@@ -239,16 +239,19 @@ def test_with_several_motors_swaps_try_every_gearbox_of_the_motor_and_every_moto
     )
     space = replace(
         SPACE,
-        names=(*SPACE.names, MOTOR),
+        names=(*SPACE.names, "knee_motor"),
         lower=np.array([0.3, 0.0, 5.0, 0.0]),
         upper=np.array([0.5, 1.0, 200.0, 1.0]),
         gears={},
-        motors=motors,
+        choices=(MotorChoice(name="knee_motor", motors=motors),),
     )
     found = swaps(space, np.array([[0.4, 0.2, 50.0, 1.0]]))
     assert found[:, 0].tolist() == [0.4] * 8
     gears = sorted(
-        {(int(space.motor_of(row[None])[0]), int(space.gear_of("knee_ratio", row[None])[0])) for row in found}
+        {
+            (int(space.motor_of("knee_ratio", row[None])[0]), int(space.gear_of("knee_ratio", row[None])[0]))
+            for row in found
+        }
     )
     # The second of six gearboxes has a share of 0.2; with the other motor, of four, that is the first.
     assert gears == [(0, 0), *((1, k) for k in range(6))]
