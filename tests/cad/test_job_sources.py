@@ -64,7 +64,7 @@ def test_a_row_of_table_1_has_the_paper_s_motor_and_the_reference_calibration(tm
 def test_the_command_line_s_angles_are_degrees_of_the_joint_they_name(monkeypatch, tmp_path):
     asked = []
 
-    def run(job, *, progress):
+    def run(job, *, progress, note):
         asked.append(job)
         jump = {"height_m": 1.0, "energy_j": 2.0, "status": "ok"}
         return {"files": [], "jumps": {"searched": jump, "as_built": jump}}

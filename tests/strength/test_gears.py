@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.joint_maps import joint_maps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
@@ -110,7 +111,7 @@ def test_gearboxes_together_have_the_torques_that_each_has_alone():
     together = strike_torques_n_m(structures)
     assert together == pytest.approx([strike_torques_n_m([s])[0] for s in structures], rel=1e-10)
     row = next(k for k, joint in enumerate(TABLE) if joint.name == "knee_gear_strikes")
-    found = capacities(actuator_map)
+    found = capacities(joint_maps(actuator_map))
     assert found.values["knee"][:, found.columns[row]].ravel() == pytest.approx(together, rel=0.0)
 
 
