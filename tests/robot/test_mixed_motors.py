@@ -97,7 +97,7 @@ def test_capacities_of_a_side_are_those_of_its_motor_s_gearboxes(hip, knee):
         alone = capacities(joint_maps(map_for(motor)))
         assert np.array_equal(mixed.row[side], alone.row[side])
         own = [k for k, joint in enumerate(TABLE) if joint.name.startswith(f"{side}_gear_")]
-        assert len(own) == 2
+        assert len(own) >= 2
         for k in own:
             one, other = mixed.values[side][:, mixed.columns[k]], alone.values[side][:, alone.columns[k]]
             assert np.array_equal(one, other)
