@@ -1,5 +1,6 @@
 """The rating of a gear set as a gear calculation sheet: loads and their factors by mesh, stresses by gear."""
 
+import textwrap
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.settings import ActuatorSettings
 
 _QUANTITY_WIDTH = 33
+_VALUE_INDENT = 23 * " "
 
 
 def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSettings") -> None:
@@ -36,7 +38,8 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
         ("Y_ST", "2"),
         ("1 at overload", "Z_L Z_v Z_R, Y_R,rel,T, Y_M"),
     ):
-        console.print(f"  {name:20} {value}", markup=False)
+        line = textwrap.fill(f"  {name:20} {value}", console.width, subsequent_indent=_VALUE_INDENT)
+        console.print(line, markup=False, soft_wrap=True)
     console.print(_loads(rating))
     console.print(_stresses(list(rating.gears), settings))
 

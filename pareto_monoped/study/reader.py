@@ -88,6 +88,8 @@ class StudyData:
     @property
     def motor_choices(self) -> dict[str, tuple[str, ...]]:
         """Each key of the study that names several motors -> their names, in its order."""
+        if not self.study.motor_choices:
+            return {}
         called = {named.lower(): motor.name for named, motor in zip(self.study.motors, self.motors, strict=True)}
         return {
             key: tuple(called[named.lower()] for named in names_of(getattr(self.study, key)))
