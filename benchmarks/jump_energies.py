@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import CONTROL, LOWER, PAPER_CASES, UPPER, columns, complete
+from pareto_monoped.design import CONTROL, LOWER, NAMES, PAPER_CASES, UPPER, columns, complete
+from pareto_monoped.jump.audit import audit
 from pareto_monoped.jump.balance import energy_balance
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.closure import balance_errors
@@ -25,6 +26,8 @@ from pareto_monoped.study.reader import read_study
 
 Floats = NDArray[np.float64]
 MAP = map_for("VT8020")
+FULL_AUDITS = 500
+"""The most designs of a front that are audited in full."""
 FINE_S = 50e-6
 """Step of the integration that counts as converged."""
 
@@ -117,21 +120,23 @@ def _print_readings(reference: Calibration, designs: Floats) -> None:
 
 
 def _print_audits(db: Path) -> None:
-    """90th percentile / worst of the audits of a study's front."""
+    """90th percentile / worst of full audits of designs of a study's front; the study itself needs only brief ones."""
     data = read_study(db)
-    audits = data.audits[data.audits["trial"].isin(data.front()["trial"])]
+    front = data.front()
+    designs = front.iloc[:: -(-len(front) // FULL_AUDITS)][list(NAMES)].to_numpy(dtype=np.float64)
+    audits = audit(designs, MAP, data.calibration, workers=2)
     kinds = {
         "1e-6": "spread",
         "half step": "half_step",
         "quarter step": "quarter_step",
         "control period a quarter": "control_period",
     }
-    print(f"\n{db.name}: {len(audits)} designs of the front audited")
+    print(f"\n{db.name}: {len(designs)} of {len(front)} designs of the front audited in full")
     print(f"| | {' | '.join(kinds)} | balance off |")
     print("|---" * 6 + "|")
     for text, ending, scale in (("height mm", "height_m", 1e3), ("energy %", "energy", 1e2)):
-        cells = [_two(scale * audits[f"{kind}_{ending}"].to_numpy()) for kind in kinds.values()]
-        balance = _two(1e2 * audits["energy_balance_error"].to_numpy()) if ending == "energy" else ""
+        cells = [_two(scale * getattr(audits, f"{kind}_{ending}")) for kind in kinds.values()]
+        balance = _two(1e2 * audits.energy_balance_error) if ending == "energy" else ""
         print(f"| {text} | {' | '.join(cells)} | {balance} |")
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from pandas import DataFrame
 
-from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
@@ -32,6 +32,7 @@ def least_energy(front: DataFrame, height_m: float) -> str:
 def front(folder: Path, case: str, algorithm: dict[str, Any], evaluations: int) -> DataFrame:
     """The front of a study of this case."""
     values = {"name": case, "case": case, "evaluations": evaluations, "audit": False, "algorithm": algorithm}
+    values |= {"rules": DEFAULT_RULES, "strength": True, "gear_list": True}
     path = folder / f"{case}-{algorithm['name']}.db"
     run(study_from_dict(values, source="benchmark"), path)
     return read_study(path).front()
@@ -41,7 +42,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--evaluations", type=int, default=8_000, help="jumps per search")
     evaluations = parser.parse_args().evaluations
-    simulator = load_simulator(study_from_dict({"name": "b", "evaluations": 1}, source="benchmark"), workers=1)
+    values = {"name": "cases", "evaluations": 1, "rules": DEFAULT_RULES}
+    simulator = load_simulator(study_from_dict(values, source="benchmark"), workers=1)
     cases = [PAPER_CASES[name] for name in ("A", "B", "C")]
     simulated = simulator.evaluator(np.array([case.design.as_array() for case in cases]))
     print(

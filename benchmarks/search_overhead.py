@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.design import NAMES, PAPER_NAMES
+from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
@@ -144,6 +144,9 @@ def main() -> None:
             "case": "C",
             "evaluations": evaluations,
             "audit": False,
+            "rules": DEFAULT_RULES,
+            "strength": True,
+            "gear_list": True,
             "algorithm": {"name": searched},
         },
         source="benchmark",
