@@ -145,7 +145,8 @@ def test_a_folder_to_which_a_thread_still_writes_is_deleted_and_stays_away(tmp_p
         for k in itertools.count():
             try:
                 write(folder, f"sub_{k % 7}/{k}.txt", "x")
-            except FileNotFoundError:
+            except (FileNotFoundError, FileExistsError):
+                # ``mkdir(exist_ok=True)`` says that a folder exists if it is deleted while mkdir looks what it is.
                 if not folder.exists():
                     refused.set()
                     return

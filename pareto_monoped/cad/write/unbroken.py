@@ -4,14 +4,14 @@ import shutil
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 """Ctrl-C, and what ends the worker processes of a batch."""
 _TRIES = 100
-"""To delete a folder. Once it is gone, nothing can be written to it; every try deletes what came since the last."""
+"""To delete a folder: what a thread was writing when the folder got another name may come during the first."""
 _moving = threading.Lock()
 _unfinished: set[Path] = set()
 
@@ -60,8 +60,12 @@ def without_unfinished() -> Iterator[None]:
 
 
 def _delete(folder: Path) -> None:
-    """Delete a folder, to which another thread may still write."""
-    for _ in range(_TRIES):
-        shutil.rmtree(folder, ignore_errors=True)
-        if not folder.exists():
-            return
+    """Delete a folder, to which another thread may still write: under another name, no thread finds it any more."""
+    gone = folder.with_name(f"{folder.name}-deleted")
+    with suppress(OSError):
+        folder.rename(gone)
+    for path in (gone, folder):
+        for _ in range(_TRIES):
+            shutil.rmtree(path, ignore_errors=True)
+            if not path.exists():
+                break
