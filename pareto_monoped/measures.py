@@ -416,6 +416,18 @@ MEASURES: tuple[Measure, ...] = (
         "gears struck in every jump",
         "strikes",
     ),
+    # D. W. Haldane, M. M. Plecnik, J. K. Yim, R. S. Fearing, "Robotic vertical jumping agility via series-elastic power
+    # modulation", Science Robotics 1(1), 2016. Here the push starts with the jump.
+    _measure(
+        "agility_m_per_s",
+        "m/s",
+        "maximise",
+        "vertical jumping agility: height gained over the time from the start of the push to the apex",
+        "vertical jumping agility",
+        2,
+        reference=0.0,
+        short="agility",
+    ),
 )
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)

@@ -18,6 +18,7 @@ UNITS = {
     "_s": "s",
     "_kg": "kg",
     "_rad_per_s": "rad/s",
+    "_m_per_s": "m/s",
     "_w": "W",
     "_per_minute": "1/min",
 }
@@ -59,6 +60,7 @@ def test_directions():
         "joint_safety",
         "link_safety",
         "gear_strike_safety",
+        "agility_m_per_s",
     ]
     assert [name for name in better if better[name] is None] == ["lift_off_s", "apex_s"]
 

@@ -87,6 +87,7 @@ class Evaluations:
     joint_safety: Floats
     link_safety: Floats
     gear_strike_safety: Floats
+    agility_m_per_s: Floats
 
     def __len__(self) -> int:
         return len(self.height_m)
@@ -303,6 +304,7 @@ def _collect(
         "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
         **_by_joint("peak_stop_torque_{}_n_m", records["peak_stop_torque_n_m"]),
         **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / _travels_rad(robots)),
+        "agility_m_per_s": rise / np.where(ok, (records["steps"] - 1) * step, np.nan),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]

@@ -15,6 +15,7 @@ from typing import Any
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
 from pareto_monoped.report.card import Source
+from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
 from pareto_monoped.report.goals import ask_fields, kind, order
 from pareto_monoped.report.payload import build
@@ -28,6 +29,10 @@ SCRIPTS = (
     "dom", "state", "plots", "front", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
+
+
+STYLES = ("style", "choose", "print")
+"""The page's style sheets, in the order in which they apply."""
 
 
 def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None) -> None:
@@ -87,7 +92,7 @@ def page(payload: Payload) -> str:
     return Template(_asset("page.html")).substitute(
         policy=policy,
         title=safe(payload.title),
-        style=_asset("style.css"),
+        style="".join(_asset(f"{name}.css") for name in STYLES),
         head=head(payload),
         kind=safe(kind(payload)),
         fields=ask_fields(payload),
@@ -95,6 +100,7 @@ def page(payload: Payload) -> str:
         comparison=comparison_tables(payload),
         published_link=published_link(payload),
         cases=cases_table(payload),
+        context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
         payload=embedded(payload),

@@ -20,6 +20,7 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.derived import with_agility
 from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.kept_front import rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
@@ -216,7 +217,7 @@ def read_study(db: Path) -> StudyData:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
-    named = _with_motors(trials, study, meta, db)
+    named = with_agility(_with_motors(trials, study, meta, db))
     if seals is not None and (findings := seal_findings(seals, trials, rows)):
         raise damaged(db, findings)
     links = 0 if seals is None else seals.links
@@ -289,7 +290,7 @@ def read_front(db: Path) -> StudyFront:
         )
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-    front = _with_motors(trials, study, meta, db).sort_values(
+    front = with_agility(_with_motors(trials, study, meta, db)).sort_values(
         study.objectives.names[0], kind="stable", ignore_index=True
     )
     optional = set(json.loads(rows["front"][0][5]))

@@ -110,6 +110,10 @@ def test_what_is_physically_certain_holds_for_random_designs(evaluator):
     assert np.all(result.foot_clearance_m > 0.01)
     assert np.all((result.lift_off_s > 0.0) & (result.lift_off_s < result.apex_s))
     assert np.all(result.joule_heat_j > 0.0)
+    # No jump rises faster on average than a throw to its height, which takes sqrt(2 h / g).
+    rise = result.height_m - 0.5
+    assert np.all(result.agility_m_per_s == pytest.approx(rise / result.apex_s))
+    assert np.all((result.agility_m_per_s > 0.0) & (result.agility_m_per_s < np.sqrt(9.81 * rise / 2.0)))
 
 
 def test_peaks_respect_the_motor(evaluator):

@@ -52,13 +52,16 @@ def test_status_reads_the_same(name):
 def test_the_front_reads_the_same(name):
     data = read_study(DATA / f"{name}.db")
     front, wanted = data.front(), expected(name)["front"]
-    # What came later: optional variables at their defaults, the motor, measures without a value.
+    # What came later: optional variables at their defaults, the motor, measures without a value, and the agility, which
+    # follows from measures that these studies have.
     later = front.drop(columns=wanted["columns"])
     known = {*wanted["columns"], "hip_motor", "knee_motor"}  # which stand only where a study names them
     assert tuple(later.columns) == tuple(column.name for column in LATER if column.name not in known)
     assert all((later[column] == DEFAULTS[column]).all() for column in later if column in DEFAULTS)
     assert set(later["motor"]) == {data.motors[0].name}
-    assert all(later[column].isna().all() for column in later if column not in (*DEFAULTS, "motor"))
+    derived = "agility_m_per_s"
+    assert all(later[column].isna().all() for column in later if column not in (*DEFAULTS, "motor", derived))
+    assert (later[derived] == (front["height_m"] - 0.5) / front["apex_s"]).all()
     front = front.drop(columns=later.columns)
     assert front.columns.tolist() == wanted["columns"]
     assert [str(dtype) for dtype in front.dtypes] == wanted["dtypes"]

@@ -1,0 +1,88 @@
+import re
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from pareto_monoped.config import checked
+from pareto_monoped.errors import InputError
+from pareto_monoped.report.context import (
+    _HEIGHT,
+    _WIDTH,
+    Jumper,
+    _chart,
+    context_section,
+    own_jumpers,
+    published_jumpers,
+)
+
+
+def test_every_published_jumper_has_a_source_and_a_number():
+    jumpers = published_jumpers()
+    assert len({jumper.name for jumper in jumpers}) == len(jumpers) >= 12
+    for jumper in jumpers:
+        assert jumper.source
+        assert jumper.drive
+        assert jumper.height_m or jumper.agility_m_per_s
+
+
+def test_a_value_that_no_jump_can_have_is_refused():
+    with pytest.raises(InputError, match="mass_kg = -1"):
+        checked(Jumper, {"name": "a", "drive": "b", "source": "c", "mass_kg": -1.0}, source="test")
+
+
+def test_agility_and_height_are_those_of_the_front(payload, data):
+    own = {jumper.name: jumper for jumper in own_jumpers(payload)}
+    front = data.front()
+    most = front.iloc[int(np.argmax(front["agility_m_per_s"]))]
+    agile = next(jumper for name, jumper in own.items() if name.startswith("most agile"))
+    assert agile.agility_m_per_s == pytest.approx((most["height_m"] - 0.5) / most["apex_s"], rel=1e-3)
+    assert agile.mass_kg == pytest.approx(most["mass_kg"], rel=1e-3)
+    highest = next(jumper for name, jumper in own.items() if "highest jump" in name)
+    assert highest.height_m == pytest.approx(front["height_m"].max() - 0.5, abs=1e-4)
+    assert "the paper's Case C, simulated here" in own
+
+
+def test_a_study_without_agilities_says_so_by_empty_cells(payload):
+    (card,) = payload.studies
+    without = {name: column for name, column in card.more.items() if name != "agility_m_per_s"}
+    bare = replace(payload, studies=[replace(card, more=without)])
+    names = [jumper.name for jumper in own_jumpers(bare)]
+    assert not any("agile" in name for name in names)
+    assert "<tr" in context_section(bare)
+
+
+def test_the_table_goes_from_the_most_agile_down_and_numbers_its_sources(payload):
+    text = context_section(payload)
+    agilities = [float(value) for value in re.findall(r"</i><b>([0-9.]+)</b>", text)]
+    assert agilities == sorted(agilities, reverse=True)
+    assert len(agilities) >= 4
+    numbers = re.findall(r">\[(\d+)\]</td>", text)
+    sources = re.findall(r"<li>(.*?)</li>", text)
+    assert max(map(int, numbers)) == len(sources)
+    assert len(numbers) == len(published_jumpers())
+
+
+def test_names_of_points_cover_neither_points_nor_each_other(payload):
+    svg = re.search(r"<svg.*?</svg>", _chart(own_jumpers(payload))).group()
+    root = ElementTree.fromstring(svg)
+    names = {jumper.name for jumper in published_jumpers()}
+    points = [(float(node.get("cx")), float(node.get("cy"))) for node in root.iter("circle")]
+    assert all(0 < x < _WIDTH and 0 < y < _HEIGHT for x, y in points)
+    boxes = []
+    for node in root.iter("text"):
+        if node.text not in names:
+            continue
+        x, y, wide = float(node.get("x")), float(node.get("y")), 5.8 * len(node.text)
+        left = x - {"start": 0.0, "middle": wide / 2, "end": wide}[node.get("text-anchor")]
+        boxes.append((left, left + wide, y - 10.0, y))
+    assert len(boxes) == len(points)
+    for i, (left, right, top, bottom) in enumerate(boxes):
+        assert not any(left < x < right and top < y < bottom for x, y in points)
+        assert not any(left < b[1] and right > b[0] and top < b[3] and bottom > b[2] for b in boxes[:i])
+
+
+def test_names_are_escaped(payload):
+    (card,) = payload.studies
+    assert "<b>x" not in context_section(replace(payload, studies=[replace(card, case_motor="<b>x")]))
