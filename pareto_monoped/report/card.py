@@ -139,7 +139,7 @@ def study_card(
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
         picks=_picks(front, row_of, study.objectives),
-        more=front_columns(front, _body_masses_kg(data, front)),
+        more=front_columns(_body_masses_kg(data, front)),
         audits=audit_records(data.audits),
         jumps={str(trial): jump for trial, jump in again.jumps.items()},
         models={str(trial): model for trial, model in source.models.items()},

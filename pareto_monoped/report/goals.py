@@ -1,6 +1,7 @@
 """The page's words that depend on the objectives: what it is about, and the questions that the front answers."""
 
 from pareto_monoped.measures import Measure, measure
+from pareto_monoped.report.quantities import label_of
 from pareto_monoped.report.schema import Payload
 from pareto_monoped.report.tables import safe
 
@@ -24,17 +25,23 @@ def order(payload: Payload) -> str:
     return f"Designs on the front, from the least {measure(first).label} to the most"
 
 
+ASKED = ("energy_j", "electrical_energy_j", "mass_kg")
+"""Measures that the page asks for beside the first two objectives, if a study has them."""
+
+
 def ask_fields(payload: Payload) -> str:
-    """The two number fields of the form: the first objective wanted, or the second allowed."""
-    first, second = (measure(name) for name in payload.objectives[:2])
-    return "\n".join((_field("ask-height", "", first), _field("ask-energy", "or ", second)))
+    """The number fields of the form: the first objective wanted, and what may be spent for it."""
+    there = {name for card in payload.studies for name in (*card.trials.columns, *card.trials.packed)}
+    names = dict.fromkeys((*payload.objectives[:2], *(name for name in ASKED if name in there)))
+    ids = ("ask-height", "ask-energy")
+    return "\n".join(_field(ids[i] if i < len(ids) else f"ask-{name}", measure(name)) for i, name in enumerate(names))
 
 
-def _field(name: str, before: str, entry: Measure) -> str:
-    word = "wanted" if entry.direction == "maximise" else "allowed"
-    label = f"{before}{entry.label} {word}"
+def _field(name: str, entry: Measure) -> str:
+    word = "at least" if entry.direction == "maximise" else "at most"
+    label = f"{label_of(entry.name)} {word}"
     return (
-        f'<label for="{name}">{safe(label[0].upper() + label[1:] if not before else label)}</label>'
-        f'<span class="field"><input id="{name}" type="number" step="any" inputmode="decimal">'
-        f"<i>{safe(entry.shown_unit)}</i></span>"
+        f'<label for="{name}">{safe(label[0].upper() + label[1:])}'
+        f' <span class="field"><input id="{name}" data-ask="{entry.name}" type="number" step="any" inputmode="decimal">'
+        f"<i>{safe(entry.shown_unit)}</i></span></label>"
     )

@@ -26,7 +26,8 @@ from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.seals import UNSEALED
 
 SCRIPTS = (
-    "dom", "state", "plots", "front", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
+    "dom", "data", "state", "subject", "link", "plots", "front", "ask", "robot", "lines", "detail", "parallel",
+    "search", "viewer", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
 

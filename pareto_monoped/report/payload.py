@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pareto_monoped import __version__
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.measures import MEASURES
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
 from pareto_monoped.report.comparison import compare
@@ -74,6 +75,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         objectives=cards[0].objectives,
         goals=goals,
         directions=Objectives(names=goals).directions,
+        measure_directions={m.name: m.direction for m in MEASURES if m.direction is not None},
         constants=Constants(
             gravity_m_per_s2=GRAVITY_M_PER_S2,
             base_start_height_m=BASE_START_HEIGHT_M,

@@ -8,8 +8,17 @@ def _quantity(name: str, label: str, unit: str, decimals: int, scale: float = 1.
     return Quantity(name=name, label=label, unit=unit, decimals=decimals, scale=scale)
 
 
+_LABELS = {"energy_j": "mechanical energy", "efficiency": f"mechanical {measure('efficiency').label}"}
+"""Labels that say which energy is meant, beside the one from the battery."""
+
+
+def label_of(name: str) -> str:
+    """What the page calls a measure."""
+    return _LABELS.get(name, measure(name).label)
+
+
 def _of(m: Measure) -> Quantity:
-    return _quantity(m.name, m.label, m.shown_unit, m.decimals, m.scale)
+    return _quantity(m.name, label_of(m.name), m.shown_unit, m.decimals, m.scale)
 
 
 _VARIABLES = (
@@ -43,7 +52,7 @@ AUDIT = (
 """Measures that the page shows of an audit, as far as it has them."""
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
-"""Measures that the page has of every trial; of designs on the front it has all."""
+"""Measures that the page has of every trial as plain numbers beside the objectives; the others are packed."""
 
 QUANTITIES: tuple[Quantity, ...] = (
     *(_of(measure(name)) for name in _OBJECTIVES),

@@ -161,12 +161,14 @@ class Trials:
         trial: numbers.
         state: one letter per row: f feasible, i infeasible, x failed.
         columns: by name; None where there is no value.
+        packed: more columns by name, as text that a browser reads (``packing.packed``).
         total: trials in the database, which may be more than there are rows.
     """
 
     trial: Sequence[int]
     state: str
     columns: Mapping[str, Column]
+    packed: Mapping[str, str]
     total: int
 
 
@@ -199,7 +201,7 @@ class StudyCard:
         bounds: variable -> [lower, upper], equal for a fixed one.
         at_bounds: which bounds limit the front, and in which part of it; one sentence each.
         front, ill_conditioned: rows of ``trials``.
-        more: columns of the front alone, in its order: the other measures, and masses of the bodies.
+        more: columns of the front alone, in its order: masses of the bodies.
         audits: trial number -> measures of its audit.
         jumps, models: by trial number.
         case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
@@ -304,6 +306,7 @@ class Payload:
         objectives: the first study's, which are the axes of the front chart.
         goals: the objectives of all studies, without repetition; the page has them of every trial.
         directions: "maximise" or "minimise" of each goal.
+        measure_directions: the same of every measure that has one.
     """
 
     version: str
@@ -311,6 +314,7 @@ class Payload:
     objectives: Sequence[str]
     goals: Sequence[str]
     directions: Mapping[str, str]
+    measure_directions: Mapping[str, str]
     constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]

@@ -7,8 +7,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import NAMES, Variable
-from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL, QUANTITIES
+from pareto_monoped.design import Variable
+from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.report.packing import packed
+from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL
 from pareto_monoped.report.rounding import column
 from pareto_monoped.report.schema import Column, Trials
 
@@ -55,19 +57,19 @@ def trial_columns(
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(trials[name]) for name in names}
     columns |= numbers
+    others = [name for name in MEASURE_NAMES if name in trials.columns and name not in names]
     return Trials(
         trial=trials["trial"].tolist(),
         state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),
         columns=columns,
+        packed={name: packed(trials[name]) for name in others if trials[name].notna().any()},
         total=total,
     )
 
 
-def front_columns(front: pd.DataFrame, bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
-    """What the page has of the front alone: all measures, and the masses of base, thigh and shank, shape (n, 3)."""
-    names = [q.name for q in QUANTITIES if q.name in front.columns and q.name not in (*NAMES, "height_m", "energy_j")]
-    bodies = {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
-    return {name: column(front[name]) for name in names} | bodies
+def front_columns(bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
+    """What the page has of the front alone: the masses of base, thigh and shank, shape (n, 3)."""
+    return {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
 
 
 def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:

@@ -1,6 +1,8 @@
 """Real small studies, made once a session, and a headless browser without a network."""
 
+import base64
 import shutil
+import struct
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -78,6 +80,12 @@ def payload(source):
     return build([source])
 
 
+def unpacked(text: str) -> list[float]:
+    """Read as a browser does: three bytes, low byte first, are the upper ones of a number in single precision."""
+    raw = base64.b64decode(text, validate=True)
+    return [struct.unpack("<f", b"\0" + raw[i : i + 3])[0] for i in range(0, len(raw), 3)]
+
+
 def cut(data: StudyData, keep: np.ndarray, *, finished: bool = False, state: str | None = None) -> StudyData:
     """The study with only the trials at a mask, as if it had come no further."""
     trials = data.trials[keep].reset_index(drop=True)
@@ -122,7 +130,9 @@ def browser() -> Iterator[object]:
 class Tab:
     """A page in a browser without a network, with everything that it complained about or asked for."""
 
-    def __init__(self, browser, file: Path, width: int = 1440, height: int = 900, **options) -> None:
+    def __init__(
+        self, browser, file: Path, width: int = 1440, height: int = 900, fragment: str = "", **options
+    ) -> None:
         self.context = browser.new_context(
             viewport={"width": width, "height": height}, reduced_motion="reduce", **options
         )
@@ -134,9 +144,16 @@ class Tab:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
         self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.goto(file.as_uri())
+        self.page.goto(file.as_uri() + fragment)
         self.page.wait_for_selector("#front-chart .main-svg")
         self.page.wait_for_selector("#parallel-chart canvas")
+
+    def reset(self) -> None:
+        """The view as it was at first, with the first design of the front selected."""
+        self.page.evaluate("document.getElementById('reset').click()")
+        self.page.evaluate("window.scrollTo(0, 0)")
+        self.page.focus("#front-chart")
+        self.page.keyboard.press("Home")
 
     def text(self, selector: str) -> str:
         return self.page.inner_text(selector)

@@ -12,12 +12,19 @@ function showSubject(chosen) {
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
   const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
   box.append(make("span", {}, `${motor}${chosen.why}`));
-  for (const name of new Set([...page.goals, "mass_kg"])) {
+  const heads = new Set([...page.goals, "energy_j", "electrical_energy_j", "mass_kg"]);
+  for (const name of heads) {
+    if (chosen.measures[name] === undefined) continue;
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
   }
-  const { height_m: h, energy_j: e, mass_kg: m } = chosen.measures;
-  const share = h && e && m ? m * GRAVITY * (h - START_HEIGHT) / e : null;
-  byId("headline").append(make("div", { title: `m g (height - ${START_HEIGHT} m) / energy` }, make("b", {}, shown("efficiency", share)), "efficiency"));
+  // The same work against gravity as a share of either energy.
+  const { height_m: h, mass_kg: m } = chosen.measures;
+  for (const [name, label] of [["energy_j", "mechanical efficiency"], ["electrical_energy_j", "efficiency from the battery"]]) {
+    const e = chosen.measures[name];
+    if (!(h && e && m)) continue;
+    const share = m * GRAVITY * (h - START_HEIGHT) / e;
+    byId("headline").append(make("div", { title: `m g (height - ${START_HEIGHT} m) / ${quantity[name].label}` }, make("b", {}, shown("efficiency", share)), label));
+  }
 }
 
 function showVariables(chosen) {
@@ -137,7 +144,6 @@ function showMeasures(chosen) {
   const rows = page.quantities.filter((q) => !skip.has(q.name) && all[q.name] !== undefined && all[q.name] !== null && typeof all[q.name] === "number")
     .map((q) => [q.label, shown(q.name, all[q.name])]);
   box.append(rows.length ? table(null, rows) : make("p", { class: "small" }, "No jump, no measures."));
-  if (chosen.kind === "trial" && chosen.at < 0) box.append(make("p", { class: "small" }, "This page has the other measures only for designs on the front."));
 }
 
 function showAudit(chosen) {

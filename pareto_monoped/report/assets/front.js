@@ -2,7 +2,6 @@
 
 const CELL_PX = 3; // cells of this size show at most one trial of the cloud
 const MOST_DRAWN = 4000;
-const show = { cloud: true, infeasible: false, front: true, published: true, simulated: true, floor: true, picks: true };
 const gd = byId("front-chart");
 const ring = make("div", { class: "ring", "aria-hidden": "true" });
 let points = []; // for each trace, what its points stand for: [study, row] or [study, case name]
@@ -13,9 +12,9 @@ function inShown(name, value) { return value === null || value === undefined ? n
 function ofCase(made, name) { return inShown(name, made[name] ?? made.measures[name]); }
 
 // Work against gravity is a floor of these energies.
-function hasFloor() { return FIRST === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.across); }
+function hasFloor() { return FIRST === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.axes.x); }
 
-function papersAxes() { return FIRST === "height_m" && state.across === "energy_j"; }
+function papersAxes() { return FIRST === "height_m" && state.axes.x === "energy_j"; }
 
 function startRange() {
   const x = [], y = [];
@@ -25,10 +24,10 @@ function startRange() {
     y.push(up);
   };
   for (const study of page.studies) {
-    const { [state.across]: e, [FIRST]: h } = study.trials.columns;
+    const { [state.axes.x]: e, [FIRST]: h } = study.trials.columns;
     const rows = study.front.length ? study.front : study.trials.trial.map((_, row) => row);
-    for (const row of rows) see(inShown(state.across, e[row]), inShown(FIRST, h[row]));
-    for (const made of study.cases) see(ofCase(made, state.across), ofCase(made, FIRST));
+    for (const row of rows) see(inShown(state.axes.x, e[row]), inShown(FIRST, h[row]));
+    for (const made of study.cases) see(ofCase(made, state.axes.x), ofCase(made, FIRST));
   }
   if (papersAxes()) for (const made of page.published) see(made.energy_j, made.height_m);
   if (FIRST === "height_m") y.push(START_HEIGHT + 0.05, START_HEIGHT + 0.1);
@@ -38,7 +37,7 @@ function startRange() {
   return { x: hasFloor() ? [0, extent(x)[1] * 1.06] : padded(extent(x)), y: [low - room, high + room] };
 }
 
-let home = startRange();
+let home = null;
 
 function viewRange() {
   const full = gd._fullLayout;
@@ -48,18 +47,18 @@ function viewRange() {
 // What is drawn over the cloud, and how many cells it covers to each side of its own.
 function marks() {
   return [...state.visible].flatMap((study) => {
-    const { cases, front, trials: { columns: { [state.across]: e, [FIRST]: h } } } = page.studies[study];
-    const designs = show.front ? front.map((row) => ({ x: inShown(state.across, e[row]), y: inShown(FIRST, h[row]), cells: 1 })) : [];
-    const paper = show.simulated ? cases.map((made) => ({ x: ofCase(made, state.across), y: ofCase(made, FIRST), cells: 2 })) : [];
+    const { cases, front, trials: { columns: { [state.axes.x]: e, [FIRST]: h } } } = page.studies[study];
+    const designs = state.layers.front ? front.map((row) => ({ x: inShown(state.axes.x, e[row]), y: inShown(FIRST, h[row]), cells: 1 })) : [];
+    const paper = state.layers.simulated ? cases.map((made) => ({ x: ofCase(made, state.axes.x), y: ofCase(made, FIRST), cells: 2 })) : [];
     return [...designs, ...paper];
   });
 }
 
 // One row per small cell of the view: as many as can be told apart.
 function thinned(study, letter, skip) {
-  const { state: letters, columns: { [state.across]: e, [FIRST]: h } } = page.studies[study].trials;
+  const { state: letters, columns: { [state.axes.x]: e, [FIRST]: h } } = page.studies[study].trials;
   const { x, y } = viewRange();
-  const toX = quantity[state.across].scale, toY = quantity[FIRST].scale;
+  const toX = quantity[state.axes.x].scale, toY = quantity[FIRST].scale;
   const columns = Math.max(Math.floor((gd.clientWidth - 72) / CELL_PX), 50);
   const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
   const seen = new Set();
@@ -107,8 +106,8 @@ function trace(name, entries, marker, more = {}) {
 }
 
 function rowsOf(study, rows) {
-  const { [state.across]: e, [FIRST]: h } = page.studies[study].trials.columns;
-  return rows.map((row) => ({ x: inShown(state.across, e[row]), y: inShown(FIRST, h[row]), text: hoverText(study, row), stands: [study, row] }));
+  const { [state.axes.x]: e, [FIRST]: h } = page.studies[study].trials.columns;
+  return rows.map((row) => ({ x: inShown(state.axes.x, e[row]), y: inShown(FIRST, h[row]), text: hoverText(study, row), stands: [study, row] }));
 }
 
 function traces() {
@@ -122,7 +121,7 @@ function traces() {
     const card = page.studies[study];
     const onFront = new Set(card.front);
     const tint = several ? studyColour(study) : colour("cloud");
-    for (const [letter, wanted] of [["f", show.cloud], ["i", show.infeasible]]) {
+    for (const [letter, wanted] of [["f", state.layers.cloud], ["i", state.layers.infeasible]]) {
       if (!wanted) continue;
       const cloud = thinned(study, letter, onFront);
       drawn += cloud.rows.length;
@@ -134,7 +133,7 @@ function traces() {
       list.push(trace(letter === "f" ? "dominated" : "infeasible", rowsOf(study, cloud.rows), marker));
     }
   }
-  if (show.floor && hasFloor()) {
+  if (state.layers.floor && hasFloor()) {
     const masses = each.map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
     if (masses.length) {
       const mass = Math.min(...masses), end = viewRange().x[1] * 4;
@@ -144,7 +143,7 @@ function traces() {
   }
   for (const study of each) {
     const card = page.studies[study];
-    if (!show.front) continue;
+    if (!state.layers.front) continue;
     const tint = studyColour(study);
     const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
     const marker = { size: 7.5, symbol: MARKS[study % 6], color: tint, opacity, line: { width: 0.8, color: colour("card") } };
@@ -156,7 +155,7 @@ function traces() {
     const third = tinted();
     if (third) Object.assign(marker, colourOf(study, third, list));
     // A line of steps joins designs that hold until the next one is reached; on other axes than its own a front is none.
-    const own = card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(state.across);
+    const own = card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(state.axes.x);
     const steps = page.directions[FIRST] === "maximise" ? "hv" : "vh";
     list.push(trace("front", rowsOf(study, card.front), marker,
       own ? { mode: "lines+markers", line: { shape: steps, width: 1.2, color: tint } } : { mode: "markers" }));
@@ -166,7 +165,7 @@ function traces() {
       list.push(trace("weighted", rows, { size: 12, symbol: "square-open", color: tint, line: { width: 2, color: tint } }));
     }
   }
-  if (show.picks) {
+  if (state.layers.picks) {
     for (const study of each.toReversed()) {
       const picks = page.studies[study].picks.filter((p) => p.name === "knee");
       const entries = rowsOf(study, picks.map((p) => p.row));
@@ -177,13 +176,13 @@ function traces() {
   const paper = (entries, name, symbol) => list.push(trace(name, entries,
     { size: 11, symbol, color: entries.map((p) => p.tint ?? colour("paper")), line: { width: 1.8, color: colour("paper") } },
     { mode: "markers", customdata: entries.map((p) => p.label) }));
-  if (show.published && papersAxes()) {
+  if (state.layers.published && papersAxes()) {
     paper(page.published.map((c) => ({
       x: c.energy_j, y: c.height_m, label: c.name, stands: null,
       text: `<b>paper, ${c.name}</b>, as published<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J`,
     })), "published", "diamond-open");
   }
-  if (show.simulated) {
+  if (state.layers.simulated) {
     const seen = new Set();
     const entries = [];
     for (const study of each) {
@@ -192,13 +191,13 @@ function traces() {
       if (seen.has(key)) continue;
       seen.add(key);
       for (const c of card.cases) {
-        const across = ofCase(c, state.across), up = ofCase(c, FIRST);
+        const across = ofCase(c, state.axes.x), up = ofCase(c, FIRST);
         if (up === null || across === null) continue;
         // Only the first motor's have names; the others are in the same order and have their study's colour.
         entries.push({
           x: across, y: up, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
           tint: seen.size === 1 ? colour("paper") : studyColour(study),
-          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.across], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.case_motor)}, calibration ${plain(card.calibration)}`,
+          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.axes.x], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.case_motor)}, calibration ${plain(card.calibration)}`,
         });
       }
     }
@@ -243,13 +242,13 @@ function labels(list) {
 function drawFront() {
   for (const [key, fits] of [["published", papersAxes()], ["floor", hasFloor()]]) document.querySelector(`[data-show=${key}]`).closest("label").hidden = !fits;
   const list = traces();
-  const x = axis(state.across === "energy_j" ? "energy from start to apex, J" : titled(state.across), { range: [...home.x], constraintoward: "left" });
+  const x = axis(state.axes.x === "energy_j" ? "energy from start to apex, J" : titled(state.axes.x), { range: [...home.x], constraintoward: "left" });
   const y = axis(FIRST === "height_m" ? "jump height of the base, m" : titled(FIRST), { range: [...home.y] });
   const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
   const shape = layout(x, y, {
     annotations: labels(list), dragmode: "zoom",
     // The chart's buttons have a strip of their own above it: points under them could not be clicked.
-    margin: { l: 58, r: tinted() && !narrow() ? 84 : 14, t: tinted() && narrow() ? 92 : 26, b: 46 }, uirevision: state.across,
+    margin: { l: 58, r: tinted() && !narrow() ? 84 : 14, t: tinted() && narrow() ? 92 : 26, b: 46 }, uirevision: state.axes.x,
   });
   const done = Plotly.react(gd, list, shape, config);
   if (!gd.contains(ring)) gd.append(ring);
@@ -262,7 +261,7 @@ function placeRing() {
   const chosen = subject();
   const full = gd._fullLayout;
   const value = (name) => (chosen ? inShown(name, chosen.measures[name] ?? chosen.more[name]) : null);
-  const e = value(state.across), h = value(FIRST);
+  const e = value(state.axes.x), h = value(FIRST);
   if (!full || !chosen || e === null || h === null) { ring.hidden = true; return; }
   const { xaxis, yaxis } = full;
   const left = xaxis._offset + xaxis.d2p(e), top = yaxis._offset + yaxis.d2p(h);
@@ -284,6 +283,7 @@ function describeFront() {
 }
 
 function startFront() {
+  home = startRange();
   let waiting = 0;
   drawFront().then(() => {
     gd.on("plotly_click", (event) => {
@@ -301,6 +301,13 @@ function startFront() {
     placeRing();
   });
   gd.addEventListener("keydown", (event) => {
+    const study = event.shiftKey && { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+    if (study) {
+      event.preventDefault();
+      event.stopPropagation();
+      moveToStudy(study);
+      return;
+    }
     const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10, Home: -Infinity, End: Infinity }[event.key];
     if (!step) return;
     event.preventDefault();
@@ -340,12 +347,9 @@ function startAxes() {
   const names = page.goals.filter((name) => name !== FIRST);
   if (names.length < 2) return;
   const choice = make("select", { id: "across" }, ...names.map((name) => make("option", { value: name }, titled(name))));
-  choice.value = state.across;
-  choice.addEventListener("change", () => {
-    state.across = choice.value;
-    home = startRange();
-    tell("view");
-  });
+  choice.value = state.axes.x;
+  choice.addEventListener("change", () => setAxes({ x: choice.value }));
+  on("axes", () => { choice.value = state.axes.x; home = startRange(); });
   byId("axes").append(make("label", {}, "To the right ", choice));
   byId("axes").hidden = false;
 }
@@ -374,12 +378,9 @@ function startMotorSwitches() {
   box.hidden = MOTORS.length === 0;
   for (const kit of MOTORS) {
     const input = make("input", { type: "checkbox", "data-motor": kit });
-    input.checked = true;
-    input.addEventListener("change", () => {
-      if (input.checked) state.withoutMotors.delete(kit);
-      else state.withoutMotors.add(kit);
-      tell("view");
-    });
+    input.checked = !state.withoutMotors.has(kit);
+    input.addEventListener("change", () => showMotor(kit, input.checked));
+    on("conditions", () => { input.checked = !state.withoutMotors.has(kit); });
     const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true", fill: `var(--c${motorTint(kit)})` });
     symbol.innerHTML = MARK_SHAPES[motorTint(kit)]; // constant text from above
     box.append(make("label", {}, input, symbol, page.kits[kit].motor));
@@ -405,8 +406,9 @@ function startSwitches() {
   const mass = page.studies.map((s) => s.floor_mass_kg).filter((m) => m !== null);
   for (const [key, text] of Object.entries(names)) {
     const input = make("input", { type: "checkbox", "data-show": key });
-    input.checked = show[key];
-    input.addEventListener("change", () => { show[key] = input.checked; tell("view"); });
+    input.checked = state.layers[key];
+    input.addEventListener("change", () => showLayer(key, input.checked));
+    on("layers", () => { input.checked = state.layers[key]; });
     const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" });
     symbol.innerHTML = SYMBOLS[key]; // constant text from above
     const label = make("label", {}, input, symbol, text);
@@ -419,12 +421,9 @@ function startSwitches() {
   if (page.studies.length < 2) return;
   page.studies.forEach((study, i) => {
     const input = make("input", { type: "checkbox", "data-study": i });
-    input.checked = true;
-    input.addEventListener("change", () => {
-      if (input.checked) state.visible.add(i);
-      else state.visible.delete(i);
-      tell("view");
-    });
+    input.checked = state.visible.has(i);
+    input.addEventListener("change", () => showStudy(i, input.checked));
+    on("conditions", () => { input.checked = state.visible.has(i); });
     const symbol = make("span", { class: "swatch", style: `background: var(--c${i % 6})` });
     box.append(make("label", {}, input, symbol, study.label));
   });

@@ -144,10 +144,8 @@ function drawAlong() {
   }
   moveDots();
   byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
-  for (const study of page.studies) {
-    const whose = page.studies.length > 1 ? `${study.name}: ` : "";
-    byId("at-bounds").append(...study.at_bounds.map((line) => make("li", {}, whose + line)));
-  }
+  const whose = (study) => (page.studies.length > 1 ? `${study.name}: ` : "");
+  byId("at-bounds").replaceChildren(...page.studies.flatMap((study) => study.at_bounds.map((line) => make("li", {}, whose(study) + line))));
 }
 
 // The ratio from which on all gearboxes are external; null if all are of one family.

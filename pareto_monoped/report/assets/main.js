@@ -1,25 +1,16 @@
-// Start: listeners first, then the first selection, then the charts, beginning with the front.
-
-function firstSelection() {
-  const study = page.studies.findIndex((s) => s.front.length);
-  if (study >= 0) {
-    const { picks, front } = page.studies[study];
-    return [study, (picks[0] ?? { row: front[0] }).row];
-  }
-  const any = page.studies.findIndex((s) => s.trials.trial.length);
-  return any >= 0 ? [any, 0] : [0, null];
-}
+// Start: the state in the address first, then what listens to it, then the first selection and the charts.
 
 function redrawAll() { for (const redraw of charts) redraw(); }
 
 function start() {
+  startLink();
   startSwitches();
   startAsk();
   startRobot();
   on("selection", showAll);
   startLines();
   startViewer();
-  select(...firstSelection(), false);
+  tell("selection", { byUser: false, other: false });
   startFront();
   describeFront();
   startParallel();

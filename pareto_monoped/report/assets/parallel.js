@@ -12,7 +12,7 @@ function axisY(name, value) {
   return par.height - par.bottom - (value - low) / (high - low || 1) * (par.height - par.top - par.bottom);
 }
 
-function valueAt(name, y) {
+function valueAtY(name, y) {
   const [low, high] = par.limits[name];
   const share = (par.height - par.bottom - y) / (par.height - par.top - par.bottom);
   return low + Math.min(Math.max(share, 0), 1) * (high - low);
@@ -85,7 +85,7 @@ function drawLines() {
   context.clearRect(0, 0, par.width, par.height);
   const kept = (list) => list.filter(([study, row]) => inRanges(study, row));
   const ranged = filtered();
-  if (show.cloud) stroke(context, kept(par.lines.clouds), colour("cloud"), 1, ranged ? 0.3 : 0.09);
+  if (state.layers.cloud) stroke(context, kept(par.lines.clouds), colour("cloud"), 1, ranged ? 0.3 : 0.09);
   const several = page.studies.length > 1;
   for (const i of state.visible) {
     const own = par.lines.fronts.filter(([study]) => study === i);
@@ -120,23 +120,13 @@ function drawAxes() {
     }
     const range = state.ranges[name];
     if (range) {
-      const y = axisY(name, range[1]);
-      group.append(draw("rect", { x: x - 8, y, width: 16, height: Math.max(axisY(name, range[0]) - y, 2), fill: "var(--c4)", "fill-opacity": 0.45, stroke: "var(--c4)" }));
+      const y = axisY(name, Math.min(range[1] ?? high, high)), end = axisY(name, Math.max(range[0] ?? low, low));
+      group.append(draw("rect", { x: x - 8, y, width: 16, height: Math.max(end - y, 2), fill: "var(--c4)", "fill-opacity": 0.45, stroke: "var(--c4)" }));
     }
     par.svg.append(group);
   });
 }
 
-function setRange(name, range, final = true) {
-  if (range) state.ranges[name] = range;
-  else delete state.ranges[name];
-  drawAxes();
-  drawLines();
-  if (!final) return;
-  fillFields();
-  describeRanges();
-  tell("view");
-}
 
 function describeRanges() {
   const note = byId("brush-note");
@@ -155,21 +145,18 @@ function describeRanges() {
   }
   note.textContent = `Within the ranges: ${front} of ${fronts} designs on the front, ${all} of ${total} feasible trials on this page. `;
   const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all ranges");
-  clear.addEventListener("click", () => { state.ranges = {}; allMotors(); setRange(AXES[0], null); });
+  clear.addEventListener("click", clearConditions);
   note.append(clear);
-}
-
-function allMotors() {
-  state.withoutMotors.clear();
-  for (const input of document.querySelectorAll("[data-motor]")) input.checked = true;
 }
 
 function fillFields() {
   for (const name of AXES) {
     const range = state.ranges[name];
     const [from, to] = par.fields[name];
-    if (document.activeElement !== from) from.value = range ? Number((range[0] * quantity[name].scale).toPrecision(5)) : "";
-    if (document.activeElement !== to) to.value = range ? Number((range[1] * quantity[name].scale).toPrecision(5)) : "";
+    [from, to].forEach((field, side) => {
+      const end = range?.[side] ?? null;
+      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(5));
+    });
   }
 }
 
@@ -180,9 +167,8 @@ function buildFields() {
     const pair = ["from", "to"].map((word, side) => {
       const input = make("input", { type: "number", step: "any", "aria-label": `${q.label} ${word}, ${q.unit}`, placeholder: word, "data-range": `${name}-${word}` });
       input.addEventListener("change", () => {
-        const [low, high] = par.limits[name];
-        const typed = par.fields[name].map((field, k) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber / q.scale : [low, high][k]));
-        setRange(name, typed[0] <= low && typed[1] >= high ? null : [Math.min(...typed), Math.max(...typed)]);
+        const typed = par.fields[name].map((field) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber / q.scale : null));
+        setRange(name, typed.includes(null) || typed[0] <= typed[1] ? typed : typed.reverse());
       });
       return input;
     });
@@ -196,7 +182,7 @@ function nearestLine(x, y) {
   const left = par.xs.findLastIndex((at) => at <= x);
   if (left < 0 || left >= AXES.length - 1) return null;
   const share = (x - par.xs[left]) / (par.xs[left + 1] - par.xs[left]);
-  for (const line of [...par.lines.fronts, ...(show.cloud ? par.lines.clouds : [])]) {
+  for (const line of [...par.lines.fronts, ...(state.layers.cloud ? par.lines.clouds : [])]) {
     if (!inRanges(...line)) continue;
     const { columns } = page.studies[line[0]].trials;
     const a = axisY(AXES[left], columns[AXES[left]][line[1]]), b = axisY(AXES[left + 1], columns[AXES[left + 1]][line[1]]);
@@ -232,7 +218,7 @@ function startParallel() {
     const [, y] = at(event);
     if (Math.abs(y - drag.y) > 4) drag.moved = true;
     if (!drag.moved) return;
-    const range = [valueAt(drag.name, drag.y), valueAt(drag.name, y)].sort((a, b) => a - b);
+    const range = [valueAtY(drag.name, drag.y), valueAtY(drag.name, y)].sort((a, b) => a - b);
     setRange(drag.name, range, false);
   });
   par.node.addEventListener("pointerup", (event) => {
@@ -248,7 +234,13 @@ function startParallel() {
   });
   par.node.addEventListener("pointercancel", () => { drag = null; });
   on("selection", drawSelected);
+  on("conditions", ({ final }) => {
+    drawAxes();
+    drawLines();
+    if (final) fillFields();
+  });
   on("view", () => { par.lines = linesToDraw(); drawLines(); describeRanges(); });
+  fillFields();
   charts.push(drawParallel);
   window.addEventListener("resize", drawParallel);
 }

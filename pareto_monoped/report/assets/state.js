@@ -1,44 +1,206 @@
-// What is selected, and which studies, axes and ranges are shown; everything else listens to it.
+// The state of the page: one store that every part reads, and changes only by the functions below.
+//
+// What it holds
+//   state.study, .row, .caseName  the selection: a study's index with a row of its trials, or with the name of a case
+//   state.visible                 Set of the indices of the studies shown
+//   state.withoutMotors           Set of the kits of motors whose designs are not wanted
+//   state.ranges                  { measure or variable: [least, most] } in stored units (SI); null: that side is open
+//   state.shortlist               [{ study, row, note }], at most SHORTLIST_MOST
+//   state.axes                    { x, y, colour, size: a measure or variable, logX, logY, space: booleans };
+//                                 colour "auto": a third objective, else the study or the motor; size "": all alike
+//   state.layers                  what the front chart shows: { front, cloud, infeasible, ... : boolean }
+//   state.table                   { rows: "front" or "all", columns: names or null, sort: name, down: boolean, find }
+//
+// To read it
+//   current(), place()            the selected study; the selection's place on its front, or -1
+//   meets(study, row)             whether a trial obeys all conditions (ranges, motors, studies shown)
+//   inRanges(study, row)          the same without the studies shown
+//   keptFront(study)              rows of a study's front that obey the conditions, in the front's order
+//   filtered()                    whether ranges or motors keep some designs out
+//   shortlisted(study, row)       place on the shortlist, or -1
+//   valueAt, columnOf, knownNames (data.js) and subject() (subject.js): numbers of a trial
+//
+// To change it
+//   select(study, row, byUser), selectCase(study, name), moveAlongFront(steps), moveToStudy(step)
+//   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on)
+//   setAxes({...}), showLayer(key, on), setTable({...})
+//   keep(study, row), drop(study, row), setNote(study, row, text)
+//   undo(), redo(), resetState()
+//
+// To hear of changes: on(event, listener)
+//   "selection" { byUser, other: another study }, "conditions" { final }, "axes", "layers", "shortlist", "table",
+//   "time" (of the player), and "view": what charts show has changed (conditions at their end, axes or layers).
+// Every change is kept in the fragment of the page's address and can be undone (link.js). A new field needs its default
+// in freshState() and its words in WRITERS and READERS there; parts then only listen to its event.
 
-const state = { across: SECOND, study: 0, row: null, caseName: null, visible: new Set(page.studies.map((_, i) => i)), ranges: {}, withoutMotors: new Set() };
-const listeners = { selection: [], view: [], time: [] };
+const SHORTLIST_MOST = 6;
+const NOTE_MOST = 200; // letters of a note: six of them still fit into any browser's address
+
+function freshState() {
+  const [study, row] = firstSelection();
+  return {
+    study, row, caseName: null,
+    visible: new Set(page.studies.map((_, i) => i)), withoutMotors: new Set(), ranges: {}, shortlist: [],
+    axes: { x: SECOND, y: FIRST, colour: "auto", size: "", logX: false, logY: false, space: false },
+    layers: { front: true, cloud: true, infeasible: false, published: true, simulated: true, picks: true, floor: true },
+    table: { rows: "front", columns: null, sort: FIRST, down: false, find: "" },
+  };
+}
+
+// The knee of the first front; without a front the first trial.
+function firstSelection() {
+  const study = page.studies.findIndex((s) => s.front.length);
+  if (study >= 0) {
+    const { picks, front } = page.studies[study];
+    return [study, (picks[0] ?? { row: front[0] }).row];
+  }
+  const any = page.studies.findIndex((s) => s.trials.trial.length);
+  return any >= 0 ? [any, 0] : [0, null];
+}
+
+const state = freshState();
+const listeners = { selection: [], conditions: [], axes: [], layers: [], shortlist: [], table: [], time: [], view: [] };
 
 function on(event, listener) { listeners[event].push(listener); }
 
-function tell(event, detail) { for (const listener of listeners[event]) listener(detail); }
+function tell(event, detail = {}) { for (const listener of listeners[event]) listener(detail); }
+
+// Selection.
 
 function current() { return page.studies[state.study]; }
 
-function select(study, row, byUser = true) {
-  const other = study !== state.study;
-  Object.assign(state, { study, row, caseName: null });
-  tell("selection", { byUser, other });
-}
-
-function selectCase(study, name) {
-  const other = study !== state.study;
-  Object.assign(state, { study, row: null, caseName: name });
-  tell("selection", { byUser: true, other });
-}
-
-// Place of the selection on its study's front, -1 if it is not there.
 function place() { return state.row === null ? -1 : current().front.indexOf(state.row); }
 
+function select(study, row, byUser = true) { moveSelection({ study, row, caseName: null }, byUser); }
+
+function selectCase(study, name) { moveSelection({ study, row: null, caseName: name }, true); }
+
+function moveSelection(selected, byUser) {
+  const other = selected.study !== state.study;
+  Object.assign(state, selected);
+  tell("selection", { byUser, other });
+  remember("selection");
+}
+
+// Steps along the designs of the selected study's front that obey the conditions.
 function moveAlongFront(steps) {
-  const { front, trials } = current();
+  if (!state.visible.has(state.study)) { moveToStudy(1); return; }
+  const { trials } = current();
+  const front = keptFront(state.study);
   if (!front.length) return;
-  let at = place();
+  let at = front.indexOf(state.row);
   if (at < 0 && Number.isFinite(steps)) {
-    // From a design off the front to the first one on it that has at least as much of the first objective.
-    const first = state.row === null ? 0 : trials.columns[FIRST][state.row] ?? 0;
-    at = front.findIndex((row) => trials.columns[FIRST][row] >= first);
-    if (at < 0) at = front.length - 1;
+    // From a design elsewhere to the next one here in the direction of the step.
+    const value = subject()?.measures[FIRST] ?? 0;
+    const firsts = front.map((row) => trials.columns[FIRST][row]);
+    at = steps > 0 ? firsts.findIndex((first) => first >= value) : firsts.findLastIndex((first) => first <= value);
+    if (at < 0) at = steps > 0 ? front.length - 1 : 0;
     steps = 0;
   }
   select(state.study, front[Math.min(Math.max(at + steps, 0), front.length - 1)]);
 }
 
-// Number of a trial's kit of motors.
+// To the design of the next or previous study shown whose first objective is closest to the selection's.
+function moveToStudy(step) {
+  const count = page.studies.length;
+  const wanted = subject()?.measures[FIRST] ?? 0;
+  for (let k = 1; k <= count; k += 1) {
+    const study = (state.study + step * k + count * k) % count;
+    const rows = state.visible.has(study) ? keptFront(study) : [];
+    if (!rows.length) continue;
+    const away = (row) => Math.abs(page.studies[study].trials.columns[FIRST][row] - wanted);
+    if (study !== state.study) select(study, rows.reduce((best, row) => (away(row) < away(best) ? row : best)));
+    return;
+  }
+}
+
+// Conditions.
+
+function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
+
+function inRanges(study, row) {
+  const { motor } = page.studies[study].trials.columns;
+  if (motor && state.withoutMotors.has(motor[row])) return false;
+  for (const name of Object.keys(state.ranges)) {
+    const [least, most] = state.ranges[name];
+    const value = valueAt(study, name, row);
+    if (value === null || (least !== null && value < least) || (most !== null && value > most)) return false;
+  }
+  return true;
+}
+
+function meets(study, row) { return state.visible.has(study) && inRanges(study, row); }
+
+function keptFront(study) {
+  const { front } = page.studies[study];
+  return filtered() ? front.filter((row) => inRanges(study, row)) : front;
+}
+
+// While a range is dragged it is not final: only what is quick to draw follows.
+function setRange(name, range, final = true) {
+  if (range && (range[0] !== null || range[1] !== null)) state.ranges[name] = range;
+  else delete state.ranges[name];
+  changed("conditions", { final }, `range ${name}`);
+}
+
+function clearConditions() {
+  state.ranges = {};
+  state.withoutMotors = new Set();
+  changed("conditions", { final: true });
+}
+
+function showStudy(study, shown) { put(state.visible, study, shown); changed("conditions", { final: true }); }
+
+function showMotor(kit, shown) { put(state.withoutMotors, kit, !shown); changed("conditions", { final: true }); }
+
+function put(set, entry, there) {
+  if (there) set.add(entry);
+  else set.delete(entry);
+}
+
+// Axes, layers, table.
+
+function setAxes(axes) { Object.assign(state.axes, axes); changed("axes"); }
+
+function showLayer(key, shown) { state.layers[key] = shown; changed("layers"); }
+
+function setTable(table) { Object.assign(state.table, table); changed("table", {}, `table ${Object.keys(table)}`); }
+
+// Shortlist.
+
+function shortlisted(study, row) { return state.shortlist.findIndex((one) => one.study === study && one.row === row); }
+
+// Returns whether there was room.
+function keep(study, row) {
+  if (shortlisted(study, row) >= 0) return true;
+  if (state.shortlist.length >= SHORTLIST_MOST) return false;
+  state.shortlist.push({ study, row, note: "" });
+  changed("shortlist");
+  return true;
+}
+
+function drop(study, row) {
+  state.shortlist = state.shortlist.filter((one) => one.study !== study || one.row !== row);
+  changed("shortlist");
+}
+
+function setNote(study, row, text) {
+  const at = shortlisted(study, row);
+  if (at < 0) return;
+  state.shortlist[at].note = text.slice(0, NOTE_MOST);
+  changed("shortlist", {}, `note ${study} ${row}`);
+}
+
+// Tells of a change and remembers it; changes of one kind within a moment are one step to undo.
+function changed(event, detail = {}, kind = "") {
+  tell(event, detail);
+  if (detail.final === false) return;
+  if (event === "conditions" || event === "axes" || event === "layers") tell("view");
+  remember(kind);
+}
+
+// Kits of motors.
+
 function kitOf(study, row) { return study.trials.columns.motor?.[row] ?? study.kit; }
 
 function motorOf(study, row) { return page.kits[kitOf(study, row)].motor; }
@@ -51,54 +213,8 @@ const KITS = [...new Set(page.studies.flatMap((study) => (study.trials.columns.m
 // Where there are more than colours, only those on a front.
 const MOTORS = KITS.length <= 6 ? KITS : KITS.filter((kit) => page.studies.some((study) => study.front.some((row) => study.trials.columns.motor?.[row] === kit)));
 
-// Whether something keeps designs out: a range of an axis, or a motor that is not wanted.
-function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
-
-function inRanges(study, row) {
-  const columns = page.studies[study].trials.columns;
-  if (columns.motor && state.withoutMotors.has(columns.motor[row])) return false;
-  for (const [name, [low, high]] of Object.entries(state.ranges)) {
-    const value = columns[name][row];
-    if (value === null || value < low || value > high) return false;
-  }
-  return true;
-}
-
-// The third objective of the page, which is then the colour, whichever of the others is to the right; null without one.
-function tinted() { return page.objectives.length > 2 ? page.objectives.slice(1).find((name) => name !== state.across) : null; }
-
-// The selection as one object, a trial or one of the paper's cases.
-function subject() {
-  const study = current();
-  if (state.caseName !== null) {
-    const at = study.cases.findIndex((c) => c.name === state.caseName);
-    const made = study.cases[at];
-    const published = page.published.find((c) => c.name === state.caseName);
-    const values = published.design;
-    return {
-      kind: "case", study, name: made.name, values, measures: { ...made.measures, ...made }, more: {}, jump: made.jump, status: made.status,
-      kit: study.kit, hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
-      why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
-    };
-  }
-  if (state.row === null) return null;
-  const { columns } = study.trials;
-  const row = state.row;
-  const number = study.trials.trial[row];
-  const values = Object.fromEntries(page.variables.map((v) => [v.name, columns[v.name][row]]));
-  const at = place();
-  const measures = Object.fromEntries(Object.entries(columns).map(([name, list]) => [name, list[row]]));
-  const more = at < 0 ? {} : Object.fromEntries(Object.entries(study.more).map(([name, list]) => [name, list[at]]));
-  const picked = study.picks.find((p) => p.row === row);
-  const letter = study.trials.state[row];
-  const ill = study.ill_conditioned.includes(row);
-  let why = `on the front, ${at + 1} of ${study.front.length}`;
-  if (picked) why = picked.why.replace(/^trial \d+ \(.*?\): /, "");
-  else if (ill) why = "taken off the front by its audit";
-  else if (at < 0) why = { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[letter];
-  return {
-    kind: "trial", study, number, row, values, measures, more, at, why, letter, kit: kitOf(study, row),
-    jump: study.jumps[number] ?? null, audit: study.audits[number] ?? null, model: study.models[number] ?? null,
-    hip: page.gearboxes[columns.hip_gearbox[row]] ?? null, knee: page.gearboxes[columns.knee_gearbox[row]] ?? null,
-  };
+// The measure that colours show; null: the study or the motor.
+function tinted() {
+  if (state.axes.colour !== "auto") return state.axes.colour || null;
+  return page.objectives.length > 2 ? page.objectives.slice(1).find((name) => name !== state.axes.x) : null;
 }

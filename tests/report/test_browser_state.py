@@ -1,0 +1,226 @@
+"""The page's one state: conditions that everything obeys, its place in the address, and undo."""
+
+from types import SimpleNamespace
+from urllib.parse import quote
+
+import numpy as np
+import pytest
+
+from pareto_monoped.report.page import page
+from pareto_monoped.report.payload import build
+from tests.report.conftest import Tab
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture(scope="module")
+def file(folder, payload):
+    made = folder / "state.html"
+    made.write_text(page(payload), encoding="utf-8")
+    return made
+
+
+@pytest.fixture(scope="module")
+def shared(file, browser):
+    tab = Tab(browser, file)
+    yield tab
+    tab.context.close()
+
+
+@pytest.fixture
+def tab(shared):
+    shared.reset()
+    return shared
+
+
+@pytest.fixture(scope="module")
+def card(payload):
+    return payload.studies[0]
+
+
+@pytest.fixture(scope="module")
+def limits(card):
+    """A height and a mass between which about a third of the front lies, by brute force."""
+    columns = card.trials.columns
+    height = float(np.quantile([columns["height_m"][row] for row in card.front], 0.3))
+    masses = [columns["mass_kg"][row] for row in card.front if columns["height_m"][row] >= height]
+    mass = float(np.median(masses))
+    kept = [r for r in card.front if columns["height_m"][r] >= height and columns["mass_kg"][r] <= mass]
+    assert 1 < len(kept) < len(card.front)
+    return SimpleNamespace(height=height, mass=mass, kept=kept)
+
+
+def ask(tab, limits):
+    tab.page.fill("#ask-height", repr(limits.height))
+    tab.page.fill("#ask-mass_kg", repr(limits.mass))
+
+
+def address(tab, words):
+    """The fragment, once it has these words."""
+    tab.page.wait_for_function("(words) => location.hash.includes(words)", arg=words)
+    return tab.page.evaluate("location.hash")
+
+
+def trial_shown(tab):
+    return int(tab.text("#subject").split()[1].strip(","))
+
+
+def test_conditions_combine_and_everything_obeys_them(tab, card, limits):
+    ask(tab, limits)
+    columns = card.trials.columns
+    best = min(limits.kept, key=lambda row: (columns["energy_j"][row], -columns["height_m"][row]))
+    assert trial_shown(tab) == card.trials.trial[best]
+    assert f"{len(limits.kept)} design" in tab.text("#ask-answer")
+    assert f"{len(limits.kept)} of {len(card.front)} designs on the front" in tab.text("#brush-note")
+    # The keys stop nowhere else.
+    tab.page.focus("#front-chart")
+    seen = []
+    tab.page.keyboard.press("Home")
+    for _ in range(len(limits.kept)):
+        seen.append(trial_shown(tab))
+        tab.page.keyboard.press("ArrowRight")
+    assert seen == [card.trials.trial[row] for row in limits.kept]
+    assert trial_shown(tab) == seen[-1]
+
+
+def test_what_cannot_be_had_names_the_nearest(tab, card):
+    columns = card.trials.columns
+    height = max(columns["height_m"][row] for row in card.front)
+    mass = min(columns["mass_kg"][row] for row in card.front)
+    if any(columns["height_m"][r] >= height and columns["mass_kg"][r] <= mass for r in card.front):
+        pytest.skip("the lightest design is the best")
+    before = trial_shown(tab)
+    tab.page.fill("#ask-mass_kg", repr(mass))
+    chosen = trial_shown(tab)
+    tab.page.fill("#ask-height", repr(height))
+    spans = {n: np.ptp([columns[n][r] for r in card.front]) for n in ("height_m", "mass_kg")}
+
+    def short(row):
+        return (
+            max(height - columns["height_m"][row], 0) / spans["height_m"]
+            + max(columns["mass_kg"][row] - mass, 0) / spans["mass_kg"]
+        )
+
+    nearest = card.trials.trial[min(card.front, key=short)]
+    assert f"meets all of this. The nearest is trial {nearest}," in tab.text("#ask-answer")
+    assert trial_shown(tab) == chosen != before
+
+
+def test_a_link_brings_the_same_view_back(tab, file, card, limits, open_tab):
+    ask(tab, limits)
+    tab.page.check("[data-show=infeasible]")
+    fragment = address(tab, "layers=")
+    again = open_tab(file, fragment=fragment)
+    assert trial_shown(again) == trial_shown(tab)
+    assert again.text("#ask-answer") == tab.text("#ask-answer")
+    assert again.text("#brush-note") == tab.text("#brush-note")
+    assert again.page.is_checked("[data-show=infeasible]")
+    assert float(again.page.input_value("#ask-height")) == pytest.approx(limits.height, rel=1e-5)
+    again.page.reload()
+    again.page.wait_for_selector("#parallel-chart canvas")
+    assert again.page.evaluate("location.hash") == fragment
+    assert trial_shown(again) == trial_shown(tab)
+    # A link opened in the same tab does the same.
+    tab.reset()
+    tab.page.wait_for_function("() => !location.hash.includes('range=')")
+    tab.page.evaluate("(hash) => { location.hash = hash; }", fragment)
+    tab.expects("#ask-answer", again.text("#ask-answer"))
+
+
+@pytest.mark.parametrize(
+    "damage",
+    ["at=0:999999", "at=7:1", "range=height_m:low:", "range=none:1:2", "range=height_m:2:1", "shine=1", "x=none", "%",
+     "layers=none", "hide=x", "at=0:case:none", "keep=0:x", "sort=none", "keep=0:1:%E0%A4%A"],
+)  # fmt: skip
+def test_a_damaged_address_is_left_out_with_one_line(file, payload, open_tab, damage):
+    tab = open_tab(file, fragment=f"#view=1&{damage}")
+    assert "is damaged or of another report" in tab.text("#page-note")
+    card = payload.studies[0]
+    assert trial_shown(tab) == card.trials.trial[card.picks[0].row]
+    assert tab.complaints == []
+    # The first change writes a good one.
+    tab.page.fill("#ask-height", "0.7")
+    assert damage not in address(tab, "range=height_m:0.7:")
+
+
+def test_undo_and_redo_walk_through_the_views(tab, card, limits):
+    start = trial_shown(tab)
+    tab.page.wait_for_timeout(1100)
+    tab.page.fill("#ask-height", repr(limits.height))
+    tab.page.wait_for_timeout(1100)
+    first = trial_shown(tab)
+    tab.page.fill("#ask-mass_kg", repr(limits.mass))
+    second = trial_shown(tab)
+    tab.page.uncheck("[data-show=cloud]")
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("Control+z")
+    assert tab.page.is_checked("[data-show=cloud]")
+    for _ in range(6):
+        tab.page.click("#undo")
+        if not tab.page.input_value("#ask-mass_kg"):
+            break
+    assert trial_shown(tab) == first
+    assert tab.page.input_value("#ask-height") != ""
+    while tab.page.input_value("#ask-height"):
+        tab.page.click("#undo")
+    assert trial_shown(tab) == start
+    while tab.page.is_enabled("#redo"):
+        tab.page.click("#redo")
+    assert trial_shown(tab) == second
+    assert not tab.page.is_checked("[data-show=cloud]")
+
+
+def test_conditions_stand_in_words_and_can_be_dropped_one_by_one(tab, limits):
+    ask(tab, limits)
+    assert tab.page.locator("#conditions button").count() == 3
+    tab.page.click("#conditions [data-drop=mass_kg]")
+    assert tab.page.input_value("#ask-mass_kg") == ""
+    assert tab.page.locator("#conditions button").count() == 1
+    tab.page.click("#conditions [data-drop=height_m]")
+    assert not tab.page.is_visible("#conditions")
+    assert tab.text("#ask-answer") == ""
+
+
+def test_links_within_the_page_keep_the_view(tab, limits):
+    ask(tab, limits)
+    fragment = address(tab, "mass_kg")
+    tab.page.click("nav a[href='#search']")
+    tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate("location.hash") == fragment
+    assert tab.page.evaluate("document.activeElement.id") == "search"
+    assert tab.page.evaluate("document.getElementById('search').getBoundingClientRect().top") < 300
+
+
+def test_keys_reach_every_study_shown(source, source_u12, folder, open_tab):
+    made = folder / "keys.html"
+    payload = build([source, source_u12])
+    made.write_text(page(payload), encoding="utf-8")
+    tab = open_tab(made)
+    first, second = payload.studies
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("Home")
+    assert trial_shown(tab) == first.trials.trial[first.front[0]]
+    height = first.trials.columns["height_m"][first.front[0]]
+    heights = second.trials.columns["height_m"]
+    nearest = min(second.front, key=lambda row: abs(heights[row] - height))
+    tab.page.keyboard.press("Shift+ArrowRight")
+    assert second.label in tab.text("#subject")
+    assert trial_shown(tab) == second.trials.trial[nearest]
+    tab.page.keyboard.press("Shift+ArrowLeft")
+    assert first.label in tab.text("#subject")
+    tab.page.uncheck("[data-study='0']")
+    tab.page.focus("#front-chart")
+    tab.page.keyboard.press("ArrowRight")
+    assert second.label in tab.text("#subject")
+    # A question is answered by the studies shown.
+    tab.page.fill("#ask-height", str(round(min(heights[row] for row in second.front), 3) - 0.001))
+    assert f"of {second.label}" in tab.text("#ask-answer")
+
+
+def test_a_note_of_the_shortlist_survives_the_address(file, card, open_tab):
+    row = card.front[2]
+    note = "light & strong: 50 %, \N{GREEK SMALL LETTER OMEGA}"
+    tab = open_tab(file, fragment=f"#view=1&keep=0:{card.trials.trial[row]}:{quote(note, safe='')}")
+    tab.page.fill("#ask-height", "0.7")
+    assert quote(note, safe="") in address(tab, "range=")
+    assert tab.text("#page-note") == ""
