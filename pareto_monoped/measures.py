@@ -4,7 +4,7 @@ This is the only table of measures. ``jump.evaluate.Evaluations`` and ``jump.aud
 the database has one column per measure, and the report takes its labels from here.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from pareto_monoped.design import BASE_START_HEIGHT_M
@@ -564,13 +564,76 @@ SCREEN_MEASURES: tuple[Measure, ...] = (
 )
 """Every measure of the screen before an audit, in the order of the fields of ``jump.screen.Screened``."""
 
-_BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES)}
+STATISTICS: dict[str, str] = {"mean": "mean", "p05": "5th percentile", "p95": "95th percentile"}
+"""What can be asked of a measure under uncertainty: key behind the measure's name, as in "height_m.p05", and words."""
+
+SHARE_MEASURES: tuple[Measure, ...] = (
+    _measure(
+        "failed_share",
+        "1",
+        "minimise",
+        "share of the jumps under uncertainty that do not reach an apex",
+        "jumps that fail",
+        1,
+        _PERCENT,
+        reference=1.0,
+        short="fail",
+    ),
+    _measure(
+        "overloaded_share",
+        "1",
+        "minimise",
+        "share of the jumps under uncertainty that exceed what some joint or part carries with its required safety",
+        "jumps that overload a part",
+        1,
+        _PERCENT,
+        reference=1.0,
+        short="overload",
+    ),
+)
+"""Measures of many jumps of one design, each with other values of what is uncertain."""
+
+
+def _statistic_of(base: Measure, key: str) -> Measure:
+    words = STATISTICS[key]
+    return replace(
+        base,
+        name=f"{base.name}.{key}",
+        meaning=f"{words} under uncertainty of: {base.meaning}",
+        label=f"{base.words} ({words})",
+        short=f"{base.short} {key}",
+    )
+
+
+ROBUST_MEASURES: tuple[Measure, ...] = (
+    *SHARE_MEASURES,
+    *(_statistic_of(base, key) for base in MEASURES for key in STATISTICS),
+)
+"""Every measure of a design under uncertainty; a study stores those that it asks for."""
+ROBUST_NAMES: tuple[str, ...] = tuple(measure.name for measure in ROBUST_MEASURES)
+GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)
+"""What a study can ask for."""
+
+_BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES, *ROBUST_MEASURES)}
 
 
 def measure(name: str) -> Measure:
-    """The measure called ``name``, of a jump or of an audit.
+    """The measure called ``name``, of a jump, of a design under uncertainty, or of an audit.
 
     Raises:
         KeyError: there is none.
     """
     return _BY_NAME[name]
+
+
+def is_robust(name: str) -> bool:
+    """Whether a measure is of many jumps under uncertainty."""
+    return name in _ROBUST
+
+
+def nominal(name: str) -> str:
+    """The measure of a single jump that a name is about: "height_m" for itself and for "height_m.p05"."""
+    return name.partition(".")[0]
+
+
+_ROBUST = frozenset(ROBUST_NAMES)

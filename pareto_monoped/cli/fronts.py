@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from pareto_monoped.study.alternatives import Alternative
     from pareto_monoped.study.definition import Study
     from pareto_monoped.study.reader import StudyData
+    from pareto_monoped.study.robust_front import RobustTrials
 
 
 def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objectives") -> list[str]:
@@ -107,7 +108,7 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
         return data.study.objectives
     chosen = objectives_of(names_of(given), source="--objectives")
     for name in chosen.names:
-        if len(data.trials) and data.trials[name].isna().all():
+        if name not in data.trials or (len(data.trials) and data.trials[name].isna().all()):
             raise SelectionError(f"--objectives: no trial of {str(data.db)!r} has a value of {name}; choose another")
     return chosen
 
@@ -177,21 +178,29 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
     from pareto_monoped.study.reader import read_front, read_study
 
     wanted = required(selector)
-    if by_robust and count:
-        raise click.UsageError("--robust takes no --alternatives, which are compared as designed; drop one")
     data = read_front(db)
-    whole, rows = _robust_rows(db) if by_robust else (front_alone(data), data.rows)
+    compared: RobustTrials | None = None
+    if by_robust:
+        whole, compared, rows = _robust(db)
+    else:
+        whole, rows = front_alone(data), data.rows
     names = shown_columns(data.study, data.used, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
     step = one_more(rows, picked.trial, data.study.objectives)
     limits = binding_limits(whole, picked.trial)
     others: tuple[Alternative, ...] = ()
     if count:
-        share = 0.01 * tolerance
-        others = alternatives(read_study(db), picked.trial, count=count, tolerance=share, conditions=picked.conditions)
+        others = alternatives(
+            read_study(db) if compared is None else whole,
+            picked.trial,
+            count=count,
+            tolerance=0.01 * tolerance,
+            conditions=picked.conditions,
+            rows=None if compared is None else compared.rows,
+        )
     say_of_study(data.study, sealed=data.sealed)
-    shares = ["failed", "overloaded"] if by_robust else []
-    row = rows.loc[rows["trial"] == picked.trial, [*names, *shares]].to_dict(orient="records")[0]
+    shares = ["failed_share", "overloaded_share"] if by_robust else []
+    row = rows.loc[rows["trial"] == picked.trial, list(dict.fromkeys((*names, *shares)))].to_dict(orient="records")[0]
     if as_json:
         more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
         if count:
@@ -209,16 +218,22 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
         click.echo(_wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
     if count:
         _print_alternatives(others, tolerance)
+        if compared is not None:
+            note = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
+            click.echo(_wrapped(f"{note}; 'robust DB --trial N' adds others"))
 
 
-def _robust_rows(db: Path) -> "tuple[StudyData, DataFrame]":
-    """The study, and its front by what is stored of its robustness."""
+def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
+    """The study, its trials by what is stored of their robustness, and their front."""
     from pareto_monoped.study.reader import read_study
+    from pareto_monoped.study.robust_front import robust_front, robust_trials
     from pareto_monoped.study.robust_rows import read_robustness
-    from pareto_monoped.study.robustness import robust_front
 
     data = read_study(db)
-    return data, robust_front(data, read_robustness(db))
+    trials = robust_trials(data, read_robustness(db))
+    if trials.others:
+        click.echo(f"note: left out: {trials.others} trials with other ranges, samples or seed", err=True)
+    return data, trials, robust_front(data, trials)
 
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:

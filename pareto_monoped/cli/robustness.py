@@ -10,9 +10,9 @@ import click
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
+    from pareto_monoped.study.definition import Study
+    from pareto_monoped.uncertainty.ranges import Uncertainty
     from pareto_monoped.uncertainty.statistics import Robustness
-
-_DEFAULT_SAMPLES, _DEFAULT_SEED = 256, 1
 
 
 @click.command()
@@ -23,10 +23,15 @@ _DEFAULT_SAMPLES, _DEFAULT_SEED = 256, 1
 @click.option(
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."
 )
-@click.option("--samples", type=int, default=_DEFAULT_SAMPLES, metavar="N", help="Per design.  [default: 256]")
-@click.option("--seed", type=click.IntRange(min=0), default=_DEFAULT_SEED, metavar="N", help="Of the samples.")
 @click.option(
-    "--uncertainty", type=click.Path(path_type=Path), metavar="FILE", help="TOML file of ranges, instead of ours."
+    "--samples", type=int, metavar="N", help="Per design.  [default: 256, or the study's if it asks for more]"
+)
+@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]")
+@click.option(
+    "--uncertainty",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="TOML file of ranges, instead of the study's or ours.",
 )
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
@@ -34,8 +39,8 @@ def robust(
     db: Path,
     trials: tuple[int, ...],
     every: int,
-    samples: int,
-    seed: int,
+    samples: int | None,
+    seed: int | None,
     uncertainty: Path | None,
     workers: int | None,
     as_json: bool,
@@ -47,11 +52,11 @@ def robust(
     """
     from pareto_monoped.study.reader import read_front
     from pareto_monoped.study.robustness import robust as run_robust
-    from pareto_monoped.uncertainty.ranges import load_uncertainty
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
-    ranges, kept = load_uncertainty(uncertainty), read_front(db)
+    kept = read_front(db)
+    ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
     chosen = list(trials) or kept.rows["trial"].tolist()[::every] or None
     results = run_robust(
         db,
@@ -71,9 +76,25 @@ def robust(
         _print(results, kept.study.objectives)
 
 
+def asked(study: "Study", file: Path | None, samples: int | None, seed: int | None) -> "tuple[Uncertainty, int, int]":
+    """Ranges, number of samples and seed that options ask for; without them the study's own, or the shipped ones."""
+    from pareto_monoped.uncertainty.ranges import load_uncertainty
+    from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES
+    from pareto_monoped.uncertainty.settings import Sampling
+
+    own = study.uncertainty or Sampling(ranges=load_uncertainty())
+    return (
+        own.ranges if file is None else load_uncertainty(file),
+        max(own.samples, DEFAULT_SAMPLES) if samples is None else samples,
+        own.seed if seed is None else seed,
+    )
+
+
 def _print(results: "Mapping[int, Robustness]", objectives: "Objectives") -> None:
     """One row per design: mean and percentiles of two objectives, shares of jumps that fail or overload a part."""
-    shown = objectives.measures[:2]
+    from pareto_monoped.measures import measure, nominal
+
+    shown = [measure(name) for name in dict.fromkeys(nominal(entry.name) for entry in objectives.measures)][:2]
     heads = "  ".join(f"{f'{entry.short} {entry.shown_unit}'.removesuffix(' 1'):>24}" for entry in shown)
     click.echo(f"{'':6} {heads}  {'':7} {'over':>7}")
     ends = "  ".join(f"{'mean':>8}{'5 %':>8}{'95 %':>8}" for _ in shown)

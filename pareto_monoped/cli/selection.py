@@ -149,8 +149,11 @@ def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
     if name not in known:
         import difflib
 
+        from pareto_monoped.measures import is_robust
+
         near = difflib.get_close_matches(name, known, n=1)
-        allowed = f"did you mean {near[0]!r}?" if near else f"one of {', '.join(known)}"
+        listed = ", ".join(one for one in known if not is_robust(one))
+        allowed = f"did you mean {near[0]!r}?" if near else f"one of {listed}"
         raise click.UsageError(f"{option} = {text!r}: must begin with the name of a measure and =; {allowed}")
     try:
         return name, _finite(option, float(value))
@@ -160,9 +163,9 @@ def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
 
 def _directed() -> list[str]:
     """Measures of which more or less is better."""
-    from pareto_monoped.measures import MEASURES
+    from pareto_monoped.measures import GOAL_NAMES, measure
 
-    return [entry.name for entry in MEASURES if entry.direction is not None]
+    return [name for name in GOAL_NAMES if measure(name).direction is not None]
 
 
 def _stored() -> Sequence[str]:

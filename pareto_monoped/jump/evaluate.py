@@ -97,6 +97,11 @@ class Evaluations:
         """Which jumps have a height and an energy, shape (n,)."""
         return np.asarray(self.status == "ok")
 
+    def of(self, name: str) -> Floats:
+        """The measure of that name, shape (n,)."""
+        values: Floats = getattr(self, name)
+        return values
+
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
         """Column name to values of shape (n,), ``status`` and ``reason`` first."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}

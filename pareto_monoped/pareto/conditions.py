@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.measures import MEASURE_NAMES, measure
+from pareto_monoped.measures import GOAL_NAMES, measure
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.selectors import Condition
 
@@ -18,15 +18,20 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 _VARIABLES = {variable.name: variable for variable in VARIABLES}
-CONDITION_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *_VARIABLES)
+CONDITION_NAMES: tuple[str, ...] = (*GOAL_NAMES, *_VARIABLES)
 """What a condition may be about."""
+
+
+def column(rows: "DataFrame", name: str) -> Floats:
+    """The values of a measure or variable, shape (n,); NaN for a measure under uncertainty that a study has not."""
+    return rows[name].to_numpy(dtype=np.float64) if name in rows else np.full(len(rows), np.nan)
 
 
 def fitting(rows: "DataFrame", conditions: Sequence[Condition]) -> NDArray[np.bool_]:
     """Which designs meet all conditions, shape (n,); a design without a value of a measure does not."""
     fits = np.ones(len(rows), dtype=bool)
     for condition in conditions:
-        fits &= meets(rows[condition.name].to_numpy(dtype=np.float64), condition)
+        fits &= meets(column(rows, condition.name), condition)
     return fits
 
 
@@ -42,7 +47,7 @@ def required_fits(rows: "DataFrame", conditions: Sequence[Condition], objectives
         SelectionError: no design meets all of them; the message names the nearest that can be had.
     """
     for condition in conditions:
-        values = rows[condition.name].to_numpy(dtype=np.float64)
+        values = column(rows, condition.name)
         if not meets(values, condition).any():
             raise SelectionError(_unmet(values, condition))
     fits = fitting(rows, conditions)

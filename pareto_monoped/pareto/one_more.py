@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.measures import nominal
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.scores import losses
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_STEPS = {"height_m": (0.01, "one more centimetre of height")}
-"""Stored step and words of measures for which people have a natural step."""
+_STEPS = {"height_m": (0.01, "one more centimetre of")}
+"""Stored step and words of measures for which people have a natural step, also under uncertainty."""
 _PART = 0.1
 """Share of the front's extent that the step of any other measure is at most. Our own choice: ten steps cross it."""
 
@@ -94,8 +95,9 @@ def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
 def _step(values: NDArray[np.float64], objectives: Objectives) -> tuple[float, str]:
     """Step in the stored unit, and in words: a power of ten in the shown unit for what has no natural step."""
     entry = objectives.measures[0]
-    if entry.name in _STEPS:
-        return _STEPS[entry.name]
+    if nominal(entry.name) in _STEPS:
+        step, words = _STEPS[nominal(entry.name)]
+        return step, f"{words} {entry.words}"
     extent = float(np.ptp(values)) * entry.scale
     power = math.floor(math.log10(_PART * extent)) if extent > 0.0 else 0
     shown = f"{10.0**power:g} {entry.shown_unit}".removesuffix(" 1")

@@ -5,14 +5,14 @@ condition that the chosen design meets never changes the choice.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.measures import Measure, measure
+from pareto_monoped.measures import Measure, measure, nominal
 from pareto_monoped.pareto.conditions import phrase, required_fits
 from pareto_monoped.pareto.knees import knee, tradeoff
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
@@ -87,7 +87,8 @@ def _asked(selector: Selector, objectives: Objectives) -> tuple[tuple[Condition,
         case Among():
             return tuple(_condition(one, objectives) for one in selector.conditions), selector.chooser
         case MinHeight(height_m=wanted):
-            return (Condition(name="height_m", side="min", value=wanted, asked="min-height"),), None
+            asked = Condition(name="height_m", side="min", value=wanted, asked="min-height")
+            return (_condition(asked, objectives),), None
         case MaxEnergy():
             return (_condition(selector, objectives),), None
         case Within(measure=name, value=value):
@@ -99,17 +100,26 @@ def _asked(selector: Selector, objectives: Objectives) -> tuple[tuple[Condition,
 def _condition(given: Condition | MaxEnergy, objectives: Objectives) -> Condition:
     """A condition as it is; ``MaxEnergy`` is one on the energy that is an objective.
 
+    What is asked of "the height" or "the energy" is asked of the statistic of it that is an objective.
+
     Raises:
         SelectionError: no objective is an energy.
     """
     if isinstance(given, Condition):
-        return given
-    for name in _ENERGIES:
-        if name in objectives.names:
+        own = _objective(given.name, objectives) if given.asked == "min-height" else None
+        return given if own is None else replace(given, name=own)
+    for energy in _ENERGIES:
+        if (name := _objective(energy, objectives)) is not None:
             return Condition(name=name, side="max", value=given.energy_j, asked="max-energy")
     raise SelectionError(
         f"max-energy: no objective is an energy, they are {', '.join(objectives.names)}; limit another measure"
     )
+
+
+def _objective(name: str, objectives: Objectives) -> str | None:
+    """The objective that is about a measure: the measure itself, or else one of its statistics."""
+    found = [one for one in objectives.names if nominal(one) == name]
+    return name if name in found else next(iter(found), None)
 
 
 def at_or_better(name: str, value: float) -> Condition:

@@ -7,6 +7,7 @@ import numpy as np
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import measure
+from pareto_monoped.pareto.conditions import column
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.scores import Floats, Scored, losses, scaled
 
@@ -62,7 +63,7 @@ def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
     """
     columns = []
     for name, wanted in wish.items():
-        values = rows[name].to_numpy(dtype=np.float64)
+        values = column(rows, name)
         if np.isnan(values).all():
             raise SelectionError(f"nearest {name} = {wanted:g}: no design on the front has a value of it; drop it")
         sign = -1.0 if measure(name).direction == "maximise" else 1.0

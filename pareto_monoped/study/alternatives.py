@@ -74,6 +74,7 @@ def alternatives(
     count: int = 5,
     tolerance: float = TOLERANCE,
     conditions: Sequence[Condition] = (),
+    rows: pd.DataFrame | None = None,
 ) -> tuple[Alternative, ...]:
     """The designs of a study that cost about as much as one of its trials and differ most in their variables.
 
@@ -86,6 +87,8 @@ def alternatives(
         count: how many at most.
         tolerance: share of the picked design's value by which each objective may be worse.
         conditions: which alternatives must meet, too.
+        rows: the trials to compare, with the measures to compare them by, such as those under uncertainty; the study's
+            trials if None.
 
     Returns:
         By ``pareto.alternatives.most_different``, the most different first.
@@ -95,25 +98,27 @@ def alternatives(
     """
     objectives = data.study.objectives
     names = list(objectives.names)
-    picked = data.trials[data.trials["trial"] == trial]
+    known = data.trials if rows is None else rows
+    picked = known[known["trial"] == trial]
     values = picked[names].to_numpy(dtype=np.float64)
     if len(picked) == 0 or not np.isfinite(values).all():
         raise SelectionError(f"trial = {trial}: must be a trial of the study that jumped; give another number")
-    rows = pd.concat([picked, _within(data, trial, values[0], tolerance, conditions)], ignore_index=True)
-    scale = scale_of(data, rows)
+    near = _within(data, known, trial, values[0], tolerance, conditions)
+    table = pd.concat([picked, near], ignore_index=True)
+    scale = scale_of(data, table)
     chosen = most_different(scale.points, 0, count, scale.categories)
     apart = distances(scale.points, scale.points[0], scale.categories)
-    cost = prices(rows[names].to_numpy(dtype=np.float64), values[0], objectives)
-    audited = rows["trial"].isin(data.audits["trial"]).to_numpy()
+    cost = prices(table[names].to_numpy(dtype=np.float64), values[0], objectives)
+    audited = table["trial"].isin(data.audits["trial"]).to_numpy()
     return tuple(
         Alternative(
-            trial=int(rows["trial"].iloc[row]),
+            trial=int(table["trial"].iloc[row]),
             objectives=objectives,
-            values=tuple(rows[names].iloc[row].astype(float).tolist()),
-            changes=_changes(rows[names].iloc[row].to_numpy(dtype=np.float64), values[0]),
+            values=tuple(table[names].iloc[row].astype(float).tolist()),
+            changes=_changes(table[names].iloc[row].to_numpy(dtype=np.float64), values[0]),
             price=float(cost[row]),
             distance=float(apart[row]),
-            differs=differences(scale, rows, row, 0),
+            differs=differences(scale, table, row, 0),
             audited=bool(audited[row]),
         )
         for row in chosen
@@ -121,13 +126,18 @@ def alternatives(
 
 
 def _within(
-    data: StudyData, trial: int, of: np.ndarray, tolerance: float, conditions: Sequence[Condition]
+    data: StudyData,
+    trials: pd.DataFrame,
+    trial: int,
+    of: np.ndarray,
+    tolerance: float,
+    conditions: Sequence[Condition],
 ) -> pd.DataFrame:
     """The other feasible trials whose price is within the tolerance, the cheapest first."""
-    able = (data.trials["state"] == "feasible").to_numpy() & (data.trials["trial"] != trial).to_numpy()
-    able &= ~data.trials["trial"].isin(data.ill_conditioned).to_numpy()
-    able &= fitting(data.trials, conditions)
-    rows = data.trials[able]
+    able = (trials["state"] == "feasible").to_numpy() & (trials["trial"] != trial).to_numpy()
+    able &= ~trials["trial"].isin(data.ill_conditioned).to_numpy()
+    able &= fitting(trials, conditions)
+    rows = trials[able]
     cost = prices(rows[list(data.study.objectives.names)].to_numpy(dtype=np.float64), of, data.study.objectives)
     order = np.argsort(cost, kind="stable")
     return rows.iloc[order[cost[order] <= tolerance]]

@@ -1,14 +1,15 @@
 """The columns of a trial: name, storage, what it is, and where its values come from. Storage and reader read this."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
-from pareto_monoped.measures import MEASURES
+from pareto_monoped.measures import MEASURES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 
 if TYPE_CHECKING:
+    from pareto_monoped.study.definition import Study
     from pareto_monoped.study.generation import Generation
 
 
@@ -48,7 +49,7 @@ def _measure(name: str, meaning: str) -> Column:
         sql="REAL",
         dtype="float64",
         meaning=meaning,
-        values=lambda generation: getattr(generation.evaluations, name).tolist(),
+        values=lambda generation: generation.evaluations.of(name).tolist(),
     )
 
 
@@ -123,10 +124,21 @@ _JOINT_MOTORS = tuple(
     for joint in ("hip", "knee")
 )
 _VARIABLES = tuple(_variable(index) for index in range(len(VARIABLES)))
-_MEASURES = tuple(_measure(measure.name, measure.meaning) for measure in MEASURES)
+_MEASURES = tuple(_measure(entry.name, entry.meaning) for entry in MEASURES)
 
 COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_MEASURES, *_JOINT_MOTORS)
 """All columns of a trial, in the order of the database."""
+
+
+def columns_of(study: "Study") -> tuple[Column, ...]:
+    """The columns of a study: all, and those of the measures under uncertainty that it asks for."""
+    return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in study.robust_names))
+
+
+def listed(names: Iterable[str]) -> str:
+    """Columns of ``monoped_trials`` for SQL; the names of measures under uncertainty have a dot."""
+    return ", ".join(f'"{name}"' for name in names)
+
 
 REQUIRED: tuple[str, ...] = (*(column.name for column in _IDENTITY), *PAPER_NAMES, *HEIGHT_AND_ENERGY.names)
 """Columns that every study has, in the order of the data frame; the others follow as the database has them."""

@@ -13,17 +13,28 @@ from pareto_monoped.config import checked, read_toml
 from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration import rules_for, strength_for
+from pareto_monoped.measures import SHARE_MEASURES, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.strength.joint import GROUP_MEASURES
 from pareto_monoped.study.algorithm_settings import (
     ALGORITHMS,
     DEFAULT_ALGORITHM,
     AlgorithmSettings,
     WeightedSettings,
 )
-from pareto_monoped.study.goals import Constraints, constraints_of, corner_of, objectives_of, stored_objectives
+from pareto_monoped.study.goals import (
+    LEAST_SAFETY,
+    Constraints,
+    constraints_of,
+    corner_of,
+    flattened,
+    objectives_of,
+    stored_objectives,
+)
 from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, text_of
 from pareto_monoped.study.weighted_budget import within_budget
+from pareto_monoped.uncertainty.settings import Sampling, sampling_of
 
 NO_STRENGTH = "strength was not asked for: designs may not hold"
 """What every output says of a study without ``Study.strength``; those of earlier versions are among them."""
@@ -80,6 +91,7 @@ class _File:
     audit: bool = True
     strength: bool = False  # of a stored study; a file without it takes the default of ``strength_for``
     gear_list: bool = False  # of a stored study; a file without it searches the list
+    uncertainty: dict[str, Any] | None = None
     algorithm: dict[str, Any] = field(default_factory=dict)
 
 
@@ -92,7 +104,8 @@ class Study:
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
-    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0.
+    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``uncertainty``
+    is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
     """
 
     name: str
@@ -113,6 +126,7 @@ class Study:
     audit: bool
     strength: bool = False
     gear_list: bool = False
+    uncertainty: Sampling | None = None
     algorithm: AlgorithmSettings
 
     @property
@@ -136,6 +150,18 @@ class Study:
         return tuple(key for key in MOTOR_KEYS if isinstance(getattr(self, key), tuple))
 
     @property
+    def robust_names(self) -> tuple[str, ...]:
+        """The measures under uncertainty that each trial has: those asked for, and with them the shares of jumps."""
+        asked = [name for name in (*self.objectives.names, *self.constraints.measures) if is_robust(name)]
+        shares = [entry.name for entry in SHARE_MEASURES] if asked else []
+        return tuple(dict.fromkeys((*shares, *asked)))
+
+    @property
+    def least_safeties(self) -> dict[str, float]:
+        """Each measure of strength -> what it must be for a jump not to overload a part."""
+        return {name: self.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
+
+    @property
     def free(self) -> tuple[str, ...]:
         """Names of the free variables, in the order of ``NAMES``."""
         return tuple(name for name in NAMES if isinstance(self.variables[name], Bounds))
@@ -157,8 +183,9 @@ class Study:
         """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
         Left out are keys of motors that say nothing, optional variables at their defaults, limits that are off and came
-        later, the rules ``paper``, strength that is not asked for, and a list of gearboxes that is not searched. The
-        paper's objectives stand as 0.1.0 stored them. So studies stored before there were others keep their hash.
+        later, the rules ``paper``, strength that is not asked for, a list of gearboxes that is not searched, and
+        uncertainty where nothing is said of it. The paper's objectives stand as 0.1.0 stored them. So studies stored
+        before there were others keep their hash.
         """
         plain = asdict(self)
         if self.rules == "paper":
@@ -167,6 +194,10 @@ class Study:
             del plain["strength"]
         if not self.gear_list:
             del plain["gear_list"]
+        if self.uncertainty is None:
+            del plain["uncertainty"]
+        else:
+            plain["uncertainty"] = self.uncertainty.as_dict()
         for key in MOTOR_KEYS:
             if plain[key] is None:
                 del plain[key]
@@ -225,7 +256,7 @@ def load_study(
     if objectives is not None:
         values["objectives"] = list(objectives)
         if isinstance(corner := values.get("reference_point"), dict):
-            values["reference_point"] = {name: value for name, value in corner.items() if name in objectives}
+            values["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
     source = f"study file {str(path)!r}"
     study = study_from_dict(values, source=source)
     given = "iterations" in values.get("algorithm", {})
@@ -246,6 +277,9 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
     objectives = objectives_of(file.objectives, source=source)
     corner = corner_of(file.reference_point, objectives, source=source)
+    robust = any(map(is_robust, objectives.names))
+    constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
+    table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
     return Study(
         name=file.name,
         description=file.description,
@@ -257,12 +291,13 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         seed=file.seed,
         variables=_variables(file, source),
         objectives=objectives,
-        constraints=constraints_of(file.constraints, strength=file.strength, source=source),
+        constraints=constraints,
         reference_point=corner,
         stop=file.stop,
         audit=file.audit,
         strength=file.strength,
         gear_list=file.gear_list,
+        uncertainty=None if table is None else sampling_of(table, source=source),
         algorithm=_algorithm(file, corner, source),
     )
 

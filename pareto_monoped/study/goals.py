@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.measures import MEASURE_NAMES, MEASURES, measure
+from pareto_monoped.measures import GOAL_NAMES, MEASURES, STATISTICS, is_robust, measure
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
 from pareto_monoped.strength.joint import REQUIRED_MEASURES
+from pareto_monoped.uncertainty.settings import MOST_FAILED
 
 Side = Literal["min", "max"]
 
@@ -59,6 +60,11 @@ class Constraints:
 
     limits: tuple[Limit, ...]
 
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """The measures that are limited, each once."""
+        return tuple(dict.fromkeys(limit.measure for limit in self.limits))
+
     def value(self, key: str) -> float | None:
         """The limit with a key such as "max_mass_kg"; None where there is none."""
         return next((limit.value for limit in self.limits if limit.key == key), None)
@@ -68,12 +74,16 @@ class Constraints:
         return dict.fromkeys(_ALWAYS_STORED) | {limit.key: limit.value for limit in self.limits}
 
 
-def constraints_of(table: Mapping[str, Any], *, strength: bool = False, source: str = "constraints") -> Constraints:
+def constraints_of(
+    table: Mapping[str, Any], *, strength: bool = False, robust: bool = False, source: str = "constraints"
+) -> Constraints:
     """Limits from a table of ``measure = { min = a, max = b }``, or of keys such as ``max_mass_kg``.
 
     Args:
         table: as in a study file or a stored study; a value of None is off.
         strength: whether every measure of strength is at least ``LEAST_SAFETY``; the table may ask for more.
+        robust: whether an objective is of jumps under uncertainty; at most ``MOST_FAILED`` of them then fail, unless
+            the table asks for another share. So it is where the table limits a measure under uncertainty.
         source: where it comes from, for messages.
 
     Raises:
@@ -81,7 +91,7 @@ def constraints_of(table: Mapping[str, Any], *, strength: bool = False, source: 
     """
     given: set[tuple[Side, str]] = set()
     chosen: dict[tuple[Side, str], float] = {}
-    for key, value in table.items():
+    for key, value in flattened(table).items():
         for side, name, limit in _entries(key, value, source):
             if (side, name) in given:
                 raise StudyError(f"{source}: constraints.{name}: its {side} is given twice; drop one")
@@ -90,6 +100,8 @@ def constraints_of(table: Mapping[str, Any], *, strength: bool = False, source: 
                 typed = f"constraints.{key}.{side}" if key == name else f"constraints.{key}"
                 chosen[side, name] = _value((side, name), limit, f"{source}: {typed}")
     chosen.setdefault(("min", "height_m"), MIN_HEIGHT_M)
+    if robust or any(is_robust(name) for _, name in chosen):
+        chosen.setdefault(("max", "failed_share"), MOST_FAILED)
     for name in REQUIRED_MEASURES if strength else ():
         least = chosen.setdefault(("min", name), LEAST_SAFETY)
         if least < LEAST_SAFETY:
@@ -108,9 +120,9 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
     """Side, measure and value of each limit that one key of the table sets."""
     for side in ("min", "max"):
         name = key.removeprefix(f"{side}_")
-        if name != key and name in MEASURE_NAMES:
+        if name != key and name in GOAL_NAMES:
             return [(side, name, value)]
-    if key not in MEASURE_NAMES:
+    if key not in GOAL_NAMES:
         near = _near(key.removeprefix("min_").removeprefix("max_"))
         raise StudyError(f"{source}: constraints.{key}: must be the name of a measure; {near}")
     if not isinstance(value, Mapping) or not value or not set(value) <= {"min", "max"}:
@@ -134,7 +146,7 @@ def _place(limit: Limit) -> tuple[int, int, bool]:
     """Where a limit stands among the others: those of 0.1.0 first, in their order, so that its studies go on."""
     if limit.key in _ALWAYS_STORED:
         return _ALWAYS_STORED.index(limit.key), 0, False
-    return len(_ALWAYS_STORED), MEASURE_NAMES.index(limit.measure), limit.side == "max"
+    return len(_ALWAYS_STORED), GOAL_NAMES.index(limit.measure), limit.side == "max"
 
 
 def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
@@ -155,7 +167,7 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
     # The order of a table means nothing; that of a list decides which objective charts and tables show first.
     names = tuple(sorted(given, key=_rank) if isinstance(given, Mapping) else given)
     for name in names:
-        if name not in MEASURE_NAMES:
+        if name not in GOAL_NAMES:
             raise StudyError(f"{source}: objective {name!r} is not a measure; {_near(name)}")
         direction = measure(name).direction
         if direction is None:
@@ -190,7 +202,7 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
     Raises:
         StudyError: a measure that is no objective, or a value out of range.
     """
-    for name, value in table.items():
+    for name, value in flattened(table).items():
         if name not in objectives.names:
             allowed = f"one of {', '.join(objectives.names)}"
             raise StudyError(f"{source}: {complaint('measure in reference_point', name, allowed, 'correct it')}")
@@ -199,15 +211,26 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
         if not number or value < least:
             allowed = "a number of at least 0" if least == 0.0 else "a number above 0"
             raise StudyError(f"{source}: {complaint(f'reference_point.{name}', value, allowed, 'correct it')}")
-    return reference_point(objectives, {name: float(value) for name, value in table.items()})
+    return reference_point(objectives, {name: float(value) for name, value in flattened(table).items()})
+
+
+def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A table in which ``height_m.p05 = x`` has the key "height_m.p05": in TOML, a dot makes a table in the table."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        inner = {name: value[name] for name in STATISTICS if name in value} if isinstance(value, Mapping) else {}
+        flat |= {f"{key}.{name}": given for name, given in inner.items()}
+        if not inner or len(inner) < len(value):
+            flat[key] = {name: given for name, given in value.items() if name not in inner} if inner else value
+    return flat
 
 
 def _rank(name: object) -> int:
-    return MEASURE_NAMES.index(name) if name in MEASURE_NAMES else -1
+    return GOAL_NAMES.index(name) if name in GOAL_NAMES else -1
 
 
 def _near(name: object) -> str:
-    found = difflib.get_close_matches(str(name), MEASURE_NAMES, n=1)
+    found = difflib.get_close_matches(str(name), GOAL_NAMES, n=1)
     if found:
         return f"did you mean {found[0]!r}?"
     return f"choose from {', '.join(entry.name for entry in MEASURES if entry.direction is not None)}"

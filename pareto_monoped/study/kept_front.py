@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import in_use
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.study.columns import listed
 
 FRONT = """
 CREATE TABLE monoped_front (
@@ -59,7 +60,7 @@ class KeptFront:
 
     def leave_out(self, connection: sqlite3.Connection, ill_conditioned: Collection[int]) -> None:
         """Make the front anew without these trials; trials that they dominated may enter."""
-        names = ", ".join(self._objectives.names)
+        names = listed(self._objectives.names)
         rows = connection.execute(
             f"SELECT trial, {names} FROM monoped_trials WHERE state = 'feasible' ORDER BY trial"
         ).fetchall()
@@ -87,6 +88,6 @@ def rows_of(connection: sqlite3.Connection, names: Sequence[str], trials: Sequen
         chunk = trials[first : first + _CHUNK]
         marks = ", ".join("?" * len(chunk))
         rows += connection.execute(
-            f"SELECT {', '.join(names)} FROM monoped_trials WHERE trial IN ({marks}) ORDER BY trial", chunk
+            f"SELECT {listed(names)} FROM monoped_trials WHERE trial IN ({marks}) ORDER BY trial", chunk
         ).fetchall()
     return rows

@@ -50,6 +50,13 @@ def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mappin
     settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
     # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
     settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration")}
+    if (sampling := settings.pop("uncertainty", None)) and study.robust_names:
+        # Not what the ranges are called and where they come from, but their ends.
+        settings["uncertainty"] = {
+            key: {end: value[end] for end in ("lower", "upper")} if isinstance(value, Mapping) else value
+            for key, value in sampling.items()
+            if key != "name"
+        }
     if study.motor is None:
         # Which joint chooses from which of the motors.
         places = {name: place for place, name in enumerate(study.motors, 1)}

@@ -1,8 +1,7 @@
 """Simulate trials of a study again under uncertainty, and store what that says of them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,25 +9,20 @@ import pandas as pd
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.measures import MEASURES
-from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.strength.joint import GROUP_MEASURES
-from pareto_monoped.study.goals import LEAST_SAFETY
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import strict_json
 from pareto_monoped.study.reader import StudyData, read_study
-from pareto_monoped.study.robust_rows import Stored, read_robustness
+from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.study.store import Store
 from pareto_monoped.uncertainty.ranges import Uncertainty
-from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, DEFAULT_SEED, Samples, sobol_samples, variations
+from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, Samples, sobol_samples, variations
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED
 from pareto_monoped.uncertainty.statistics import Robustness, robustness
 
 LEAST_SAMPLES = 256
 """Fewest samples of a design that are stored: a 5th percentile then rests on 13 of them."""
-MOST_FAILED = 0.05
-"""Greatest share of failed jumps of a design on the robust front. Our own choice, as the percentiles'."""
 _CHUNK = 4
 """Designs that are simulated and stored together; an interrupt loses at most these."""
 
@@ -105,10 +99,9 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
         np.repeat(motors, count),
         variations=variations(samples, len(rows), data.calibration),
     )
-    least = {name: data.study.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
+    least = data.study.least_safeties
     return {
-        int(trial): robustness(jumps, np.arange(k * count, (k + 1) * count), least)
-        for k, trial in enumerate(rows["trial"])
+        int(trial): robustness(jumps, slice(k * count, (k + 1) * count), least) for k, trial in enumerate(rows["trial"])
     }
 
 
@@ -135,45 +128,3 @@ def _chosen(data: StudyData, trials: Sequence[int] | None) -> pd.DataFrame:
         if number not in known.index or known.loc[number, "status"] != "ok":
             raise SelectionError(f"trial = {number}: must be a trial of the study that jumped; give another number")
     return known.loc[numbers].reset_index(drop=True)
-
-
-def robust_front(data: StudyData, stored: Mapping[int, Stored]) -> pd.DataFrame:
-    """The front by what nineteen of twenty robots keep: of each measure the percentile that is worse.
-
-    Args:
-        data: the study.
-        stored: robustness of some of its trials.
-
-    Returns:
-        As ``StudyData.front``, with the 5th percentile of every measure that is to be maximised, and the 95th of every
-        one that is to be minimised; other measures have their means. Columns ``failed`` and ``overloaded`` are added.
-        Designs that fail more often than ``MOST_FAILED`` are left out.
-
-    Raises:
-        SelectionError: no trial has a robustness, or all fail too often.
-    """
-    if not stored:
-        raise SelectionError(f"study database {str(data.db)!r}: holds no robustness; simulate it with 'robust' first")
-    rows = data.trials[data.trials["trial"].isin(stored)].reset_index(drop=True)
-    results = [stored[int(trial)].result for trial in rows["trial"]]
-    columns: dict[str, Any] = {
-        "failed": [result.failed for result in results],
-        "overloaded": [result.overloaded for result in results],
-    }
-    for entry in MEASURES:
-        side = {"maximise": "p05", "minimise": "p95", None: "mean"}[entry.direction]
-        columns[entry.name] = [
-            getattr(result.measures[entry.name], side) if entry.name in result.measures else np.nan
-            for result in results
-        ]
-    rows = rows.assign(**columns)
-    objectives = data.study.objectives
-    mask = front_mask(
-        rows[list(objectives.names)].to_numpy(dtype=np.float64), objectives, rows["failed"] <= MOST_FAILED
-    )
-    if not mask.any():
-        raise SelectionError(
-            f"robust front: has 0 designs, because all {len(rows)} fail in more than {100 * MOST_FAILED:g} percent of "
-            "their jumps; simulate more trials with 'robust'"
-        )
-    return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)

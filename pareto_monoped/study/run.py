@@ -20,7 +20,13 @@ from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
 from pareto_monoped.study.session import Progress, Session
-from pareto_monoped.study.simulator import Simulator, continued_simulator, load_simulator, stored_simulator
+from pareto_monoped.study.simulator import (
+    Simulator,
+    continued_simulator,
+    evaluation_of,
+    load_simulator,
+    stored_simulator,
+)
 from pareto_monoped.study.store import Store, create_database
 
 
@@ -227,7 +233,7 @@ def _go_on(
         if foreign := store.foreign_count():
             notify(f"note: {foreign_note(foreign)}")
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
-        session = Session(data, study, simulator.evaluator, store, budget, progress, coordinates)
+        session = Session(data, study, evaluation_of(study, simulator.evaluator), store, budget, progress, coordinates)
         with Interrupt(notify) as interrupt:
             reason = session.go(interrupt)
         finished = reason != "interrupted"

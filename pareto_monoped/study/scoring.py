@@ -43,9 +43,9 @@ def judge(evaluations: Evaluations, constraints: Constraints, objectives: Object
     """
     failed = evaluations.status != "ok"
     for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *objectives.names)):
-        failed = failed | ~np.isfinite(getattr(evaluations, name))
+        failed = failed | ~np.isfinite(evaluations.of(name))
     reasons = list(evaluations.reason)
-    measures = {limit.measure: getattr(evaluations, limit.measure) for limit in constraints.limits}
+    measures = {limit.measure: evaluations.of(limit.measure) for limit in constraints.limits}
     table = missed(constraints, measures, failed)
     for limit, shares in zip(constraints.limits, table.T, strict=True):
         for i in np.flatnonzero(~failed & (shares > 0.0)):
@@ -75,7 +75,7 @@ def missed(
 
 def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.float64]:
     """The objectives' values in stored units, shape (n, m)."""
-    return np.column_stack([getattr(evaluations, name) for name in objectives.names])
+    return np.column_stack([evaluations.of(name) for name in objectives.names])
 
 
 def scores(evaluations: Evaluations, judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:

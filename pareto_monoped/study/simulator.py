@@ -18,6 +18,7 @@ from pareto_monoped.study.definition import Study
 from pareto_monoped.study.meta import motor_keys
 from pareto_monoped.study.motor_choice import AnyCoordinates, kit_maps, searched_coordinates
 from pareto_monoped.study.reader import StudyData
+from pareto_monoped.uncertainty.evaluator import RobustEvaluator
 
 Evaluate = Callable[..., Evaluations]
 """Designs, see ``design.complete``, to their evaluations, in order; the designs are followed by the positions of their
@@ -61,6 +62,15 @@ class Simulator:
         result = self.evaluator(np.tile(eight, (count, 1)), np.repeat(np.arange(count), len(eight)))
         pairs = np.column_stack((result.height_m, result.energy_j))
         return [[value if np.isfinite(value) else None for value in row] for row in pairs.tolist()]
+
+
+def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
+    """What the trials of a study are evaluated with: jumps as designed, and as built where it asks for those."""
+    if study.uncertainty is None or not study.robust_names:
+        return evaluator
+    return RobustEvaluator(
+        evaluator=evaluator, sampling=study.uncertainty, names=study.robust_names, least=study.least_safeties
+    )
 
 
 def load_simulator(study: Study, *, workers: int) -> Simulator:

@@ -13,7 +13,7 @@ from typing import Any
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import replacing
-from pareto_monoped.study.columns import COLUMNS, LATER
+from pareto_monoped.study.columns import LATER, columns_of, listed
 from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
@@ -67,7 +67,7 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
         with translated(path):
             connection = sqlite3.connect(temporary, isolation_level=None)
             try:
-                columns = ", ".join(f"{column.name} {column.sql}" for column in COLUMNS)
+                columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
                 connection.execute("BEGIN IMMEDIATE")
                 for statement in _OUR_TABLES.format(columns=columns).split(";"):
                     connection.execute(statement)
@@ -106,7 +106,7 @@ class Store:
             DatabaseError: not a study, damaged, read-only, or of a newer version.
         """
         self.path = path
-        self._objectives = study.objectives
+        self._objectives, self._columns = study.objectives, columns_of(study)
         self._lock = lock
         # A file marked read-only is meant to stay as it is. SQLite would ask the system, which lets root write anyway.
         if not path.stat().st_mode & 0o222:
@@ -288,9 +288,9 @@ class Store:
     def _add_to_our_tables(self, generation: Generation, written: dict[str, dict[str, str]]) -> None:
         """Add a generation to our tables; ``written`` is what the running hash has of Optuna's."""
         execute, executemany = self._connection.execute, self._connection.executemany
-        values = {column.name: column.values(generation) for column in COLUMNS}
+        values = {column.name: column.values(generation) for column in self._columns}
         executemany(
-            f"INSERT INTO monoped_trials ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",
+            f"INSERT INTO monoped_trials ({listed(values)}) VALUES ({', '.join('?' * len(values))})",
             zip(*values.values(), strict=True),
         )
         total = generation.first_trial + len(generation.designs)

@@ -10,7 +10,6 @@ import numpy as np
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.optuna_check import foreign_trials, optuna_findings
@@ -87,15 +86,15 @@ def _kept_front_findings(connection: sqlite3.Connection, data: StudyData) -> Ite
 
 def _jump_findings(data: StudyData, numbers: "np.typing.NDArray[np.int_]", workers: int) -> Iterator[str]:
     from pareto_monoped.study.run import refuse_other_code
-    from pareto_monoped.study.simulator import stored_simulator
+    from pareto_monoped.study.simulator import evaluation_of, stored_simulator
 
     simulator = stored_simulator(data, workers=workers)
     refuse_other_code(data, simulator)
     rows = data.trials.iloc[numbers]
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
-    jumps: Evaluations = simulator.evaluator(designs, data.kit_numbers(rows))
-    for name in MEASURE_NAMES:
-        again, stored = getattr(jumps, name), rows[name].to_numpy(dtype=np.float64)
+    jumps = evaluation_of(data.study, simulator.evaluator)(designs, data.kit_numbers(rows))
+    for name in (*MEASURE_NAMES, *data.study.robust_names):
+        again, stored = jumps.of(name), rows[name].to_numpy(dtype=np.float64)
         for k in np.flatnonzero(~((again == stored) | (np.isnan(again) & np.isnan(stored))))[:1]:
             yield f"trial {numbers[k]} jumps otherwise: its {name} is {stored[k]!r}, simulated again {again[k]!r}"
     for k in np.flatnonzero(jumps.status != rows["status"].to_numpy(dtype=np.str_))[:1]:

@@ -11,7 +11,8 @@ from pareto_monoped.config import checked, read_shipped, read_toml
 from pareto_monoped.errors import InputError
 
 _STRICT = ConfigDict(extra="forbid")
-_WHAT = "uncertainty file"
+SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
+"""The shipped file, and what such a file is called in messages."""
 _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
 """Beyond these nothing is left of a part, or its mass no longer fits its length. Our own choice."""
 
@@ -79,13 +80,13 @@ class Uncertainty:
         return asdict(self)
 
 
-def uncertainty_of(values: Mapping[str, Any], *, source: str) -> Uncertainty:
+def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> Uncertainty:
     """Ranges from plain values.
 
     Raises:
-        InputError: a missing or wrong value, or an unknown key.
+        InputError: (or ``error``) a missing or wrong value, or an unknown key.
     """
-    return checked(Uncertainty, values, source=source)
+    return checked(Uncertainty, values, source=source, error=error)
 
 
 def load_uncertainty(path: Path | None = None) -> Uncertainty:
@@ -94,10 +95,10 @@ def load_uncertainty(path: Path | None = None) -> Uncertainty:
     Raises:
         InputError: no readable file, an unknown key, or a wrong value.
     """
-    shipped = read_shipped("uncertainty.toml", what=_WHAT)
+    shipped = read_shipped(SHIPPED, what=WHAT)
     if path is None:
-        return uncertainty_of(shipped, source=_WHAT)
-    own = read_toml(path, what=_WHAT)
+        return uncertainty_of(shipped, source=WHAT)
+    own = read_toml(path, what=WHAT)
     if "name" not in own:
-        raise InputError(f"{_WHAT} {str(path)!r}: name is missing; add it, so that results can name these ranges")
-    return uncertainty_of(shipped | own, source=f"{_WHAT} {str(path)!r}")
+        raise InputError(f"{WHAT} {str(path)!r}: name is missing; add it, so that results can name these ranges")
+    return uncertainty_of(shipped | own, source=f"{WHAT} {str(path)!r}")

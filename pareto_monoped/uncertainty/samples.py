@@ -11,6 +11,7 @@ from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
 from pareto_monoped.jump.variations import Variations
 from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.uncertainty.ranges import Uncertainty
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED
 
 Floats = NDArray[np.float64]
 Name = Literal[
@@ -39,8 +40,8 @@ DIMENSIONS: tuple[tuple[Name, int], ...] = (
     ("battery_voltage", 1),
 )
 """Ranges and how many independent numbers each has, in the order of the points' coordinates."""
-DEFAULT_SAMPLES, DEFAULT_SEED = 256, 1
-"""Samples per design, and the seed of their scrambling. 256 points estimate a 5th percentile to within 1.4 percent of
+DEFAULT_SAMPLES = 256
+"""Samples per design. 256 points estimate a 5th percentile to within 1.4 percent of
 the probability at random, and Sobol points do better on smooth measures."""
 
 

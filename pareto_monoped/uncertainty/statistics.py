@@ -1,10 +1,11 @@
 """What samples say of a design: mean, spread and percentiles of its measures, and how often it fails or overloads."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.jump.evaluate import Evaluations
@@ -58,7 +59,7 @@ class Robustness:
         return asdict(self)
 
 
-def robustness(evaluations: Evaluations, rows: Sequence[int] | np.ndarray, least: Mapping[str, float]) -> Robustness:
+def robustness(evaluations: Evaluations, rows: slice, least: Mapping[str, float]) -> Robustness:
     """The robustness of one design.
 
     Args:
@@ -66,23 +67,28 @@ def robustness(evaluations: Evaluations, rows: Sequence[int] | np.ndarray, least
         rows: which of them are of this design, at least one.
         least: measures of strength and what each must at least be.
     """
-    chosen = np.asarray(rows, dtype=np.intp)
-    ok = evaluations.ok[chosen]
-    overloaded = np.zeros(len(chosen), dtype=bool)
+    ok = evaluations.ok[rows]
+    spreads = {name: spread(getattr(evaluations, name)[rows][ok]) for name in MEASURE_NAMES}
+    return Robustness(
+        samples=len(ok),
+        failed=float(1.0 - ok.mean()),
+        overloaded=float((overloads(evaluations, rows, least) & ok).mean()),
+        measures={name: found for name, found in spreads.items() if found is not None},
+    )
+
+
+def overloads(evaluations: Evaluations, rows: slice, least: Mapping[str, float]) -> NDArray[np.bool_]:
+    """Which of these jumps exceed what some joint or part carries, shape (len of ``rows``,)."""
+    found = np.zeros(len(evaluations.ok[rows]), dtype=bool)
     for name, value in least.items():
         with np.errstate(invalid="ignore"):
-            overloaded |= getattr(evaluations, name)[chosen] < value
-    measures = {}
-    for name in MEASURE_NAMES if ok.any() else ():
-        values = getattr(evaluations, name)[chosen][ok]
-        if np.isfinite(values).all():
-            low, high = np.percentile(values, (LOW_PERCENT, HIGH_PERCENT))
-            measures[name] = Spread(
-                mean=float(values.mean()), deviation=float(values.std()), p05=float(low), p95=float(high)
-            )
-    return Robustness(
-        samples=len(chosen),
-        failed=float(1.0 - ok.mean()),
-        overloaded=float((overloaded & ok).mean()),
-        measures=measures,
-    )
+            found |= getattr(evaluations, name)[rows] < value
+    return found
+
+
+def spread(values: NDArray[np.float64]) -> Spread | None:
+    """The spread of the values of all jumps that succeed, shape (n,); None without any, or where one has no value."""
+    if len(values) == 0 or not np.isfinite(values).all():
+        return None
+    low, high = np.percentile(values, (LOW_PERCENT, HIGH_PERCENT))
+    return Spread(mean=float(values.mean()), deviation=float(values.std()), p05=float(low), p95=float(high))

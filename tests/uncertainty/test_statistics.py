@@ -19,7 +19,7 @@ from tests.study.support import made_evaluations
 def test_mean_spread_percentiles_and_shares(items):
     heights, ok = [h for h, _ in items], [o for _, o in items]
     jumps = made_evaluations([0.9, *heights], [5.0] * (len(items) + 1), ["ok", *("ok" if o else "timeout" for o in ok)])
-    found = robustness(jumps, range(1, len(items) + 1), {"gear_safety": 0.0, "link_safety": 0.3})
+    found = robustness(jumps, slice(1, len(items) + 1), {"gear_safety": 0.0, "link_safety": 0.3})
     kept = sorted(h for h, o in items if o)
     spread = found.measures["height_m"]
     assert spread.mean == pytest.approx(statistics.fmean(kept))
@@ -33,5 +33,5 @@ def test_mean_spread_percentiles_and_shares(items):
 
 
 def test_a_design_that_never_jumps_has_no_measures():
-    found = robustness(made_evaluations([np.nan] * 3, [np.nan] * 3, ["timeout"] * 3), range(3), {"gear_safety": 1.0})
+    found = robustness(made_evaluations([np.nan] * 3, [np.nan] * 3, ["timeout"] * 3), slice(0, 3), {"gear_safety": 1.0})
     assert (found.failed, found.overloaded, found.measures) == (1.0, 0.0, {})
