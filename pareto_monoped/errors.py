@@ -10,6 +10,7 @@
     |   |   `-- LostTrialsError a database that lacks trials which were safe
     |   |-- SelectionError      a selection that no design on the front meets
     |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
+    |-- DiskError               a disk, or another limit of the system, that is full or fails
     |-- SimulationError         a simulation that should have worked failed
     `-- CheckError              an export failed its own checks (overlap, open mesh, ...)
 
@@ -62,6 +63,10 @@ class SelectionError(InputError):
 
 class OutputError(InputError):
     """A file or folder that cannot be written, or that would be overwritten."""
+
+
+class DiskError(ParetoMonopedError):
+    """A disk, or another limit of the system, that is full or fails; nothing the user gave is wrong."""
 
 
 class SimulationError(ParetoMonopedError):

@@ -3,13 +3,14 @@
 No output replaces a study, and none replaces a file of another kind unless it is told to.
 """
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pareto_monoped.errors import OutputError
+from pareto_monoped.errors import DiskError, OutputError
 
 _DATABASE = b"SQLite format 3\x00"
 _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
@@ -27,6 +28,7 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
 
     Raises:
         OutputError: the folder is missing or cannot be written to, or ``path`` is a database or a file of another kind.
+        DiskError: the disk is full or fails.
     """
     refuse_database(path)
     try:
@@ -36,7 +38,12 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
     os.close(handle)
     temporary = Path(name)
     try:
-        yield temporary
+        try:
+            yield temporary
+        except OSError as error:
+            if error.filename not in (None, name) or not is_failure(error):
+                raise
+            raise unwritable(path, error, "") from error
         if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):
             raise OutputError(
                 f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or --force"
@@ -92,9 +99,50 @@ _LINES, _TOLD = 5, 24
 """Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
 
 
-def unwritable(path: Path, error: OSError, cure: str) -> OutputError:
-    """The error for a file or folder that the system does not let us write."""
-    return OutputError(f"output {str(path)!r}: cannot be written ({error.strerror or error}); {cure}")
+_FAILURES = {
+    errno.ENOSPC: "make room and try again",
+    errno.EDQUOT: "make room and try again",
+    errno.EIO: "check the disk's health",
+    errno.EFBIG: "raise the limit on the size of files (ulimit -f)",
+    errno.EMFILE: "raise the limit on open files (ulimit -n)",
+    errno.ENFILE: "close other programs",
+    errno.ENOMEM: "close other programs",
+    errno.EAGAIN: "close other programs",
+}
+"""Errors of a system that is full or fails, whatever file it is about, and their cures."""
+_REFUSALS = {
+    errno.ENOENT: "check the path",
+    errno.ENOTDIR: "check the path",
+    errno.EISDIR: "give the name of a file",
+    errno.ENAMETOOLONG: "give a shorter name",
+    errno.ELOOP: "remove the circular link",
+    errno.EROFS: "give a place that can be written to",
+}
+
+
+def is_failure(error: OSError) -> bool:
+    """Whether the system is full or fails, rather than that what the user gave cannot be used."""
+    return error.errno in _FAILURES
+
+
+def cure_of(error: OSError) -> str:
+    """What helps against an error of the system."""
+    number = error.errno or 0
+    return (_FAILURES | _REFUSALS).get(number, "allow access to it, or give another")
+
+
+def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError:
+    """The error for a file or folder that the system does not let us write.
+
+    Args:
+        path: the file or folder.
+        error: what the system said.
+        cure: what helps, unless the system itself is full or fails.
+    """
+    kind = DiskError if is_failure(error) else OutputError
+    if is_failure(error) or error.errno == errno.ENAMETOOLONG:
+        cure = cure_of(error)
+    return kind(f"output {str(path)!r}: cannot be written ({error.strerror or error}); {cure}")
 
 
 def current_umask() -> int:

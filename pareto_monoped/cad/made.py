@@ -1,6 +1,5 @@
 """Whether the export that a job asks for exists already, complete and up to date."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD
 from pareto_monoped.cad.write.formats import FILES
+from pareto_monoped.config import read_json
 from pareto_monoped.errors import DesignError
 
 _ALWAYS = (
@@ -41,7 +41,7 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
         any_pose: whether the assembly may stand in another pose than the job's.
     """
     try:
-        record = json.loads((job.folder / RECORD).read_text(encoding="utf-8"))
+        record = read_json(job.folder / RECORD)
         if not (set(job.formats) <= set(record["formats"]) and _is_whole(job.folder, record)):
             return False
         found = {key: value for key, value in record.items() if key not in _NOT_COMPARED}

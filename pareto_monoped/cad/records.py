@@ -14,6 +14,7 @@ from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.made import REL_TOLERANCE, expected_record
 from pareto_monoped.cad.write.design_record import MADE_BY
 from pareto_monoped.cad.write.formats import chosen_formats
+from pareto_monoped.config import read_json
 from pareto_monoped.design import DEFAULTS, NAMES, RULE_SETS, Design, RuleSet
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import calibration_of
@@ -131,12 +132,12 @@ def _parsed(path: Path) -> Mapping[str, Any]:
         ValueError: it is no JSON object; the message says where the text breaks off.
     """
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = read_json(path)
     except json.JSONDecodeError as problem:
         raise ValueError(f"no JSON text: line {problem.lineno}, column {problem.colno}") from None
     except UnicodeDecodeError:
         raise ValueError("no text in UTF-8") from None
-    except (RecursionError, ValueError):  # a number of too many digits
+    except ValueError:  # too deep, too long, or a number of too many digits
         raise ValueError("nested or numbered beyond reason") from None
     if not isinstance(found, dict):
         raise ValueError("no JSON object")

@@ -4,13 +4,11 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 """
 
-import os
 import sys
 
 import click
 
 from pareto_monoped import __version__
-from pareto_monoped.errors import ParetoMonopedError
 
 _COMMANDS = {
     "pareto": "pareto",
@@ -57,28 +55,25 @@ def cli() -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line and exit with its code: 0, 1 (failure), 2 (bad input) or 130 (interrupt)."""
-    sys.exit(_run(arguments))
+    """Run the command line and exit with its code: 0, 1 (failure), 2 (bad input) or 130 (interrupt).
+
+    Args:
+        arguments: the words of the command; None for those of this process, which then belongs to the command: the
+            signals that end it and its standard streams are taken care of.
+    """
+    if arguments is not None:
+        sys.exit(_run(arguments))
+    from pareto_monoped.cli import process
+
+    with process.owned() as ended:
+        ended(_run(None))
 
 
 def _run(arguments: list[str] | None) -> int:
+    from pareto_monoped.cli import net
+
     try:
         code = cli.main(args=arguments, prog_name="pareto-monoped", standalone_mode=False)
         return code if isinstance(code, int) else 0
-    except (click.exceptions.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return 130
-    except click.ClickException as error:
-        # One line, as for our own errors; by default click prints the usage text, too.
-        hint = ""
-        if isinstance(error, click.UsageError) and error.ctx is not None:
-            hint = f" (see '{error.ctx.command_path} --help')"
-        click.echo(f"error: {error.format_message()}{hint}", err=True)
-        return error.exit_code
-    except ParetoMonopedError as error:
-        click.echo(f"error: {error}", err=True)
-        return error.exit_code
-    except BrokenPipeError:
-        # The reader (head, less) has closed the pipe, which is no error. Redirect stdout, which is flushed at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except (Exception, KeyboardInterrupt) as error:
+        return net.report(error)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.terminal import echo, new_console
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
@@ -96,14 +97,14 @@ def actuators(
     rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]
     stand_in = "" if ratio is None else actuator_map.stand_in(ratio)
     if stand_in:
-        click.echo(f"note: {stand_in}", err=True)
+        echo(f"note: {stand_in}", err=True)
     if csv_file:
         _write_csv(csv_file, rows, rules, force=force)
     if csv_file == _STANDARD_OUTPUT:
         return
     if as_json:
         label = {"stand_in": stand_in} if stand_in else {}
-        click.echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]) | label, indent=2))
+        echo(json.dumps(rows if ratio is None else details(entries[0], sheets[0]) | label, indent=2))
     elif ratio is None:
         _print_map(actuator_map)
     else:
@@ -118,7 +119,7 @@ def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet, *, force:
     writer.writeheader()
     writer.writerows(rows)
     if path == _STANDARD_OUTPUT:
-        click.echo(text.getvalue(), nl=False)
+        echo(text.getvalue(), nl=False)
     else:
         write_text(path, text.getvalue(), force=force)
 
@@ -147,7 +148,6 @@ def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Tab
 
 
 def _print_map(actuator_map: "ActuatorMap") -> None:
-    from rich.console import Console
 
     from pareto_monoped.actuator.explain import gaps
     from pareto_monoped.actuator.motor_facts import motor_facts
@@ -182,7 +182,7 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
             f"{actuator.mass_kg:.3f}",
             *_last_cells(actuator),
         )
-    console = Console(width=80, highlight=False)
+    console = new_console(width=80)
     console.print(table)
     for name, value in motor_facts(actuator_map.motor):
         console.print(f"{name:20} {value}", markup=False)
@@ -222,7 +222,6 @@ def _last_cells(actuator: "Actuator") -> tuple[str, ...]:
 
 
 def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
-    from rich.console import Console
 
     from pareto_monoped.actuator.explain import details
     from pareto_monoped.actuator.service.data import default_service
@@ -231,7 +230,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
 
     actuator, known = entry.actuator, details(entry, sheet)
     assert actuator is not None
-    console = Console(width=80, highlight=False)
+    console = new_console(width=80)
     console.print(
         f"{actuator_map.motor.name}, [{entry.ratio_low:.1f}, {entry.ratio_high:.1f}): "
         f"{actuator.family} {actuator.gears}, {actuator.ratio:.4f}:1, {actuator.mass_kg:.3f} kg",

@@ -11,6 +11,7 @@ import click
 
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.selection import required, selector_options
+from pareto_monoped.cli.terminal import echo, new_console
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ def _radians(degrees: float | None) -> float | None:
 
 
 def _note(text: str) -> None:
-    click.echo(text, err=True)
+    echo(text, err=True)
 
 
 def _one(job: "Job") -> None:
@@ -189,7 +190,7 @@ def _one(job: "Job") -> None:
         jump = record["jumps"][name]
         height, energy = jump["height_m"], jump["energy_j"]
         result = f"{height:.4f} m  {energy:.3f} J" if height is not None and energy is not None else jump["status"]
-        click.echo(f"{name.replace('_', ' '):<9} {result}")
+        echo(f"{name.replace('_', ' '):<9} {result}")
 
 
 def _say_of_strength(jobs: "list[Job]") -> None:
@@ -201,14 +202,13 @@ def _say_of_strength(jobs: "list[Job]") -> None:
 
 
 def _many(jobs: "list[Job]", workers: int) -> None:
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
     from pareto_monoped.cad.batch import run_all
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Bar(*columns, console=Console(stderr=True)) as bar:
+    with Bar(*columns, console=new_console(stderr=True)) as bar:
         task = bar.add_task("exporting", total=len(jobs))
 
         def show(progress: "Progress") -> None:
@@ -225,7 +225,7 @@ def _many(jobs: "list[Job]", workers: int) -> None:
             bar.console.print("interrupted; the same command continues from here")
             raise
         bar.update(task, completed=len(jobs))
-    click.echo(f"{made} made, {len(jobs) - made} already there")
+    echo(f"{made} made, {len(jobs) - made} already there")
 
 
 def _duration(seconds: float) -> str:

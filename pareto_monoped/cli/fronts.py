@@ -11,6 +11,7 @@ import click
 
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.selection import required, selector_options
+from pareto_monoped.cli.terminal import echo
 from pareto_monoped.design import VARIABLES, Variable, in_use
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def front(
         kept = read_front(db)
         study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
         if kept.foreign:
-            click.echo(f"note: {foreign_note(kept.foreign)}", err=True)
+            echo(f"note: {foreign_note(kept.foreign)}", err=True)
     else:
         data = read_study(db)
         study, used, sealed = data.study, in_use(data.trials), data.sealed
@@ -74,16 +75,16 @@ def front(
         rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
         if chosen != study.objectives:
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
-            click.echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
+            echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
     say_of_study(study, sealed=sealed)
     rows = rows[shown_columns(study, used, chosen)]
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
         write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
-        click.echo(f"wrote {csv_file} ({len(rows)} designs)", err=True)
+        echo(f"wrote {csv_file} ({len(rows)} designs)", err=True)
     if as_json:
-        click.echo(json.dumps(rows.to_dict(orient="records"), indent=2))
+        echo(json.dumps(rows.to_dict(orient="records"), indent=2))
     elif csv_file is None:
         _print_table(rows, chosen)
 
@@ -94,9 +95,9 @@ def say_of_study(study: "Study", *, sealed: bool) -> None:
     from pareto_monoped.study.seals import UNSEALED
 
     if not sealed:
-        click.echo(f"note: {UNSEALED}", err=True)
+        echo(f"note: {UNSEALED}", err=True)
     if not study.strength:
-        click.echo(f"note: {NO_STRENGTH}", err=True)
+        echo(f"note: {NO_STRENGTH}", err=True)
 
 
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
@@ -134,7 +135,7 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
     names = "".join(f" {name:<{width}}" for name, width in motors.items())
-    click.echo(f"{'trial':>6} {words} {symbols}{names}".rstrip())
+    echo(f"{'trial':>6} {words} {symbols}{names}".rstrip())
     for _, row in rows.iterrows():
         values = " ".join(number(row[variable.name]) for variable in shown)
         goals = " ".join(
@@ -142,7 +143,7 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
             for entry, width in zip(objectives.measures, widths, strict=True)
         )
         names = "".join(f" {row[name]:<{width}}" for name, width in motors.items())
-        click.echo(f"{int(row['trial']):6d} {goals} {values}{names}".rstrip())
+        echo(f"{int(row['trial']):6d} {goals} {values}{names}".rstrip())
 
 
 @click.command()
@@ -205,17 +206,17 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
         more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
         if count:
             more["alternatives"] = [other.as_dict() for other in others]
-        click.echo(json.dumps(row | more, indent=2))
+        echo(json.dumps(row | more, indent=2))
         return
-    click.echo(_wrapped(picked.why))
+    echo(_wrapped(picked.why))
     for name in names[1:]:
-        click.echo(f"{name:<34} {row[name]}" if name in _MOTORS else f"{name:<34} {row[name]:.6g}")
-    click.echo(_wrapped(step.text()))
-    click.echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+        echo(f"{name:<34} {row[name]}" if name in _MOTORS else f"{name:<34} {row[name]:.6g}")
+    echo(_wrapped(step.text()))
+    echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
     if by_robust:
         failed, overloaded = (100.0 * row[name] for name in shares)
         ends = "measures are the worse of their 5th and 95th percentiles"
-        click.echo(_wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
+        echo(_wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
     if count:
         _print_alternatives(others, tolerance)
         if compared is not None:
@@ -238,14 +239,14 @@ def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:
     if not others:
-        click.echo(f"no other design is within {tolerance:g} percent; raise --tolerance")
+        echo(f"no other design is within {tolerance:g} percent; raise --tolerance")
         return
-    click.echo(f"alternatives within {tolerance:g} percent, the most different first:")
+    echo(f"alternatives within {tolerance:g} percent, the most different first:")
     for other in others:
         values = other.objectives.text(other.values)
-        click.echo(_wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
+        echo(_wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
     if unaudited := sum(not other.audited for other in others):
-        click.echo(f"note: alternatives without an audit: {unaudited} of {len(others)}", err=True)
+        echo(f"note: alternatives without an audit: {unaudited} of {len(others)}", err=True)
 
 
 def _wrapped(text: str, indent: int = 2) -> str:

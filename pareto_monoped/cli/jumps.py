@@ -10,6 +10,7 @@ import click
 
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.terminal import echo, new_console
 from pareto_monoped.design import (
     CONTROL,
     DEFAULT_RULES,
@@ -81,7 +82,7 @@ def simulate(
     maps = maps_for(hip, knee, rules_for(calibration_name, rules))
     served = {(maps.of(joint), getattr(design, f"{joint}_ratio")) for joint in JOINTS}
     for note in filter(None, (one.stand_in(ratio) for one, ratio in sorted(served, key=lambda pair: pair[1]))):
-        click.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     result = jump(design, maps, calibration, trace=trace is not None)
     if result.status == "bad_input":
         raise DesignError(result.reason)
@@ -99,7 +100,7 @@ def simulate(
     if model:
         _write_model(model, design, motors, maps, calibration, force=force)
     if as_json:
-        click.echo(json.dumps(report, indent=2))
+        echo(json.dumps(report, indent=2))
     else:
         _print(report)
 
@@ -125,7 +126,7 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
             unit = "" if variable.unit == "1" else f" {variable.unit}"
             bounds = f"{variable.lower:g} to {variable.upper:g}{unit}"
             whose = "the paper's" if variable.default is None else "the usual"
-            click.echo(f"note: {variable.name} = {value:g} is outside {whose} bounds, {bounds}", err=True)
+            echo(f"note: {variable.name} = {value:g} is outside {whose} bounds, {bounds}", err=True)
     return design
 
 
@@ -164,7 +165,7 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
     if life is not None:
         report["gear_life_jumps"] = life.jumps
         if life.advice:
-            click.echo(f"note: {life.advice}", err=True)
+            echo(f"note: {life.advice}", err=True)
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
@@ -214,13 +215,12 @@ def _write_model(
 
 
 def _print(report: dict[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(show_header=False, box=None, pad_edge=False)
     for name, value in _lines(report):
         table.add_row(name, value)
-    Console(width=80, highlight=False).print(table)
+    new_console(width=80).print(table)
 
 
 def _lines(report: dict[str, Any], indent: str = "") -> list[tuple[str, str]]:
@@ -249,16 +249,15 @@ def table1(as_json: bool) -> None:
         {ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)}
     )
     for note in filter(None, map(reference.stand_in, ratios)):
-        click.echo(f"note: reference: {note}", err=True)
+        echo(f"note: reference: {note}", err=True)
     rows = rows_of(paper, reference)
     if as_json:
-        click.echo(json.dumps([row.as_dict() for row in rows], indent=2))
+        echo(json.dumps([row.as_dict() for row in rows], indent=2))
     else:
         _print_table1(rows)
 
 
 def _print_table1(rows: "tuple[Row, ...]") -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(title="Height in m and energy in J", title_justify="left")
@@ -274,7 +273,7 @@ def _print_table1(rows: "tuple[Row, ...]") -> None:
             f"{spread.energy_j:.2f} ({spread.energy_p05_j:.2f} to {spread.energy_p95_j:.2f})",
             f"{row.reference.height_m:.3f}\n{row.reference.energy_j:.2f}",
         )
-    console = Console(width=80, highlight=False)
+    console = new_console(width=80)
     console.print(table)
     for row in rows:
         if row.paper.jumped_share < 1.0:

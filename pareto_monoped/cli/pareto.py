@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.terminal import echo, new_console
+
 if TYPE_CHECKING:
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.study.choices import Choice
@@ -75,7 +77,7 @@ def pareto(
     sources = (*dbs, design / "design.json")
     steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources))
 
-    click.echo("\nMade")
+    echo("\nMade")
     made = [f"jumps by {_by(data)}; opens in Optuna" for data in studies]
     fronts = zip(dbs, made if other else ["every jump; resumable, opens in Optuna"], strict=True)
     for path, what in (
@@ -84,16 +86,16 @@ def pareto(
         (design, "CAD and models of the knee design"),
         (report, "the fronts: open it in a browser" if other else "the front: open it in a browser"),
     ):
-        click.echo(f"  {path!s:<32} {what}")
+        echo(f"  {path!s:<32} {what}")
     _print_headline(studies[0], knee.trial)
     if other is not None:
         _print_choices(studies)
     word = "motor" if len(study.motors) == 1 else "motors"
-    click.echo(f"Simulated with {word} {study.motor_text}, calibration {study.calibration}.")
+    echo(f"Simulated with {word} {study.motor_text}, calibration {study.calibration}.")
     if not studies[0].study.strength:
-        click.echo(f"Note: {NO_STRENGTH}.")
+        echo(f"Note: {NO_STRENGTH}.")
     counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
-    click.echo(f"Designs on the front: {counts}.")
+    echo(f"Designs on the front: {counts}.")
 
 
 def _named(table: Path, motor: str) -> Path:
@@ -120,7 +122,7 @@ class _Steps:
         words = [command, *map(str, arguments)]
         up_to_date = made()
         note = "  (up to date)" if up_to_date else ""
-        click.echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{note}", err=True)
+        echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{note}", err=True)
         if not up_to_date:
             with contextlib.redirect_stdout(io.StringIO()):
                 code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)
@@ -148,7 +150,6 @@ def _newer(target: Path, *sources: Path) -> bool:
 
 def _print_headline(data: "StudyData", knee_trial: int) -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table
 
     from pareto_monoped.study.headline import headline
@@ -159,7 +160,7 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
     table.add_column("energy / J", justify="right")
     for row in headline(data, knee_trial):
         table.add_row(row.label, f"{row.height_m:.3f}", f"{row.energy_j:.2f}")
-    Console(width=80).print(table)
+    new_console(width=80).print(table)
 
 
 def _print_choices(studies: "list[StudyData]") -> None:
@@ -170,19 +171,19 @@ def _print_choices(studies: "list[StudyData]") -> None:
     if pair is None:
         return
     side = f"{'mech. J':>8} {'batt. J':>8} {'hip':>6} {'knee':>6}"
-    click.echo(f" {'least':6}{'chosen by mechanical energy':>31}  {'chosen by battery energy':>31} {'costs at':>8}")
-    click.echo(f" {'height':6}{side}  {side} {'battery':>8}")
-    click.echo(f" {'─' * 78}")
+    echo(f" {'least':6}{'chosen by mechanical energy':>31}  {'chosen by battery energy':>31} {'costs at':>8}")
+    echo(f" {'height':6}{side}  {side} {'battery':>8}")
+    echo(f" {'─' * 78}")
     rows = choices(*pair)
     for row in rows:
         cost = "-" if row.cost is None else f"{100.0 * row.cost:+.1f} %"
-        click.echo(f" {row.height_m:.1f} m {_cells(row.mechanical)}  {_cells(row.battery)} {cost:>8}")
+        echo(f" {row.height_m:.1f} m {_cells(row.mechanical)}  {_cells(row.battery)} {cost:>8}")
     if len(studies[0].study.kits) > 1:
-        click.echo("\nMotors")
+        echo("\nMotors")
         for row in rows:
             chosen = "  ".join(f"{'not reached' if c is None else c.motor:>31}" for c in (row.mechanical, row.battery))
-            click.echo(f" {row.height_m:.1f} m {chosen}")
-    click.echo("\nhip, knee: gear ratios; costs: what choosing by mechanical energy adds there.")
+            echo(f" {row.height_m:.1f} m {chosen}")
+    echo("\nhip, knee: gear ratios; costs: what choosing by mechanical energy adds there.")
 
 
 def _cells(choice: "Choice | None") -> str:

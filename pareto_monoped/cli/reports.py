@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.terminal import echo
 
 
 @click.command()
@@ -37,12 +38,12 @@ def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exp
 
     if output is not None:
         refuse_database(output)
-    payload = payload_of(dbs, exports=exports, note=lambda text: click.echo(f"note: {text}", err=True))
+    payload = payload_of(dbs, exports=exports, note=lambda text: echo(f"note: {text}", err=True))
     if output is not None:
         write_text(output, page(payload), force=force)
-        click.echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
+        echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
     if figures is not None:
         from pareto_monoped.report.figures import write_figures
 
         for path in write_figures(payload, figures, force=force):
-            click.echo(f"wrote {path}", err=True)
+            echo(f"wrote {path}", err=True)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.terminal import echo
+
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
@@ -65,13 +67,11 @@ def robust(
         samples=samples,
         seed=seed,
         workers=workers,
-        progress=lambda done, total: click.echo(f"{done}/{total} designs", err=True),
+        progress=lambda done, total: echo(f"{done}/{total} designs", err=True),
     )
     if as_json:
         shown = {str(trial): result.as_dict() for trial, result in results.items()}
-        click.echo(
-            json.dumps({"uncertainty": ranges.name, "samples": samples, "seed": seed, "trials": shown}, indent=2)
-        )
+        echo(json.dumps({"uncertainty": ranges.name, "samples": samples, "seed": seed, "trials": shown}, indent=2))
     else:
         _print(results, kept.study.objectives)
 
@@ -96,12 +96,12 @@ def _print(results: "Mapping[int, Robustness]", objectives: "Objectives") -> Non
 
     shown = [measure(name) for name in dict.fromkeys(nominal(entry.name) for entry in objectives.measures)][:2]
     heads = "  ".join(f"{f'{entry.short} {entry.shown_unit}'.removesuffix(' 1'):>24}" for entry in shown)
-    click.echo(f"{'':6} {heads}  {'':7} {'over':>7}")
+    echo(f"{'':6} {heads}  {'':7} {'over':>7}")
     ends = "  ".join(f"{'mean':>8}{'5 %':>8}{'95 %':>8}" for _ in shown)
-    click.echo(f"{'trial':>6} {ends}  {'fail %':>7} {'load %':>7}")
+    echo(f"{'trial':>6} {ends}  {'fail %':>7} {'load %':>7}")
     for trial, result in results.items():
         cells = "  ".join(_cells(result, entry) for entry in shown)
-        click.echo(f"{trial:6d} {cells}  {100.0 * result.failed:7.1f} {100.0 * result.overloaded:7.1f}")
+        echo(f"{trial:6d} {cells}  {100.0 * result.failed:7.1f} {100.0 * result.overloaded:7.1f}")
 
 
 def _cells(result: "Robustness", entry: "Measure") -> str:

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from pareto_monoped.cli.terminal import echo
+
 
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
@@ -24,14 +26,14 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
 
     result = verify_study(db, simulate=simulate, workers=workers or default_workers())
     for line in result.findings:
-        click.echo(f"found: {line}", err=True)
+        echo(f"found: {line}", err=True)
     if result.foreign:
-        click.echo(f"note: {foreign_note(len(result.foreign))}", err=True)
+        echo(f"note: {foreign_note(len(result.foreign))}", err=True)
     if not result.sealed:
-        click.echo(f"note: {UNSEALED}", err=True)
+        echo(f"note: {UNSEALED}", err=True)
     require_sound(db, result)
     again = f", {result.simulated} jumped again as stored" if result.simulated else ""
-    click.echo(f"{db}: sound, {result.trials} trials{again}")
+    echo(f"{db}: sound, {result.trials} trials{again}")
 
 
 @click.command()
@@ -45,4 +47,4 @@ def repair(db: Path) -> None:
 
     dropped = repair_study(db)
     numbers = f", which Optuna numbered {', '.join(map(str, dropped))}" if dropped else ""
-    click.echo(f"{db}: dropped {len(dropped)} trials{numbers}")
+    echo(f"{db}: dropped {len(dropped)} trials{numbers}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.terminal import echo, name, new_console
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 
 if TYPE_CHECKING:
@@ -98,13 +99,13 @@ def status(db: Path, as_json: bool) -> None:
 
     facts = study_status(db)
     if as_json:
-        click.echo(json.dumps(facts, indent=2))
+        echo(json.dumps(facts, indent=2))
         return
     rate = facts["evaluations_per_second"]
     lines = {
-        "study": facts["name"],
+        "study": name(facts["name"]),
         "state": _state(facts),
-        "motor, calibration": f"{facts['motor']}, {facts['calibration']}",
+        "motor, calibration": name(f"{facts['motor']}, {facts['calibration']}"),
         **({"gearbox rules": rules} if (rules := facts["settings"].get("rules")) else {}),
         "algorithm, seed": f"{facts['algorithm']}, {facts['seed']}",
         "free variables": f"{len(facts['free'])} of {len(facts['settings']['variables'])}",
@@ -121,8 +122,8 @@ def status(db: Path, as_json: bool) -> None:
         "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
         "hash": facts["hash"][:16],
     }
-    for name, value in lines.items():
-        click.echo(f"{name:<22} {value}")
+    for label, value in lines.items():
+        echo(f"{label:<22} {value}")
 
 
 def _state(facts: dict[str, Any]) -> str:
@@ -139,7 +140,7 @@ def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
     from pareto_monoped.strength.joint import REQUIRED_MEASURES
 
     limits: dict[str, float | None] = facts["settings"]["constraints"]
-    told = {"min_height_m": None, **(dict.fromkeys((f"min_{name}" for name in REQUIRED_MEASURES), 1.0))}
+    told = {"min_height_m": None, **(dict.fromkeys((f"min_{measure}" for measure in REQUIRED_MEASURES), 1.0))}
     shown = [
         f"{key} {value:g}"
         for key, value in limits.items()
@@ -162,15 +163,15 @@ def _at_height(facts: dict[str, Any]) -> dict[str, str]:
     from pareto_monoped.measures import measure
 
     lines = {}
-    for name, value in (facts["best_at_0_8_m"] or {}).items():
-        entry = measure(name)
+    for key, value in (facts["best_at_0_8_m"] or {}).items():
+        entry = measure(key)
         word = "most" if entry.direction == "maximise" else "least"
         lines[f"{word} {entry.short} at {_AT_HEIGHT}"] = "not reached" if value is None else entry.text(value)
     return lines
 
 
 def _say(line: str) -> None:
-    click.echo(line, err=True)
+    echo(line, err=True)
 
 
 def _finish(summary: "RunSummary") -> int:
@@ -180,7 +181,7 @@ def _finish(summary: "RunSummary") -> int:
         f"{summary.db}: {summary.evaluations} evaluations ({summary.new_evaluations} new, {summary.seconds:.1f} s), "
         f"{_REASONS[summary.stop_reason]}"
     )
-    click.echo(
+    echo(
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
@@ -196,18 +197,17 @@ def progress_reports() -> "Iterator[Callable[[Progress], None]]":
     """A callback that shows progress on stderr: a bar on a terminal, otherwise one line every few seconds."""
     import sys
 
-    if sys.stderr.isatty():
+    if sys.stderr is not None and sys.stderr.isatty():
         yield from _bar()
     else:
         yield _line_reports()
 
 
 def _bar() -> "Iterator[Callable[[Progress], None]]":
-    from rich.console import Console
     from rich.progress import BarColumn, TextColumn
     from rich.progress import Progress as Bar
 
-    with Bar(BarColumn(bar_width=16), TextColumn("{task.description}"), console=Console(stderr=True)) as bar:
+    with Bar(BarColumn(bar_width=16), TextColumn("{task.description}"), console=new_console(stderr=True)) as bar:
         task = bar.add_task("simulating", total=None)
 
         def show(progress: "Progress") -> None:

@@ -6,12 +6,15 @@ on (no trusted schema, no views or triggers, no extensions). It holds only numbe
 
 import os
 import sqlite3
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.config import MAX_JSON_CHARACTERS
+from pareto_monoped.errors import DatabaseError, DiskError
 from pareto_monoped.study.lock import holder, locked
+from pareto_monoped.study.place import inaccessible, require_file_name
 
 FORMAT = 2
 """Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, had neither running hash nor
@@ -27,11 +30,40 @@ _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
 
 @contextmanager
 def translated(path: Path) -> Iterator[None]:
-    """Turn SQLite's exceptions into one clear ``DatabaseError``."""
+    """Turn the exceptions of SQLite, SQLAlchemy and the system into one clear ``DatabaseError`` or ``DiskError``."""
     try:
         yield
     except sqlite3.Error as error:
-        raise DatabaseError(f"study database {str(path)!r}: {_explained(error)}") from error
+        raise _clear(path, error) from error
+    except OSError as error:
+        raise inaccessible(path, error) from error
+    except Exception as error:
+        # SQLAlchemy, through which Optuna writes, wraps SQLite's own; it is not imported only to ask for its name.
+        library = sys.modules.get("sqlalchemy.exc")
+        if library is None or not isinstance(error, library.SQLAlchemyError):
+            raise
+        inner = getattr(error, "orig", None)
+        raise _clear(path, inner if isinstance(inner, sqlite3.Error) else sqlite3.Error(str(error))) from error
+
+
+@contextmanager
+def undamaged(path: Path) -> Iterator[None]:
+    """Say that a database is damaged where its content makes the block fail.
+
+    Numbers that are text, text that is no JSON, rows that are missing: a study as this package writes it has none.
+    """
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+        raise DatabaseError(
+            f"study database {str(path)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from error
+
+
+def _clear(path: Path, error: sqlite3.Error) -> DatabaseError | DiskError:
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    kind = DiskError if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_NOMEM) else DatabaseError
+    return kind(f"study database {str(path)!r}: {_explained(error)}")
 
 
 def _explained(error: sqlite3.Error) -> str:
@@ -41,6 +73,8 @@ def _explained(error: sqlite3.Error) -> str:
     match extended & 0xFF:
         case sqlite3.SQLITE_FULL:
             return "the disk is full; make room and resume, all acknowledged trials are safe"
+        case sqlite3.SQLITE_TOOBIG:
+            return f"is damaged (it has a value of more than {MAX_JSON_CHARACTERS} bytes); restore a copy"
         case sqlite3.SQLITE_IOERR:
             return (
                 f"cannot be written or read ({error}); check the disk's free space and health and resume, "
@@ -64,17 +98,20 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
+        DiskError: the disk fails.
     """
+    require_file_name(path)
     if not path.is_file():
         raise DatabaseError(f"study database {str(path)!r}: no such file; check the path, or run a study first")
-    with path.open("rb") as stream:
+    with translated(path), path.open("rb") as stream:
         header = stream.read(16)
     if header != b"SQLite format 3\x00":
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
     _roll_back(path)
-    with translated(path):
+    with translated(path), undamaged(path):
         connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S)
         try:
+            connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_JSON_CHARACTERS)
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.execute("PRAGMA query_only = ON")
             connection.execute("BEGIN")

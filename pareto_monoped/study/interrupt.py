@@ -21,7 +21,9 @@ class Interrupt:
 
     def __enter__(self) -> "Interrupt":
         if self._main:
-            self._before = {number: signal.signal(number, self._first) for number in _SIGNALS}
+            # What began with SIGHUP ignored (nohup) shall outlive its terminal.
+            numbers = [n for n in _SIGNALS if n != signal.SIGHUP or signal.getsignal(n) is not signal.SIG_IGN]
+            self._before = {number: signal.signal(number, self._first) for number in numbers}
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -31,6 +33,6 @@ class Interrupt:
 
     def _first(self, number: int, frame: FrameType | None) -> None:
         self.asked = True
-        for each in _SIGNALS:
+        for each in self._before:
             signal.signal(each, signal.default_int_handler)
         self._notify("interrupted: ending after this generation; press Ctrl-C again to end at once")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.design import in_use
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.objectives import Objectives
@@ -40,9 +41,9 @@ class KeptFront:
     def load(self, connection: sqlite3.Connection) -> None:
         """Take what the database keeps."""
         row = connection.execute("SELECT trials, feasible, infeasible, failed, used FROM monoped_front").fetchone()
-        self._numbers = np.array(json.loads(row[0]), dtype=np.int64)
+        self._numbers = np.array(parsed_json(row[0]), dtype=np.int64)
         self._counts = dict(zip(STATES, row[1:4], strict=True))
-        self._used = set(json.loads(row[4]))
+        self._used = set(parsed_json(row[4]))
         rows = rows_of(connection, self._objectives.names, self._numbers.tolist())
         self._values = np.array(rows, dtype=np.float64).reshape(-1, len(self._objectives.names))
 

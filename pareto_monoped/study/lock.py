@@ -1,13 +1,16 @@
 """At most one writer per study: a lock that ends with its process."""
 
+import errno
 import fcntl
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pareto_monoped.errors import DatabaseError, OutputError
+from pareto_monoped.files import is_failure
+from pareto_monoped.study.place import inaccessible, require_file_name
 
 
 class Lock:
@@ -24,7 +27,10 @@ class Lock:
     def acknowledge(self, links: int) -> None:
         """Note that so many links of the running hash are safe; what survives a kill tells if they get lost."""
         self.settled = True
-        os.pwrite(self._descriptor, _content(links), 0)
+        try:
+            os.pwrite(self._descriptor, _content(links), 0)
+        except OSError as error:
+            raise inaccessible(self.path, error) from None
 
 
 def _content(links: int) -> bytes:
@@ -41,7 +47,9 @@ def locked(db: Path) -> Iterator[Lock]:
     Raises:
         DatabaseError: another process holds the study.
         OutputError: the folder cannot be written to, or something else has the lock's name.
+        DiskError: the disk is full or fails.
     """
+    require_file_name(db)
     path = _lock_path(db)
     while True:
         try:
@@ -50,6 +58,12 @@ def locked(db: Path) -> Iterator[Lock]:
         except OSError as error:
             if path.is_symlink() or path.is_dir():
                 raise _in_the_way(path) from None
+            if is_failure(error):
+                raise inaccessible(db, error) from None
+            if error.errno == errno.ENAMETOOLONG:
+                raise OutputError(
+                    f"study database {str(db)!r}: its name is too long for the files beside it; give a shorter one"
+                ) from None
             raise OutputError(
                 f"study database {str(db)!r}: its folder cannot be written to ({error.strerror}); "
                 "give --db FILE in a writable folder"
@@ -72,14 +86,20 @@ def locked(db: Path) -> Iterator[Lock]:
             if not all(word.isdigit() for word in words[1:]):
                 raise _in_the_way(path)
             before = int(words[1]) if len(words) > 1 else 0
-            os.ftruncate(descriptor, 0)
-            os.pwrite(descriptor, _content(before), 0)
+            try:
+                os.ftruncate(descriptor, 0)
+                os.pwrite(descriptor, _content(before), 0)
+            except OSError as error:
+                path.unlink(missing_ok=True)
+                raise inaccessible(db, error) from None
             lock = Lock(descriptor, path, before)
             try:
                 yield lock
             finally:
                 if lock.settled:
-                    path.unlink(missing_ok=True)
+                    # In a folder that may no longer be written to it stays, and is free for the next run.
+                    with suppress(OSError):
+                        path.unlink(missing_ok=True)
             return
         finally:
             os.close(descriptor)

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import StrictBool, StrictFloat, StrictInt
 
-from pareto_monoped.config import checked
+from pareto_monoped.config import checked, parsed_json
 from pareto_monoped.errors import DatabaseError
 
 Number = StrictFloat | None
@@ -69,7 +69,7 @@ def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: Path) -> StudyMeta:
         DatabaseError: a value is missing or of the wrong type.
     """
     try:
-        values = {str(key): json.loads(value) for key, value in rows}
+        values = {str(key): parsed_json(value) for key, value in rows}
         return checked(StudyMeta, values, source="monoped_meta", error=DatabaseError)
     except (TypeError, ValueError, DatabaseError) as error:
         raise DatabaseError(f"study database {str(db)!r}: is damaged ({error}); restore a copy") from None

@@ -1,6 +1,5 @@
 """Read a study database: everything that report, CAD and command line need, by plain SELECTs."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,13 +11,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.joint_maps import motor_label
+from pareto_monoped.config import parsed_json
 from pareto_monoped.design import DEFAULTS, PAPER_MOTOR, VARIABLES, Variable, in_use
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
-from pareto_monoped.study.database import reading
+from pareto_monoped.study.database import reading, undamaged
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.derived import with_agility
 from pareto_monoped.study.foreign import FOREIGN_COUNT
@@ -197,6 +197,11 @@ def read_study(db: Path) -> StudyData:
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
+    with undamaged(db):
+        return _read_study(db)
+
+
+def _read_study(db: Path) -> StudyData:
     with reading(db) as connection:
         sealed = has_seals(connection)
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
@@ -207,9 +212,9 @@ def read_study(db: Path) -> StudyData:
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     try:
         _, generation, evaluations, state = rows["checkpoint"][0]
-        checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=json.loads(state))
+        checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=parsed_json(state))
         audits = [
-            {"trial": int(trial), "well_conditioned": bool(good)} | json.loads(measures)
+            {"trial": int(trial), "well_conditioned": bool(good)} | parsed_json(measures)
             for trial, good, measures in rows["audits"]
         ]
         history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
@@ -260,6 +265,11 @@ def read_front(db: Path) -> StudyFront:
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
+    with undamaged(db):
+        return _read_front(db)
+
+
+def _read_front(db: Path) -> StudyFront:
     with reading(db) as connection:
         sealed = has_seals(connection)
         foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
@@ -269,7 +279,7 @@ def read_front(db: Path) -> StudyFront:
             findings = [line for table in rows for line in seals.row_findings(table, rows[table])]
             if findings:
                 raise damaged(db, findings)
-            numbers = json.loads(rows["front"][0][1])
+            numbers = parsed_json(rows["front"][0][1])
             columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
             trials = _frame(columns, rows_of(connection, columns, numbers), db)
             if len(trials) < len(numbers):
@@ -293,7 +303,7 @@ def read_front(db: Path) -> StudyFront:
     front = with_agility(_with_motors(trials, study, meta, db)).sort_values(
         study.objectives.names[0], kind="stable", ignore_index=True
     )
-    optional = set(json.loads(rows["front"][0][5]))
+    optional = set(parsed_json(rows["front"][0][5]))
     used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in optional)
     return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, foreign=foreign, sealed=True)
 

@@ -3,13 +3,12 @@
 The table is made when the first row is stored; most studies have none. Its rows have their place in the running hash.
 """
 
-import json
 import sqlite3
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pareto_monoped.config import checked
+from pareto_monoped.config import checked, parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.seals import damaged, has_seals, read_seals
@@ -58,8 +57,8 @@ def read_robustness(db: Path) -> dict[int, Stored]:
 
 def _stored(settings: str, result: str, db: Path) -> Stored:
     source = f"study database {str(db)!r}, its robustness"
-    known = checked(Robustness, json.loads(result), source=source, error=DatabaseError)
-    return Stored(settings=dict(json.loads(settings)), result=known)
+    known = checked(Robustness, parsed_json(result), source=source, error=DatabaseError)
+    return Stored(settings=dict(parsed_json(settings)), result=known)
 
 
 def _rows(connection: sqlite3.Connection) -> list[Row]:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.columns import COLUMNS
@@ -215,13 +216,13 @@ def read_seals(connection: sqlite3.Connection, db: Path) -> Seals:
             raise damaged(db, [f"link {links} of its running hash does not follow from those before"])
         previous, links = digest, links + 1
         if columns:
-            names = tuple(json.loads(columns))
+            names = tuple(parsed_json(columns))
         if digests and (columns or not parts or first != trials):
             parts.append((first, names, []))
         if digests:
             parts[-1][2].append(digests)
             trials = first + len(digests) // _DIGITS
-        for table, digests_of_rows in json.loads(text).items():
+        for table, digests_of_rows in parsed_json(text).items():
             written.setdefault(table, {}).update(digests_of_rows)
     if links == 0:
         raise damaged(db, ["its running hash is empty"])

@@ -1,6 +1,5 @@
 """What a study says of itself without its trials being read: settings, counts, front and hypervolume."""
 
-import json
 import sqlite3
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
@@ -84,7 +84,7 @@ def read_summary(db: Path) -> Summary:
 
 def _kept(connection: sqlite3.Connection) -> tuple[dict[str, int], list[int]]:
     row = connection.execute("SELECT trials, feasible, infeasible, failed FROM monoped_front").fetchone()
-    return dict(zip(STATES, map(int, row[1:]), strict=True)), [int(trial) for trial in json.loads(row[0])]
+    return dict(zip(STATES, map(int, row[1:]), strict=True)), [int(trial) for trial in parsed_json(row[0])]
 
 
 def _computed(connection: sqlite3.Connection, db: Path) -> tuple[dict[str, int], list[int]]:

@@ -1,6 +1,5 @@
 """Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew."""
 
-import json
 import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import MEASURE_NAMES
@@ -77,7 +77,7 @@ def _kept_front_findings(connection: sqlite3.Connection, data: StudyData) -> Ite
     if not data.sealed:
         return
     trials, *counts = connection.execute("SELECT trials, feasible, infeasible, failed FROM monoped_front").fetchone()
-    if json.loads(trials) != sorted(data.front()["trial"].tolist()):
+    if parsed_json(trials) != sorted(data.front()["trial"].tolist()):
         yield "its kept front is not the front of its trials"
     states = data.trials["state"].tolist()
     if counts != [states.count(state) for state in ("feasible", "infeasible", "failed")]:

@@ -45,7 +45,7 @@ def test_a_missing_file(tmp_path):
 
 def test_a_folder(tmp_path):
     (tmp_path / "s.db").mkdir()
-    refused(tmp_path / "s.db", ["no such file"])
+    refused(tmp_path / "s.db", ["is a folder; give the name of a file"])
 
 
 @pytest.mark.parametrize("content", [b"", b"name = 'x'\n", b"SQLite format 3", os.urandom(5000)])

@@ -10,7 +10,7 @@ import optuna
 import pytest
 
 from pareto_monoped.design import NAMES, PAPER_NAMES
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DiskError
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
@@ -154,7 +154,7 @@ def test_a_full_database_keeps_what_was_acknowledged(tmp_path):
         store.add(made_generation(study, 0, 0, many, state={}))
         pages = store._connection.execute("PRAGMA page_count").fetchone()[0]
         store._connection.execute(f"PRAGMA max_page_count = {pages + 2}")
-        with pytest.raises(DatabaseError, match="disk is full; make room and resume"):
+        with pytest.raises(DiskError, match="disk is full; make room and resume"):
             store.add(made_generation(study, 1, 40, many, state={"lost": True}))
         assert len(read_study(path).trials) == 40
         store._connection.execute("PRAGMA max_page_count = 100000")

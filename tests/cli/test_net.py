@@ -1,0 +1,82 @@
+"""Whatever a command raises ends in one line and an exit code."""
+
+import errno
+import os
+import sqlite3
+
+import click
+import pytest
+
+from pareto_monoped import cli
+from pareto_monoped.cli.net import told
+from pareto_monoped.errors import DatabaseError, DiskError
+from tests.cli.support import own_process
+
+
+def of_system(number, *files):
+    return OSError(number, os.strerror(number), *files)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (of_system(errno.ENOSPC), 1, ["output: cannot be written", "No space left", "make room"]),
+        (of_system(errno.EIO, "a.db"), 1, ["file 'a.db'", "Input/output error", "health"]),
+        (of_system(errno.EDQUOT, "a.db"), 1, ["'a.db'", "make room"]),
+        (of_system(errno.EMFILE, "a.db"), 1, ["'a.db'", "ulimit -n"]),
+        (of_system(errno.ENAMETOOLONG, "a" * 3000), 2, ["'aaaa", " ... ", "shorter name"]),
+        (of_system(errno.EACCES, "a.db"), 2, ["'a.db'", "allow access"]),
+        (of_system(errno.ENOENT, b"\xff.db"), 2, ["'\\udcff.db'", "check the path"]),
+        (MemoryError(), 1, ["memory: is used up"]),
+        (sqlite3.OperationalError("no such table:\nx"), 1, ["unexpected OperationalError", "no such table: x"]),
+        (UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid start byte"), 1, ["unexpected UnicodeDecodeError"]),
+        (KeyError("mass_kg"), 1, ["unexpected KeyError", "mass_kg", "PARETO_MONOPED_TRACEBACK=1"]),
+        (RecursionError(), 1, ["unexpected RecursionError", "without a message"]),
+        (DatabaseError("study database 's\x1b[31m.db': is damaged (a\nb)"), 2, ["'s\\u001b[31m.db'", "(a b)"]),
+        (DiskError("x"), 1, ["x"]),
+        (click.UsageError("no such option: \x1b]0;title\x07"), 2, ["\\u001b]0;title\\u0007"]),
+    ],
+)
+def test_every_error_is_one_line_with_its_code(error, code, words):
+    line, found = told(error)
+    assert found == code
+    assert line.startswith("error: ")
+    assert line.isprintable()
+    assert len(line) < 1500
+    for word in words:
+        assert word in line
+
+
+def test_a_fault_says_where_it_came_up(monkeypatch, capsys):
+    monkeypatch.setattr("pareto_monoped.study.status.status", lambda db: {})
+    assert cli._run(["status", "x.db"]) == 1
+    assert capsys.readouterr().err.startswith("error: unexpected KeyError in cli/studies.py, line ")
+    monkeypatch.setenv("PARETO_MONOPED_TRACEBACK", "1")
+    assert cli._run(["status", "x.db"]) == 1
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words", [["--help"], ["actuators", "--ratio", "6"], ["status", "{db}"], ["status", "{db}", "--json"]]
+)
+def test_a_full_disk_behind_standard_output_ends_in_one_line(tmp_path, words):
+    code, _, err = own_process(tmp_path, words, stdout="/dev/full")
+    assert code == 1
+    assert err == "error: output: cannot be written (No space left on device); make room and try again\n"
+
+
+@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+def test_closed_standard_streams_take_nothing_into_a_study(tmp_path, closed):
+    code, _, _ = own_process(tmp_path, ["status", "{db}"], closed=closed)
+    assert code == 0
+    assert own_process(tmp_path, ["status", "no.db"], closed=closed)[0] == 2
+    assert own_process(tmp_path, ["verify", "{db}"])[0] == 0
+
+
+def test_an_encoding_that_lacks_letters_gets_escapes(tmp_path):
+    code, out, err = own_process(
+        tmp_path, ["actuators", "--motor", "ζ.toml"], environment={"PYTHONIOENCODING": "iso8859-1"}
+    )
+    assert code == 2
+    assert "'\\u03b6.toml'" in err
+    assert out == ""
