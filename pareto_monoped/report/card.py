@@ -1,7 +1,7 @@
 """One study -> its part of the page: pure functions of the stored study and of what was simulated again for it."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -12,12 +12,12 @@ from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variabl
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
-from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
 from pareto_monoped.report.provenance import command, provenance
 from pareto_monoped.report.resimulation import Resimulation
+from pareto_monoped.report.robust import alternatives_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import notes, sentences
 from pareto_monoped.report.trials import (
@@ -33,6 +33,7 @@ from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.remarks import bound_lines
+from pareto_monoped.study.robust_rows import Stored
 from pareto_monoped.study.weighted_cost import weighted_cost
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
@@ -62,11 +63,12 @@ class Places:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """A stored study, what was simulated again for it, and its exported models by trial."""
+    """A stored study, what was simulated again for it, its exported models by trial, and its stored robustness."""
 
     data: StudyData
     resimulation: Resimulation
     models: Mapping[int, Model3D]
+    robustness: Mapping[int, Stored] = field(default_factory=dict)
 
 
 def study_card(
@@ -90,7 +92,8 @@ def study_card(
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
     weights = best_of_weights(data)
-    always = np.isin(data.trials["trial"], [*front["trial"], *data.ill_conditioned, *(trial for _, trial in weights)])
+    told = [*front["trial"], *data.ill_conditioned, *(trial for _, trial in weights), *source.robustness]
+    always = np.isin(data.trials["trial"], told)
     trials = thinned(data.trials, always, most_rows)
     row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
     state = data.trials["state"]
@@ -138,7 +141,7 @@ def study_card(
         ),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
-        picks=_picks(front, row_of, study.objectives),
+        picks=_picks(data, front, row_of),
         more=front_columns(_body_masses_kg(data, front)),
         audits=audit_records(data.audits),
         jumps={str(trial): jump for trial, jump in again.jumps.items()},
@@ -152,6 +155,7 @@ def study_card(
         foot_radius_m=foot_radius_m,
         provenance=provenance(data),
         reproduce=command(data),
+        robust=robust_of(data, source.robustness, row_of),
     )
 
 
@@ -195,8 +199,9 @@ def _failures(trials: pd.DataFrame) -> dict[str, int]:
     return {str(status): int(count) for status, count in counts.items()}
 
 
-def _picks(front: pd.DataFrame, row_of: Mapping[int, int], objectives: Objectives) -> list[Picked]:
+def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
     """The knee, and, if the height is an objective, the best designs at the headline heights that the front reaches."""
+    objectives = data.study.objectives
     heights = HEADLINES_M if "height_m" in objectives.names else ()
     named: list[tuple[str, Selector]] = [
         ("knee", Knee()),
@@ -209,7 +214,8 @@ def _picks(front: pd.DataFrame, row_of: Mapping[int, int], objectives: Objective
         except SelectionError:
             continue
         if row_of[picked.trial] not in [p.row for p in found]:
-            found.append(Picked(name=name, row=row_of[picked.trial], why=picked.why))
+            others = alternatives_of(data, picked.trial, row_of)
+            found.append(Picked(name=name, row=row_of[picked.trial], why=picked.why, alternatives=others))
     return found
 
 

@@ -23,6 +23,7 @@ from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.report.schema import Payload
 from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
 from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.seals import UNSEALED
 
 SCRIPTS = (
@@ -64,7 +65,7 @@ def payload_of(
         note(UNSEALED)
     models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
     sources = [
-        Source(data=data, resimulation=resimulate(data), models=found)
+        Source(data=data, resimulation=resimulate(data), models=found, robustness=read_robustness(data.db))
         for data, found in zip(studies, models, strict=True)
     ]
     return build(sources, literal_cases())

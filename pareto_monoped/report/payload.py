@@ -12,7 +12,8 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.motors import leg_table, motor_tables
-from pareto_monoped.report.quantities import QUANTITIES
+from pareto_monoped.report.quantities import quantities_of
+from pareto_monoped.report.robust import names_of
 from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard
 from pareto_monoped.report.trials import rows_per_study
 from pareto_monoped.study.choices import WORDS
@@ -83,7 +84,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
         variables=[asdict(variable) for variable in variables],
-        quantities=QUANTITIES,
+        quantities=quantities_of(names_of([source.data for source in sources], [card.robust for card in cards])),
         published=[
             {
                 "name": c.name,

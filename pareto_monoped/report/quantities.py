@@ -1,5 +1,7 @@
 """What each column is called on the page, and in which unit: variables, then all measures, then those of an audit."""
 
+from collections.abc import Sequence
+
 from pareto_monoped.measures import MEASURES, Measure, measure
 from pareto_monoped.report.schema import Quantity
 
@@ -53,6 +55,12 @@ AUDIT = (
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial as plain numbers beside the objectives; the others are packed."""
+
+
+def quantities_of(robust: Sequence[str]) -> tuple[Quantity, ...]:
+    """``QUANTITIES``, and some measures under uncertainty by name."""
+    return (*QUANTITIES, *(_of(measure(name)) for name in robust))
+
 
 QUANTITIES: tuple[Quantity, ...] = (
     *(_of(measure(name)) for name in _OBJECTIVES),

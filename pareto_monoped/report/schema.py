@@ -145,12 +145,54 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OtherDesign:
+    """A design that costs about as much as another and differs from it, such as "shank-long; 0.8 percent more energy".
+
+    Attributes:
+        row: of ``Trials``.
+        price: the greatest loss in any objective, as a share of the other design's value.
+        text: how it differs, and its price.
+        audited: whether it has an audit.
+    """
+
+    row: int
+    price: float
+    text: str
+    audited: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Robust:
+    """Designs of a study under uncertainty, those that rarely fail.
+
+    Attributes:
+        ranges: what the ranges are called.
+        samples: jumps per design.
+        fragile: how many other designs fail too often.
+        others: how many were simulated under other ranges, samples or seed, and are left out.
+        rows: of ``Trials``, in the order of their numbers.
+        front: rows of the robust front, by the first objective.
+        packed: columns such as "height_m.p05" and "failed_share" of ``rows``, as text that a browser reads
+            (``packing.packed``).
+    """
+
+    ranges: str
+    samples: int
+    fragile: int
+    others: int
+    rows: Sequence[int]
+    front: Sequence[int]
+    packed: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Picked:
-    """A design that the page points out: its name there, its row, and why it was picked."""
+    """A design that the page points out: its name there, its row, why it was picked, and alternatives to it."""
 
     name: str
     row: int
     why: str
+    alternatives: Sequence[OtherDesign] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,6 +247,7 @@ class StudyCard:
         audits: trial number -> measures of its audit.
         jumps, models: by trial number.
         case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
+        robust: designs under uncertainty; None where none is stored.
         weighted: results of a weighted search: weight of the first objective, and row.
         floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
         notes: what readers have to know before they trust the page.
@@ -253,6 +296,7 @@ class StudyCard:
     foot_radius_m: float
     provenance: Sequence[Sequence[str]]
     reproduce: str
+    robust: Robust | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

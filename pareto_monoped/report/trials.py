@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.design import Variable
-from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.measures import GOAL_NAMES
 from pareto_monoped.report.packing import packed
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL
 from pareto_monoped.report.rounding import column
@@ -55,9 +55,9 @@ def trial_columns(
         goals: measures that are objectives of a study on the page.
     """
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
-    columns: dict[str, Column] = {name: column(trials[name]) for name in names}
+    columns: dict[str, Column] = {name: column(values_of(trials, name)) for name in names}
     columns |= numbers
-    others = [name for name in MEASURE_NAMES if name in trials.columns and name not in names]
+    others = [name for name in GOAL_NAMES if name in trials.columns and name not in names]
     return Trials(
         trial=trials["trial"].tolist(),
         state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),
@@ -65,6 +65,11 @@ def trial_columns(
         packed={name: packed(trials[name]) for name in others if trials[name].notna().any()},
         total=total,
     )
+
+
+def values_of(trials: pd.DataFrame, name: str) -> NDArray[np.float64]:
+    """A column of the trials, shape (n,); NaN for an objective that only another study on the page has."""
+    return trials[name].to_numpy(dtype=np.float64) if name in trials else np.full(len(trials), np.nan)
 
 
 def front_columns(bodies_kg: NDArray[np.float64]) -> dict[str, Column]:

@@ -4,9 +4,12 @@
 function valueAt(study, name, row) {
   const { columns, packed } = page.studies[study].trials;
   if (columns[name]) return columns[name][row] ?? null;
-  const text = packed?.[name];
-  if (text === undefined) return null;
-  const bytes = atob(text.slice(4 * row, 4 * row + 4));
+  let [text, at] = [packed?.[name], row];
+  // What is under uncertainty is there of some trials only.
+  const robust = page.studies[study].robust;
+  if (robust?.packed[name] !== undefined) [text, at] = [robust.packed[name], robust.rows.indexOf(row)];
+  if (text === undefined || at < 0) return null;
+  const bytes = atob(text.slice(4 * at, 4 * at + 4));
   return finite(floatOf(bytes.charCodeAt(0) | (bytes.charCodeAt(1) << 8) | (bytes.charCodeAt(2) << 16)));
 }
 
@@ -27,8 +30,17 @@ function columnOf(study, name) {
   const { columns, packed, trial } = page.studies[study].trials;
   if (columns[name]) return columns[name];
   const key = `${study} ${name}`;
-  if (!unpacked.has(key)) unpacked.set(key, packed?.[name] === undefined ? new Float32Array(trial.length).fill(NaN) : unpack(packed[name]));
+  if (!unpacked.has(key)) unpacked.set(key, robustColumn(study, name) ?? (packed?.[name] === undefined ? new Float32Array(trial.length).fill(NaN) : unpack(packed[name])));
   return unpacked.get(key);
+}
+
+// The same of a measure under uncertainty, NaN for the trials without it; undefined where the study has none.
+function robustColumn(study, name) {
+  const { robust, trials } = page.studies[study];
+  if (robust?.packed[name] === undefined) return undefined;
+  const values = new Float32Array(trials.trial.length).fill(NaN);
+  unpack(robust.packed[name]).forEach((value, k) => { values[robust.rows[k]] = value; });
+  return values;
 }
 
 function unpack(text) {
@@ -40,7 +52,7 @@ function unpack(text) {
 
 // The measures and variables that some study has of every trial, in the order of the page's quantities.
 const KNOWN = (() => {
-  const there = new Set(page.studies.flatMap(({ trials }) => [...Object.keys(trials.columns), ...Object.keys(trials.packed ?? {})]));
+  const there = new Set(page.studies.flatMap(({ trials, robust }) => [...Object.keys(trials.columns), ...Object.keys(trials.packed ?? {}), ...Object.keys(robust?.packed ?? {})]));
   return page.quantities.map((q) => q.name).filter((name) => there.has(name));
 })();
 

@@ -1,0 +1,131 @@
+"""Designs under uncertainty and alternatives on the page: as stored, and as the page's scripts read them."""
+
+from dataclasses import replace
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from pareto_monoped.measures import ROBUST_NAMES
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.page import embedded, page
+from pareto_monoped.report.payload import build
+from pareto_monoped.study.alternatives import alternatives
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.robust_front import robust_front, robust_trials
+from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.study.robustness import robust
+from pareto_monoped.uncertainty.ranges import load_uncertainty
+from tests.report.conftest import Tab, grown, made, unpacked
+
+ASSETS = resources.files("pareto_monoped") / "report" / "assets"
+
+
+@pytest.fixture(scope="module")
+def stored(folder):
+    """A study of its own: the database of the others stays as it is."""
+    db = made(folder, seed=11, evaluations=60)
+    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], workers=2)
+    return read_robustness(db)
+
+
+@pytest.fixture(scope="module")
+def uncertain(folder, stored, resimulation):
+    data = read_study(folder / "surrogate_11_60.db")
+    return Source(data=data, resimulation=resimulation, models={}, robustness=stored)
+
+
+@pytest.fixture(scope="module")
+def shown(uncertain):
+    return build([uncertain])
+
+
+def test_the_page_has_what_is_stored(shown, uncertain, stored):
+    card = shown.studies[0]
+    assert [card.trials.trial[row] for row in card.robust.rows] == sorted(stored)
+    assert (card.robust.ranges, card.robust.samples, card.robust.others) == ("default", 256, 0)
+    known = [stored[trial].result for trial in sorted(stored)]
+    for name in ("height_m.p05", "energy_j.p95", "mass_kg.mean"):
+        base, _, statistic = name.partition(".")
+        expected = [getattr(result.measures[base], statistic) for result in known]
+        assert unpacked(card.robust.packed[name]) == pytest.approx(expected, rel=2e-5)
+    assert unpacked(card.robust.packed["failed_share"]) == pytest.approx([result.failed for result in known])
+    front = robust_front(uncertain.data, robust_trials(uncertain.data, stored))["trial"].tolist()
+    assert [card.trials.trial[row] for row in card.robust.front] == front
+    assert {q.name for q in shown.quantities} >= set(card.robust.packed)
+
+
+def test_a_study_without_robustness_has_none(payload):
+    assert payload.studies[0].robust is None
+    assert not {q.name for q in payload.quantities} & set(ROBUST_NAMES)
+
+
+def test_designs_that_the_page_has_not_are_left_out(uncertain, stored):
+    some = replace(uncertain, data=replace(uncertain.data, trials=uncertain.data.trials.iloc[:5]))
+    card = build([some]).studies[0]
+    there = [trial for trial in sorted(stored) if trial < 5]
+    assert [card.trials.trial[row] for row in card.robust.rows] == there
+
+
+def test_each_pick_has_its_alternatives(data, resimulation):
+    many = grown(data, 2000)
+    card, found = build([Source(data=many, resimulation=resimulation, models={})]).studies[0], 0
+    for picked in card.picks:
+        expected = alternatives(many, card.trials.trial[picked.row])
+        assert [card.trials.trial[one.row] for one in picked.alternatives] == [one.trial for one in expected]
+        assert [one.text for one in picked.alternatives] == [one.text() for one in expected]
+        assert [one.price for one in picked.alternatives] == pytest.approx([one.price for one in expected], abs=1e-5)
+        found += len(expected)
+    assert found > 0
+
+
+def test_studies_with_other_objectives_share_a_page(uncertain, source):
+    """An objective under uncertainty is of one study only; the other one's trials have no value of it."""
+    study = replace(uncertain.data.study, name="other")
+    data = replace(
+        uncertain.data,
+        study=replace(study, objectives=replace(study.objectives, names=("height_m.p05", "energy_j"))),
+        trials=uncertain.data.trials.assign(**{"height_m.p05": 0.98 * uncertain.data.trials["height_m"]}),
+    )
+    first, second = build([source, replace(uncertain, data=data)]).studies
+    assert all(value is None for value in first.trials.columns["height_m.p05"])
+    jumped = data.trials["height_m"].notna().to_numpy()
+    values = np.array(second.trials.columns["height_m.p05"], dtype=float)
+    assert values[jumped] == pytest.approx(data.trials["height_m.p05"][jumped], rel=1e-4)
+
+
+@pytest.mark.browser
+def test_the_scripts_read_the_same_numbers(shown, stored, browser):
+    tab = browser.new_page()
+    try:
+        column, single, names = tab.evaluate(
+            """([script, text]) => {
+                const page = JSON.parse(text);
+                const found = new Function("page", `${script}; return { columnOf, valueAt, knownNames };`)(page);
+                const single = page.studies[0].trials.trial.map((_, row) => found.valueAt(0, "height_m.p05", row));
+                return [[...found.columnOf(0, "height_m.p05")], single, found.knownNames()];
+            }""",
+            [(ASSETS / "data.js").read_text(encoding="utf-8"), embedded(shown)],
+        )
+    finally:
+        tab.close()
+    for row, trial in enumerate(shown.studies[0].trials.trial):
+        if trial in stored:
+            expected = stored[trial].result.measures["height_m"].p05
+            assert (column[row], single[row]) == pytest.approx((expected, expected), rel=2e-5)
+        else:
+            assert np.isnan(column[row])
+            assert single[row] is None
+    assert "electrical_energy_j.p95" in names
+
+
+@pytest.mark.browser
+def test_a_page_with_robustness_opens(shown, folder, browser):
+    file = folder / "robust.html"
+    file.write_text(page(shown), encoding="utf-8")
+    tab = Tab(browser, file)
+    try:
+        tab.scroll_through()
+        tab.quiet(file)
+    finally:
+        tab.context.close()
