@@ -6,10 +6,14 @@ from functools import lru_cache
 from math import log10
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import BASE_START_HEIGHT_M
+from pareto_monoped.report.front_figure import values
+from pareto_monoped.report.packing import unpacked
 from pareto_monoped.report.schema import Payload, StudyCard
 from pareto_monoped.report.tables import safe
 
@@ -87,11 +91,19 @@ def _places(card: StudyCard) -> dict[str, int]:
     rows = list(card.front)
     if not rows:
         return {}
-    agility = [value or 0.0 for value in card.more.get("agility_m_per_s", [])]
+    agility = np.nan_to_num(_agilities_m_per_s(card)).tolist()
     heights = [card.trials.columns["height_m"][row] or 0.0 for row in rows]
-    places = {"most agile": agility.index(max(agility))} if agility and max(agility) > 0.0 else {}
+    places = {"most agile": agility.index(max(agility))} if max(agility) > 0.0 else {}
     places |= {picked.name: rows.index(picked.row) for picked in card.picks if picked.name == "knee"}
     return places | {"highest jump": heights.index(max(heights))}
+
+
+def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
+    """Of the designs on the front, in its order; NaN where it is not known."""
+    name, rows = "agility_m_per_s", list(card.front)
+    if name in card.trials.packed:
+        return unpacked(card.trials.packed[name])[rows]
+    return values(card.trials.columns.get(name, [None] * len(card.trials.trial)), rows)
 
 
 def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
@@ -101,6 +113,7 @@ def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
     start = (starts[row] if starts is not None else None) or BASE_START_HEIGHT_M
     numbers = columns.get("motor")
     kit = payload.kits[card.kit if numbers is None else int(numbers[row] or 0)]
+    agility = _agilities_m_per_s(card)[place]
     hip, knee = columns["hip_ratio"][row], columns["knee_ratio"][row]
     return Jumper(
         name=f"{what}, trial {card.trials.trial[row]}",
@@ -108,7 +121,7 @@ def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
         source="this report",
         mass_kg=None if mass is None else float(mass),
         height_m=None if height is None or height <= start else float(height) - float(start),
-        agility_m_per_s=card.more.get("agility_m_per_s", {place: None})[place],
+        agility_m_per_s=float(agility) if agility > 0.0 else None,
     )
 
 

@@ -4,6 +4,7 @@ import base64
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 def packed(values: Any) -> str:
@@ -20,3 +21,11 @@ def packed(values: Any) -> str:
     # Half of the last bit that is kept, so that the cut rounds; what is not a number stays as it is.
     words = np.where(np.isnan(single), words, words + 0x80).astype("<u4")
     return base64.b64encode(words.view(np.uint8).reshape(-1, 4)[:, 1:].tobytes()).decode("ascii")
+
+
+def unpacked(text: str) -> NDArray[np.float64]:
+    """The numbers of ``packed``, shape (n,); NaN where there is none."""
+    upper = np.frombuffer(base64.b64decode(text), dtype=np.uint8).reshape(-1, 3)
+    words = np.zeros((len(upper), 4), dtype=np.uint8)
+    words[:, 1:] = upper
+    return words.view("<f4")[:, 0].astype(np.float64)

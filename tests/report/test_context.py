@@ -46,8 +46,8 @@ def test_agility_and_height_are_those_of_the_front(payload, data):
 
 def test_a_study_without_agilities_says_so_by_empty_cells(payload):
     (card,) = payload.studies
-    without = {name: column for name, column in card.more.items() if name != "agility_m_per_s"}
-    bare = replace(payload, studies=[replace(card, more=without)])
+    without = {name: text for name, text in card.trials.packed.items() if name != "agility_m_per_s"}
+    bare = replace(payload, studies=[replace(card, trials=replace(card.trials, packed=without))])
     names = [jumper.name for jumper in own_jumpers(bare)]
     assert not any("agile" in name for name in names)
     assert "<tr" in context_section(bare)
