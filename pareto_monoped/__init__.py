@@ -1,3 +1,96 @@
-"""Co-design of a jumping one-legged robot: actuators, links and controller on one Pareto front."""
+"""Co-design of a jumping one-legged robot: actuators, links and controller on one Pareto front.
+
+Everything in ``__all__`` is for scripts and notebooks and stays as it is within a major version; the rest of the
+package may change. Names are imported when they are first used, so that importing the package costs nothing.
+
+Example:
+    >>> import pareto_monoped as pm
+    >>> jump = pm.simulate(pm.PAPER_CASES["C"].design)
+    >>> print(f"{jump.height_m[0]:.2f} m")
+    1.05 m
+"""
+
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.3.0"
+
+if TYPE_CHECKING:
+    from pareto_monoped.api.jumps import (
+        actuator_map,
+        build_robot,
+        load_calibration,
+        load_motor,
+        simulate,
+        trace,
+    )
+    from pareto_monoped.api.outputs import export, export_trial, write_report
+    from pareto_monoped.api.plots import plot_actuators, plot_front, plot_jump
+    from pareto_monoped.api.running import resume, run
+    from pareto_monoped.api.studies import Picked, StoredStudy, load_study
+    from pareto_monoped.design import PAPER_CASES, VARIABLES, Design
+    from pareto_monoped.errors import ParetoMonopedError
+    from pareto_monoped.measures import MEASURES
+    from pareto_monoped.study.definition import Study
+    from pareto_monoped.study.optuna_objective import OptunaObjective
+    from pareto_monoped.study.pymoo_problem import MonopedProblem
+
+__all__ = [
+    "MEASURES",
+    "PAPER_CASES",
+    "VARIABLES",
+    "Design",
+    "MonopedProblem",
+    "OptunaObjective",
+    "ParetoMonopedError",
+    "Picked",
+    "StoredStudy",
+    "Study",
+    "__version__",
+    "actuator_map",
+    "build_robot",
+    "export",
+    "export_trial",
+    "load_calibration",
+    "load_motor",
+    "load_study",
+    "plot_actuators",
+    "plot_front",
+    "plot_jump",
+    "resume",
+    "run",
+    "simulate",
+    "trace",
+    "write_report",
+]
+
+_HOMES = {
+    "api.jumps": ("actuator_map", "build_robot", "load_calibration", "load_motor", "simulate", "trace"),
+    "api.outputs": ("export", "export_trial", "write_report"),
+    "api.plots": ("plot_actuators", "plot_front", "plot_jump"),
+    "api.running": ("resume", "run"),
+    "api.studies": ("Picked", "StoredStudy", "load_study"),
+    "design": ("PAPER_CASES", "VARIABLES", "Design"),
+    "errors": ("ParetoMonopedError",),
+    "measures": ("MEASURES",),
+    "study.definition": ("Study",),
+    "study.optuna_objective": ("OptunaObjective",),
+    "study.pymoo_problem": ("MonopedProblem",),
+}
+"""Module -> the public names that it defines."""
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported now that it is used (PEP 562)."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'pareto_monoped' has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(f"pareto_monoped.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names."""
+    return sorted(__all__)

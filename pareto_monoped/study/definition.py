@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -129,6 +130,43 @@ class Study:
     uncertainty: Sampling | None = None
     algorithm: AlgorithmSettings
 
+    @classmethod
+    def from_toml(cls, path: str | PathLike[str], **changes: Any) -> "Study":
+        """The study in a TOML file, with other values for some of its keys.
+
+        Args:
+            path: the file.
+            changes: as for ``define``.
+
+        Raises:
+            StudyError: no readable TOML, an unknown key, a wrong type, or impossible bounds.
+
+        Example:
+            >>> from pareto_monoped import Study
+            >>> Study.from_toml("studies/case_c.toml", evaluations=400).name
+            'case_c'
+        """
+        return _filled(_file_values(Path(path)) | changes, source=f"study file {str(path)!r}")
+
+    @classmethod
+    def define(cls, **values: Any) -> "Study":
+        """A study from the keys of a study file, such as ``motor="U8"`` or ``constraints={"mass_kg": {"max": 4.0}}``.
+
+        Args:
+            values: the keys. ``name`` and ``evaluations`` are required; the others have the defaults of a study file.
+                Tables are mappings, and an algorithm may be a name.
+
+        Raises:
+            StudyError: an unknown key, a wrong type, or impossible bounds.
+
+        Example:
+            >>> from pareto_monoped import Study
+            >>> study = Study.define(name="mine", evaluations=200, objectives=["height_m", "electrical_energy_j"])
+            >>> study.free[0]
+            'thigh_length_m'
+        """
+        return _filled(dict(values), source="study")
+
     @property
     def motors(self) -> tuple[str, ...]:
         """Names or files of all motors, those of the hip first."""
@@ -233,9 +271,24 @@ def load_study(
         StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
             weighted search, or no readable TOML.
     """
+    values = _file_values(path)
+    if evaluations is not None:
+        values["evaluations"] = evaluations
+    if seed is not None:
+        values["seed"] = seed
+    if strength is not None:
+        values["strength"] = strength
+    if objectives is not None:
+        values["objectives"] = list(objectives)
+        if isinstance(corner := values.get("reference_point"), dict):
+            values["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
+    return _filled(values, source=f"study file {str(path)!r}")
+
+
+def _file_values(path: Path) -> dict[str, Any]:
+    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved."""
     values = read_toml(path, what="study file", error=StudyError)
 
-    # Paths in a study file are relative to that file, so that a folder with both can be moved.
     def resolved(name: Any) -> Any:
         file = isinstance(name, str) and name.endswith(".toml")
         return str((path.parent / name).resolve()) if file else name
@@ -244,20 +297,16 @@ def load_study(
         if key in values:
             given = values[key]
             values[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
-    if evaluations is not None:
-        values["evaluations"] = evaluations
-    if seed is not None:
-        values["seed"] = seed
-    values.setdefault("rules", rules_for(str(values.get("calibration"))))
-    if strength is not None:
-        values["strength"] = strength
-    values.setdefault("strength", strength_for(str(values.get("calibration"))))
-    values.setdefault("gear_list", True)
-    if objectives is not None:
-        values["objectives"] = list(objectives)
-        if isinstance(corner := values.get("reference_point"), dict):
-            values["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
-    source = f"study file {str(path)!r}"
+    return values
+
+
+def _filled(values: dict[str, Any], *, source: str) -> Study:
+    """The study of a file's keys, with the defaults of a file where they say nothing."""
+    calibration = str(values.get("calibration"))
+    defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
+    values = defaults | values
+    if isinstance(name := values.get("algorithm"), str):
+        values["algorithm"] = {"name": name}
     study = study_from_dict(values, source=source)
     given = "iterations" in values.get("algorithm", {})
     return replace(study, algorithm=within_budget(study.algorithm, study.evaluations, given=given, source=source))

@@ -77,7 +77,7 @@ def run(
     evaluations: int | None = None,
     seed: int | None = None,
     workers: int | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[Progress], object] | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> RunSummary:
     """Run a study into a database, or continue it where it stopped.
@@ -88,7 +88,7 @@ def run(
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
         workers: number of threads that simulate, all cores if None. It does not change the trials.
-        progress: called after each stored generation.
+        progress: called after each stored generation; the run stops there if it returns True.
         notify: called with a line for the user, for example on Ctrl-C.
 
     Raises:
@@ -118,7 +118,7 @@ def resume(
     *,
     evaluations: int | None = None,
     workers: int | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[Progress], object] | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> RunSummary:
     """Continue a study from its database alone.
@@ -127,7 +127,7 @@ def resume(
         db: the database.
         evaluations: the new total; by default the total of the last run.
         workers: number of threads that simulate, all cores if None.
-        progress: called after each stored generation.
+        progress: called after each stored generation; the run stops there if it returns True.
         notify: called with a line for the user.
 
     Raises:
@@ -221,7 +221,7 @@ def _go_on(
     study: Study,
     simulator: Simulator,
     budget: int,
-    progress: Callable[[Progress], None],
+    progress: Callable[[Progress], object],
     notify: Callable[[str], None],
     lock: Lock,
 ) -> RunSummary:

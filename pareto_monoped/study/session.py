@@ -62,7 +62,7 @@ class Session:
         evaluate: Evaluate,
         store: Store,
         budget: int,
-        progress: Callable[[Progress], None],
+        progress: Callable[[Progress], object],
         coordinates: AnyCoordinates | None = None,
     ) -> None:
         self._study = study
@@ -70,6 +70,7 @@ class Session:
         self._store = store
         self._budget = budget
         self._progress = progress
+        self._halted = False
         self._coordinates = coordinates or plain_coordinates(study)
         self._generation = data.checkpoint.generation
         self.total = self._before = len(data.trials)
@@ -114,7 +115,7 @@ class Session:
 
     def _stop_reason(self, interrupt: Interrupt) -> str | None:
         stop = self._study.stop
-        if interrupt.asked:
+        if interrupt.asked or self._halted:
             return "interrupted"
         if self.total >= self._budget:
             return "budget"
@@ -213,8 +214,8 @@ class Session:
         return present
 
     def _report(self, writing: "Future[Progress] | None") -> None:
-        if writing is not None:
-            self._progress(writing.result())
+        if writing is not None and self._progress(writing.result()) is True:
+            self._halted = True
 
 
 def _first(motors: Motors, count: int) -> Motors:

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 
+import pareto_monoped as pm
 from pareto_monoped.actuator.search import map_for
 
 ROOT = Path(__file__).parents[2]
@@ -101,3 +102,27 @@ def test_the_motor_shown_for_copying_has_a_map(tmp_path):
     path.write_text(text, encoding="utf-8")
     entries = map_for(str(path)).entries
     assert {entry.actuator.family for entry in entries if entry.actuator} == {"ESSPG"}
+
+
+def blocks(language: str) -> str:
+    """The one block of a language in the README."""
+    (text,) = re.findall(rf"^```{language}\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.S | re.M)
+    return text
+
+
+def test_the_study_of_the_readme_finds_designs_within_its_limits(tmp_path):
+    """Its limit of mass could not be met with the motor that it named."""
+    (tmp_path / "my_leg.toml").write_text(blocks("toml"), encoding="utf-8")
+    stored = pm.run(tmp_path / "my_leg.toml", evaluations=80)
+    assert len(stored.front()) > 5
+
+
+def test_the_program_of_the_readme_runs(tmp_path):
+    shown = blocks("python").replace(".show()", ".to_json()")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", shown], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines()[0].split() == ["height_m", "electrical_energy_j"]
+    assert len(run.stdout.splitlines()) == 3

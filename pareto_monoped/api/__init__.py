@@ -1,0 +1,1 @@
+"""What ``import pareto_monoped`` offers to scripts and notebooks: thin functions over the rooms that do the work."""

@@ -1,0 +1,226 @@
+"""Figures for notebooks, by plotly or matplotlib: the front, the gearboxes of a motor, one jump."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.api.studies import StoredStudy
+from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.measures import MEASURE_NAMES, measure
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+Backend = Literal["plotly", "matplotlib"]
+Floats = NDArray[np.float64]
+# Okabe and Ito's colours, which the report also uses.
+_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0548a", "#b87d00", "#2f9bd8")
+_PALE = 0.25
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Series:
+    """Points with or without a line."""
+
+    name: str
+    x: Floats
+    y: Floats
+    colour: str
+    line: bool = True
+    points: bool = False
+    pale: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Panel:
+    """One pair of axes."""
+
+    x: str
+    y: str
+    series: tuple[_Series, ...]
+
+
+def plot_front(
+    studies: StoredStudy | Sequence[StoredStudy],
+    *,
+    x: str | None = None,
+    y: str | None = None,
+    trials: bool = True,
+    backend: Backend = "plotly",
+) -> Any:
+    """The fronts of one study or several, with all feasible trials behind them.
+
+    Args:
+        studies: one or several, drawn over each other.
+        x: stored measure to the right; by default the second objective of the first study.
+        y: stored measure upward; by default its first objective. The front is that of each study's own objectives.
+        trials: whether to draw feasible trials behind the front.
+        backend: ``plotly`` or ``matplotlib``.
+
+    Returns:
+        A ``plotly.graph_objects.Figure`` or a ``matplotlib.figure.Figure``.
+
+    Raises:
+        InputError: no study, an unknown measure, or an unknown backend.
+    """
+    several = [studies] if isinstance(studies, StoredStudy) else list(studies)
+    if not several:
+        raise InputError(complaint("number of studies", 0, "at least 1", "give one"))
+    names = several[0].study.objectives.names
+    across, up = x or names[1], y or names[0]
+    for name in (across, up):
+        if name not in MEASURE_NAMES:
+            raise InputError(complaint("axis", name, f"one of {', '.join(MEASURE_NAMES)}", "correct the name"))
+    series: list[_Series] = []
+    for k, one in enumerate(several):
+        colour = _COLOURS[k % len(_COLOURS)]
+        if trials:
+            feasible = one.trials[one.trials["state"] == "feasible"]
+            series.append(_points(f"{one.study.name}, trials", feasible, across, up, colour, pale=True))
+        series.append(_points(f"{one.study.name}, front", one.front(), across, up, colour, pale=False))
+    return _drawn([_Panel(x=_title(across), y=_title(up), series=tuple(series))], backend)
+
+
+def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
+    """Mass of the lightest actuator over the gear ratio, for one motor or several.
+
+    Args:
+        maps: see ``actuator_map``.
+        backend: ``plotly`` or ``matplotlib``.
+
+    Returns:
+        A figure, see ``plot_front``.
+
+    Raises:
+        InputError: no map, or an unknown backend.
+
+    Example:
+        >>> from pareto_monoped import actuator_map, plot_actuators
+        >>> figure = plot_actuators(actuator_map("VT8020"), actuator_map("U8"))
+        >>> len(figure.data)
+        2
+    """
+    if not maps:
+        raise InputError(complaint("number of maps", 0, "at least 1", "give one"))
+    series = []
+    for k, one in enumerate(maps):
+        built = [entry.actuator for entry in one.entries if entry.actuator is not None]
+        places = np.array([(actuator.ratio, actuator.mass_kg) for actuator in built])
+        places = places[np.argsort(places[:, 0], kind="stable")]
+        series.append(
+            _Series(
+                name=one.motor.name, x=places[:, 0], y=places[:, 1], colour=_COLOURS[k % len(_COLOURS)], points=True
+            )
+        )
+    return _drawn([_Panel(x="gear ratio", y="actuator mass (kg)", series=tuple(series))], backend)
+
+
+def plot_jump(trace: "DataFrame", *, backend: Backend = "plotly") -> Any:
+    """Heights, joint angles and motor torques of one jump over time.
+
+    Args:
+        trace: see ``trace``.
+        backend: ``plotly`` or ``matplotlib``.
+
+    Returns:
+        A figure, see ``plot_front``.
+
+    Raises:
+        InputError: a column is missing, or an unknown backend.
+
+    Example:
+        >>> from pareto_monoped import PAPER_CASES, plot_jump, trace
+        >>> figure = plot_jump(trace(PAPER_CASES["C"].design), backend="matplotlib")
+        >>> len(figure.axes)
+        3
+    """
+    rows = {
+        "height (m)": (("base", "base_z_m"), ("foot", "foot_z_m")),
+        "angle (rad)": (("hip", "hip_rad"), ("knee", "knee_rad")),
+        "motor torque (N m)": (("hip", "hip_motor_torque_n_m"), ("knee", "knee_motor_torque_n_m")),
+    }
+    needed = ["time_s", *(column for pair in rows.values() for _, column in pair)]
+    if missing := [column for column in needed if column not in trace]:
+        raise InputError(f"trace: lacks {', '.join(missing)}; give what pareto_monoped.trace returns")
+    time = trace["time_s"].to_numpy(dtype=np.float64)
+    panels = []
+    for title, pair in rows.items():
+        series = tuple(
+            _Series(name=name, x=time, y=trace[column].to_numpy(dtype=np.float64), colour=colour)
+            for (name, column), colour in zip(pair, _COLOURS, strict=False)
+        )
+        panels.append(_Panel(x="time (s)", y=title, series=series))
+    return _drawn(panels, backend)
+
+
+def _points(name: str, rows: "DataFrame", x: str, y: str, colour: str, *, pale: bool) -> _Series:
+    across, up = (rows[one].to_numpy(dtype=np.float64) * measure(one).scale for one in (x, y))
+    return _Series(name=name, x=across, y=up, colour=colour, line=False, points=True, pale=pale)
+
+
+def _title(name: str) -> str:
+    entry = measure(name)
+    return entry.words if entry.shown_unit == "1" else f"{entry.words} ({entry.shown_unit})"
+
+
+def _drawn(panels: Sequence[_Panel], backend: Backend) -> Any:
+    if backend == "plotly":
+        return _by_plotly(panels)
+    if backend == "matplotlib":
+        return _by_matplotlib(panels)
+    raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
+
+
+def _by_plotly(panels: Sequence[_Panel]) -> Any:
+    from plotly.graph_objects import Scatter
+    from plotly.subplots import make_subplots
+
+    figure = make_subplots(rows=len(panels), cols=1, shared_xaxes=True, vertical_spacing=0.06)
+    for row, panel in enumerate(panels, 1):
+        for one in panel.series:
+            figure.add_trace(
+                Scatter(
+                    x=one.x,
+                    y=one.y,
+                    name=one.name,
+                    mode="+".join(["lines"] * one.line + ["markers"] * one.points),
+                    line={"color": one.colour},
+                    marker={"color": one.colour, "size": 4 if one.pale else 6},
+                    opacity=_PALE if one.pale else 1.0,
+                    legendgroup=one.name,
+                    showlegend=row == 1,
+                ),
+                row=row,
+                col=1,
+            )
+        figure.update_yaxes(title=panel.y, row=row, col=1)
+    figure.update_xaxes(title=panels[-1].x, row=len(panels), col=1)
+    figure.update_layout(template="plotly_white", height=420 if len(panels) == 1 else 220 * len(panels))
+    return figure
+
+
+def _by_matplotlib(panels: Sequence[_Panel]) -> Any:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 4.4 if len(panels) == 1 else 2.2 * len(panels)), layout="constrained")
+    for axes, panel in zip(figure.subplots(len(panels), squeeze=False, sharex=True)[:, 0], panels, strict=True):
+        for one in panel.series:
+            axes.plot(
+                one.x,
+                one.y,
+                ls="-" if one.line else "",
+                marker="o" if one.points else "",
+                ms=2 if one.pale else 3.5,
+                alpha=_PALE if one.pale else 1.0,
+                color=one.colour,
+                label=one.name,
+            )
+        axes.set(ylabel=panel.y)
+        axes.grid(color="#dddddd", lw=0.4)
+        axes.legend(frameon=False)
+    axes.set(xlabel=panels[-1].x)
+    return figure

@@ -1,0 +1,55 @@
+"""Exports and reports from scripts are those of the command line."""
+
+import json
+
+import pytest
+
+import pareto_monoped as pm
+from pareto_monoped.cli import _run as cli
+from pareto_monoped.errors import CheckError, OutputError, SelectionError
+
+C = pm.PAPER_CASES["C"].design
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    return pm.run(pm.Study.define(name="s", evaluations=240, seed=3), tmp_path_factory.mktemp("o") / "s.db")
+
+
+def test_a_design_is_exported_as_by_the_command_line(tmp_path):
+    record = pm.export(C, tmp_path / "api", formats=["mjcf", "urdf"])
+    assert json.loads((tmp_path / "api" / "design.json").read_text()) == json.loads(json.dumps(record))
+    assert cli(["export", "--case", "C", "--formats", "mjcf,urdf", "-o", str(tmp_path / "cli")]) == 0
+    said = json.loads((tmp_path / "cli" / "design.json").read_text())
+    assert {**said, "source": None} == {**json.loads(json.dumps(record)), "source": None}
+    with pytest.raises(OutputError):
+        pm.export(C.replace({"stiffness_n_per_m": 9.0}), tmp_path / "api", formats=["mjcf"])
+
+
+def test_a_trial_is_exported_with_what_its_study_stores(stored, tmp_path):
+    picked = stored.pick("knee")
+    record = pm.export_trial(stored, picked, tmp_path / "knee", formats=["mjcf"])
+    assert record["jumps"]["searched"]["height_m"] == picked.row["height_m"]
+    again = pm.export_trial(stored.path, picked.trial, tmp_path / "again", formats=["mjcf"])
+    assert again["searched"] == record["searched"]
+    with pytest.raises(SelectionError, match="trial = 9999"):
+        pm.export_trial(stored, 9999, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_design_that_does_not_hold_is_refused_unless_asked(tmp_path):
+    weak = C.replace({"hip_ratio": 8.7, "knee_ratio": 8.7, "stiffness_n_per_m": 20.0})
+    with pytest.raises(CheckError):
+        pm.export(weak, tmp_path / "weak", formats=["mjcf"])
+    assert not (tmp_path / "weak").exists()
+    pm.export(weak, tmp_path / "weak", formats=["mjcf"], strength=False)
+
+
+def test_a_report_is_written_and_not_over_something_else(stored, tmp_path):
+    pm.write_report(stored.path, tmp_path / "r.html")
+    assert "</html>" in (tmp_path / "r.html").read_text(encoding="utf-8")
+    pm.write_report([stored.path], str(tmp_path / "r.html"))
+    (tmp_path / "notes.html").write_text("mine")
+    with pytest.raises(OutputError):
+        pm.write_report(stored.path, tmp_path / "notes.html")
+    assert (tmp_path / "notes.html").read_text() == "mine"

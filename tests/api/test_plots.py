@@ -1,0 +1,49 @@
+"""Figures show the numbers they are made from, by either library."""
+
+import numpy as np
+import pytest
+
+import pareto_monoped as pm
+from pareto_monoped.errors import InputError
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    return pm.run(pm.Study.define(name="s", evaluations=120, algorithm="random"), tmp_path_factory.mktemp("p") / "s.db")
+
+
+def test_the_front_stands_at_its_objectives(stored):
+    front = stored.front()
+    by_plotly = pm.plot_front(stored)
+    np.testing.assert_array_equal(by_plotly.data[-1].x, front["energy_j"])
+    np.testing.assert_array_equal(by_plotly.data[-1].y, front["height_m"])
+    assert by_plotly.layout.xaxis.title.text.endswith("(J)")
+    (axes,) = pm.plot_front(stored, backend="matplotlib").axes
+    np.testing.assert_array_equal(axes.lines[-1].get_xdata(), front["energy_j"])
+
+
+def test_other_axes_and_several_studies(stored):
+    figure = pm.plot_front([stored, stored], x="mass_kg", y="lift_off_s", trials=False)
+    assert len(figure.data) == 2
+    np.testing.assert_array_equal(figure.data[0].x, stored.front()["mass_kg"])
+    with pytest.raises(InputError, match="axis = 'mass'"):
+        pm.plot_front(stored, x="mass")
+
+
+def test_gearboxes_stand_in_the_order_of_their_ratios():
+    actuators = pm.actuator_map("U8")
+    (trace,) = pm.plot_actuators(actuators).data
+    assert (np.diff(trace.x) >= 0.0).all()
+    lightest = min(entry.actuator.mass_kg for entry in actuators.entries if entry.actuator is not None)
+    assert trace.y.min() == lightest
+
+
+def test_a_jump_has_a_panel_for_heights_angles_and_torques():
+    steps = pm.trace(pm.PAPER_CASES["C"].design)
+    figure = pm.plot_jump(steps)
+    np.testing.assert_array_equal(figure.data[0].y, steps["base_z_m"])
+    np.testing.assert_array_equal(figure.data[5].y, steps["knee_motor_torque_n_m"])
+    axes = pm.plot_jump(steps, backend="matplotlib").axes
+    assert [one.get_ylabel() for one in axes] == ["height (m)", "angle (rad)", "motor torque (N m)"]
+    with pytest.raises(InputError, match="lacks hip_rad"):
+        pm.plot_jump(steps.drop(columns="hip_rad"))

@@ -1,0 +1,79 @@
+"""Studies that are run from scripts: the trials of the command line, other goals, and a callback that stops."""
+
+import pandas as pd
+import pytest
+
+import pareto_monoped as pm
+from pareto_monoped.cli import _run as cli
+
+FILE = 'name = "small"\nevaluations = 160\nseed = 5\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(FILE)
+    return path
+
+
+def trials(path):
+    return pm.load_study(path).trials
+
+
+def same(one, other):
+    pd.testing.assert_frame_equal(trials(one), trials(other), check_exact=True)
+
+
+def test_a_run_makes_the_trials_of_the_command_line(file, tmp_path):
+    stored = pm.run(str(file))
+    assert stored.path == file.with_suffix(".db")
+    assert cli(["run", str(file), "--db", str(tmp_path / "other.db")]) == 0
+    same(stored.path, tmp_path / "other.db")
+
+
+def test_a_study_from_python_is_that_of_its_file(file):
+    study = pm.Study.define(name="small", evaluations=160, seed=5, algorithm={"name": "nsga2", "population": 20})
+    assert study == pm.Study.from_toml(file) == pm.Study.from_toml(str(file), seed=5)
+    assert pm.Study.from_toml(file, algorithm="random").algorithm.name == "random"
+
+
+def test_a_callback_that_returns_true_stops_the_run_and_resume_ends_it(file, tmp_path):
+    seen = []
+
+    def first_two(progress):
+        seen.append(progress.evaluations)
+        return len(seen) == 2
+
+    stopped = pm.run(file, tmp_path / "stopped.db", callback=first_two)
+    assert seen[:2] == [20, 40]
+    assert len(stopped.trials) < 160
+    assert not stopped.finished
+    assert pm.resume(stopped.path, callback=seen.append).finished
+    pm.run(file)
+    same(stopped.path, file.with_suffix(".db"))
+
+
+def test_goals_of_a_call_replace_those_of_the_study(file, tmp_path):
+    stored = pm.run(
+        file,
+        tmp_path / "goals.db",
+        algorithm="random",
+        objectives=["height_m", "electrical_energy_j"],
+        constraints={"mass_kg": {"max": 5.0}, "min_height_m": 0.6},
+        evaluations=60,
+        seed=9,
+    )
+    study = stored.study
+    assert (study.algorithm.name, study.seed, len(stored.trials)) == ("random", 9, 60)
+    assert study.objectives.names == ("height_m", "electrical_energy_j")
+    limits = study.constraints.as_dict()
+    assert (limits["max_mass_kg"], limits["min_height_m"], limits["min_gear_safety"]) == (5.0, 0.6, 1.0)
+    feasible = stored.trials[stored.trials["state"] == "feasible"]
+    assert (feasible["mass_kg"] <= 5.0).all()
+    assert (feasible["height_m"] >= 0.6).all()
+
+
+def test_a_database_with_other_goals_is_refused(file):
+    pm.run(file, evaluations=40)
+    with pytest.raises(pm.ParetoMonopedError, match="began with other settings"):
+        pm.run(file, constraints={"mass_kg": {"max": 5.0}})

@@ -1,0 +1,36 @@
+"""Every example runs as it stands, is short, and makes what it says."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MAKES = {
+    "one_jump": ("J at the battery", ("jump.png",)),
+    "constrained_study": ("the least energy from the battery", ("light.db", "front.html")),
+    "own_motor": ("ESSPG", ()),
+    "own_objective": ("m/s", ()),
+    "own_sampler": ("m on", ("sampled.db",)),
+    "export_a_pick": ("files,", ("built.db", "built.html", "built_leg/design.json", "built_leg/assembly.step")),
+}
+"""Example -> words that it prints, and files that it makes."""
+
+
+def test_every_example_is_known_here():
+    assert {path.stem for path in EXAMPLES.glob("*.py")} == set(MAKES)
+
+
+@pytest.mark.parametrize("name", MAKES)
+def test_an_example_runs(name, tmp_path):
+    path = EXAMPLES / f"{name}.py"
+    assert len(path.read_text(encoding="utf-8").splitlines()) < 40
+    run = subprocess.run(
+        [sys.executable, "-W", "error", str(path)], cwd=tmp_path, capture_output=True, text=True, timeout=600
+    )
+    assert run.returncode == 0, run.stderr
+    words, files = MAKES[name]
+    assert words in run.stdout
+    for file in files:
+        assert (tmp_path / file).stat().st_size > 0
