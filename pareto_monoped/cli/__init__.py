@@ -23,6 +23,7 @@ _COMMANDS = {
     "front": "fronts",
     "pick": "fronts",
     "robust": "robustness",
+    "sensitivity": "sensitivity",
     "export": "exports",
     "report": "reports",
 }

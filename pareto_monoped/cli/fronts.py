@@ -208,20 +208,20 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
             more["alternatives"] = [other.as_dict() for other in others]
         echo(json.dumps(row | more, indent=2))
         return
-    echo(_wrapped(picked.why))
+    echo(wrapped(picked.why))
     for name in names[1:]:
         echo(f"{name:<34} {row[name]}" if name in _MOTORS else f"{name:<34} {row[name]:.6g}")
-    echo(_wrapped(step.text()))
-    echo(_wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+    echo(wrapped(step.text()))
+    echo(wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
     if by_robust:
         failed, overloaded = (100.0 * row[name] for name in shares)
         ends = "measures are the worse of their 5th and 95th percentiles"
-        echo(_wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
+        echo(wrapped(f"robust: {ends}; {failed:.1f} % of jumps fail, {overloaded:.1f} % overload a part"))
     if count:
         _print_alternatives(others, tolerance)
         if compared is not None:
             note = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
-            click.echo(_wrapped(f"{note}; 'robust DB --trial N' adds others"))
+            click.echo(wrapped(f"{note}; 'robust DB --trial N' adds others"))
 
 
 def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
@@ -244,12 +244,12 @@ def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> 
     echo(f"alternatives within {tolerance:g} percent, the most different first:")
     for other in others:
         values = other.objectives.text(other.values)
-        echo(_wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
+        echo(wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
     if unaudited := sum(not other.audited for other in others):
         echo(f"note: alternatives without an audit: {unaudited} of {len(others)}", err=True)
 
 
-def _wrapped(text: str, indent: int = 2) -> str:
+def wrapped(text: str, indent: int = 2) -> str:
     """A sentence in lines of at most 80 letters."""
     return textwrap.fill(
         text,

@@ -12,7 +12,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import strict_json
 from pareto_monoped.study.reader import StudyData, read_study
-from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.study.robust_rows import ROBUSTNESS, read_robustness
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.study.store import Store
@@ -74,8 +74,8 @@ def robust(
                     chunk = fresh.iloc[first : first + _CHUNK]
                     results = simulated(data, chunk, evaluator, drawn)
                     text = strict_json(settings)
-                    store.set_robustness(
-                        [(trial, text, strict_json(result.as_dict())) for trial, result in results.items()]
+                    store.set_rows(
+                        ROBUSTNESS, [(trial, text, strict_json(result.as_dict())) for trial, result in results.items()]
                     )
                     known |= results
                     done += len(chunk)
@@ -92,7 +92,7 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
     """
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
     motors = data.kit_numbers(rows)
-    _refuse_other_jumps(data, rows, evaluator(designs, motors).height_m)
+    refuse_other_jumps(data, rows, evaluator)
     count = len(samples)
     jumps = evaluator(
         np.repeat(designs, count, axis=0),
@@ -105,7 +105,13 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
     }
 
 
-def _refuse_other_jumps(data: StudyData, rows: pd.DataFrame, height_m: np.ndarray) -> None:
+def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator) -> None:
+    """Refuse trials that do not jump as they are stored.
+
+    Raises:
+        StudyError: the message names the first one.
+    """
+    height_m = evaluator(rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)).height_m
     stored = rows["height_m"].to_numpy(dtype=np.float64)
     other = np.flatnonzero(height_m != stored)
     if len(other):

@@ -17,6 +17,7 @@ from pareto_monoped.study.columns import LATER, columns_of, listed
 from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
+from pareto_monoped.study.extra_rows import ExtraTable, Row
 from pareto_monoped.study.foreign import FOREIGN_COUNT
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.kept_front import FRONT, KeptFront
@@ -30,7 +31,6 @@ from pareto_monoped.study.optuna_tables import (
     drop_trials,
     stored_digest,
 )
-from pareto_monoped.study.robust_rows import CREATE, INSERT, SEALED_AS, Row
 from pareto_monoped.study.seals import ROWS, SEALS, Sealer, row_digests
 
 _OUR_TABLES = """
@@ -243,12 +243,12 @@ class Store:
                 written["front"] = row_digests([self._front.store(self._connection)])
             self._sealer.add(written)
 
-    def set_robustness(self, rows: Sequence[Row]) -> None:
-        """Store how trials do under uncertainty."""
+    def set_rows(self, table: ExtraTable, rows: Sequence[Row]) -> None:
+        """Store rows of a table that only some studies have."""
         with self._writing():
-            self._connection.execute(CREATE)
-            self._connection.executemany(INSERT, rows)
-            self._sealer.add({SEALED_AS: row_digests(rows)})
+            self._connection.execute(table.create)
+            self._connection.executemany(table.insert, rows)
+            self._sealer.add({table.what: row_digests(rows)})
 
     def foreign_count(self) -> int:
         """How many of Optuna's trials are not of this package."""

@@ -17,6 +17,7 @@ from pareto_monoped.study.plausible import implausible
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.seals import read_seals
+from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +53,7 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
     """
     data = read_study(db)
     read_robustness(db)
+    read_sensitivity(db)
     with reading(db) as connection:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)

@@ -78,6 +78,11 @@ def sobol_samples(uncertainty: Uncertainty, count: int = DEFAULT_SAMPLES, seed: 
         raise InputError(complaint("samples", count, "a power of two, such as 256 or 512", "correct it"))
     generator = qmc.Sobol(d=sum(k for _, k in DIMENSIONS), scramble=True, rng=np.random.default_rng(seed))
     points = np.asarray(generator.random_base2(count.bit_length() - 1), dtype=np.float64)
+    return samples_at(uncertainty, points)
+
+
+def samples_at(uncertainty: Uncertainty, points: Floats) -> Samples:
+    """The samples at points of the unit cube, shape (count, sum of ``DIMENSIONS``)."""
     values: dict[Name, Floats] = {}
     first = 0
     for name, k in DIMENSIONS:
