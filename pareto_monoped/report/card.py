@@ -17,7 +17,7 @@ from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
 from pareto_monoped.report.provenance import command, provenance
 from pareto_monoped.report.resimulation import Resimulation
-from pareto_monoped.report.robust import alternatives_of, robust_of
+from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import notes, sentences
 from pareto_monoped.report.trials import (
@@ -34,7 +34,9 @@ from pareto_monoped.study.definition import Bounds
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.remarks import bound_lines
 from pareto_monoped.study.robust_rows import Stored
+from pareto_monoped.study.sensitivity_rows import StoredSensitivity
 from pareto_monoped.study.weighted_cost import weighted_cost
+from pareto_monoped.uncertainty.influences import About
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 """Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
@@ -63,12 +65,13 @@ class Places:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """A stored study, what was simulated again for it, its exported models by trial, and its stored robustness."""
+    """A stored study, what was simulated again for it, its exported models, robustness and sensitivities."""
 
     data: StudyData
     resimulation: Resimulation
     models: Mapping[int, Model3D]
     robustness: Mapping[int, Stored] = field(default_factory=dict)
+    sensitivities: Mapping[tuple[int, About], StoredSensitivity] = field(default_factory=dict)
 
 
 def study_card(
@@ -93,6 +96,7 @@ def study_card(
     front = data.front()
     weights = best_of_weights(data)
     told = [*front["trial"], *data.ill_conditioned, *(trial for _, trial in weights), *source.robustness]
+    told += [trial for trial, _ in source.sensitivities]
     always = np.isin(data.trials["trial"], told)
     trials = thinned(data.trials, always, most_rows)
     row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
@@ -156,6 +160,7 @@ def study_card(
         provenance=provenance(data),
         reproduce=command(data),
         robust=robust_of(data, source.robustness, row_of),
+        sensitivity=influences_of(source.sensitivities),
     )
 
 

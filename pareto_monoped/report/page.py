@@ -25,6 +25,7 @@ from pareto_monoped.report.tables import cases_table, comparison_tables, head, p
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.seals import UNSEALED
+from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 SCRIPTS = (
     "dom", "data", "state", "subject", "link", "plots", "front", "ask", "robot", "lines", "detail", "parallel",
@@ -65,7 +66,13 @@ def payload_of(
         note(UNSEALED)
     models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
     sources = [
-        Source(data=data, resimulation=resimulate(data), models=found, robustness=read_robustness(data.db))
+        Source(
+            data=data,
+            resimulation=resimulate(data),
+            models=found,
+            robustness=read_robustness(data.db),
+            sensitivities=read_sensitivity(data.db),
+        )
         for data, found in zip(studies, models, strict=True)
     ]
     return build(sources, literal_cases())

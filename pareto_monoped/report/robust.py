@@ -7,11 +7,14 @@ import numpy as np
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import ROBUST_NAMES, is_robust
 from pareto_monoped.report.packing import packed
-from pareto_monoped.report.schema import OtherDesign, Robust
+from pareto_monoped.report.rounding import column
+from pareto_monoped.report.schema import Influences, Number, OtherDesign, Robust
 from pareto_monoped.study.alternatives import alternatives
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.robust_front import robust_front, robust_trials
 from pareto_monoped.study.robust_rows import Stored
+from pareto_monoped.study.sensitivity_rows import StoredSensitivity
+from pareto_monoped.uncertainty.influences import About, Influence
 
 MOST_ALTERNATIVES = 5
 """Alternatives listed beside a design. Our own choice, as in the examples of ``pick --alternatives``."""
@@ -61,3 +64,22 @@ def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> t
         for one in found
         if one.trial in row_of
     )
+
+
+def influences_of(stored: Mapping[tuple[int, About], StoredSensitivity]) -> dict[str, dict[str, Influences]]:
+    """The stored sensitivities of a study by trial number and kind of factors."""
+    found: dict[str, dict[str, Influences]] = {}
+    for (trial, about), one in stored.items():
+        factors = one.result.factors
+        names = factors[0].measures if factors else ()
+        found.setdefault(str(trial), {})[about] = Influences(
+            jumps=one.result.jumps,
+            factors=[(each.factor.label, each.factor.text, each.factor.tolerance) for each in factors],
+            measures={name: [_rounded(each.measures[name]) for each in factors] for name in names},
+        )
+    return found
+
+
+def _rounded(one: Influence) -> tuple[Number, Number, Number]:
+    change, total, error = column([one.change, one.total, one.error], 4)
+    return change, total, error

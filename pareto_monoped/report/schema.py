@@ -186,6 +186,22 @@ class Robust:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Influences:
+    """What moves a design's measures.
+
+    Attributes:
+        jumps: simulated for it.
+        factors: label, range in words, and whether it is a manufacturing tolerance, of each factor.
+        measures: measure -> per factor its change in the stored unit from end to end of the range, the total Sobol'
+            index, and half of the index' 95 percent interval.
+    """
+
+    jumps: int
+    factors: Sequence[tuple[str, str, bool]]
+    measures: Mapping[str, Sequence[tuple[Number, Number, Number]]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Picked:
     """A design that the page points out: its name there, its row, why it was picked, and alternatives to it."""
 
@@ -248,6 +264,7 @@ class StudyCard:
         jumps, models: by trial number.
         case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
         robust: designs under uncertainty; None where none is stored.
+        sensitivity: trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``.
         weighted: results of a weighted search: weight of the first objective, and row.
         floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
         notes: what readers have to know before they trust the page.
@@ -297,6 +314,7 @@ class StudyCard:
     provenance: Sequence[Sequence[str]]
     reproduce: str
     robust: Robust | None = None
+    sensitivity: Mapping[str, Mapping[str, Influences]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,8 @@ from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_front import robust_front, robust_trials
 from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.robustness import robust
+from pareto_monoped.study.sensitivity import sensitivity
+from pareto_monoped.study.sensitivity_rows import read_sensitivity
 from pareto_monoped.uncertainty.ranges import load_uncertainty
 from tests.report.conftest import Tab, grown, made, unpacked
 
@@ -92,6 +94,22 @@ def test_studies_with_other_objectives_share_a_page(uncertain, source):
     jumped = data.trials["height_m"].notna().to_numpy()
     values = np.array(second.trials.columns["height_m.p05"], dtype=float)
     assert values[jumped] == pytest.approx(data.trials["height_m.p05"][jumped], rel=1e-4)
+
+
+def test_the_page_has_the_stored_sensitivities(data, resimulation, folder):
+    db = folder / "surrogate_11_60.db"
+    trial = int(read_study(db).front()["trial"].iloc[0])
+    found = sensitivity(db, trial, load_uncertainty(), blocks=32, workers=2)
+    own = Source(data=read_study(db), resimulation=resimulation, models={}, sensitivities=read_sensitivity(db))
+    card = build([own]).studies[0]
+    assert list(card.sensitivity) == [str(trial)]
+    for one in found:
+        shown = card.sensitivity[str(trial)][one.about]
+        assert shown.jumps == one.jumps
+        assert [factor[:2] for factor in shown.factors] == [(f.factor.label, f.factor.text) for f in one.factors]
+        for name, rows in shown.measures.items():
+            expected = [(f.measures[name].change, f.measures[name].total, f.measures[name].error) for f in one.factors]
+            assert np.array(rows, dtype=float) == pytest.approx(np.array(expected), rel=1e-3, abs=1e-12)
 
 
 @pytest.mark.browser
