@@ -28,8 +28,8 @@ from pareto_monoped.study.seals import UNSEALED
 from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 SCRIPTS = (
-    "dom", "data", "state", "subject", "link", "plots", "front", "ask", "robot", "lines", "detail", "parallel",
-    "search", "viewer", "main",
+    "dom", "data", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes", "robust",
+    "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
 
@@ -92,10 +92,9 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 def page(payload: Payload) -> str:
     """The whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(_asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
-    plotly = _plotly()
-    # Only these two scripts may run, whatever else gets into the page, and nothing may be loaded.
+    # Only this script may run, whatever else gets into the page, and nothing may be loaded.
     policy = (
-        f"default-src 'none'; script-src {_fingerprint(plotly)} {_fingerprint(script)}; style-src 'unsafe-inline'; "
+        f"default-src 'none'; script-src {_fingerprint(script)}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
     return Template(_asset("page.html")).substitute(
@@ -113,7 +112,6 @@ def page(payload: Payload) -> str:
         provenance=provenance_tables(payload),
         version=safe(payload.version),
         payload=embedded(payload),
-        plotly=plotly,
         script=script,
     )
 
@@ -132,15 +130,6 @@ def _plain(value: Any) -> Any:
 
 def _fingerprint(script: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
-
-
-@lru_cache(maxsize=1)
-def _plotly() -> str:
-    from plotly.offline import get_plotlyjs
-
-    # An end tag inside a string of the library would end the script element.
-    text: str = get_plotlyjs()
-    return text.replace("</script", "<\\/script").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _asset(name: str) -> str:

@@ -85,6 +85,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         ),
         variables=[asdict(variable) for variable in variables],
         quantities=quantities_of(names_of([source.data for source in sources], [card.robust for card in cards])),
+        axes=_axes(cards),
         published=[
             {
                 "name": c.name,
@@ -101,6 +102,18 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         studies=cards,
         comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
     )
+
+
+def _axes(cards: Sequence[StudyCard]) -> list[str]:
+    """The measures and variables that trials differ in."""
+    differ = set()
+    for card in cards:
+        for name, values in card.trials.columns.items():
+            if len({value for value in values if value is not None}) > 1:
+                differ.add(name)
+        for packed in (card.trials.packed, card.robust.packed if card.robust is not None else {}):
+            differ.update(n for n, text in packed.items() if len({text[i : i + 4] for i in range(0, len(text), 4)}) > 1)
+    return sorted(differ - {"hip_gearbox", "knee_gearbox", "motor"})
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:

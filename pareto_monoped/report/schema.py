@@ -369,6 +369,7 @@ class Payload:
         goals: the objectives of all studies, without repetition; the page has them of every trial.
         directions: "maximise" or "minimise" of each goal.
         measure_directions: the same of every measure that has one.
+        axes: measures and variables that trials differ in, which can be axes, colours and sizes.
     """
 
     version: str
@@ -380,6 +381,7 @@ class Payload:
     constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]
+    axes: Sequence[str]
     published: Sequence[Mapping[str, Any]]
     literal: Sequence[Mapping[str, Any]]
     gearboxes: Sequence[Gearbox]

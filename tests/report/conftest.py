@@ -145,7 +145,7 @@ class Tab:
         self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.goto(file.as_uri() + fragment)
-        self.page.wait_for_selector("#front-chart .main-svg")
+        self.page.wait_for_function("() => document.getElementById('front-chart').data !== undefined")
         self.page.wait_for_selector("#parallel-chart canvas")
 
     def reset(self) -> None:
@@ -171,17 +171,32 @@ class Tab:
                 """([name, i]) => {
                     const gd = document.getElementById("front-chart");
                     const t = gd.data.find((t) => t.name === name), box = gd.getBoundingClientRect();
-                    const { xaxis, yaxis } = gd._fullLayout;
-                    return [box.left + xaxis._offset + xaxis.d2p(t.x[i]), box.top + yaxis._offset + yaxis.d2p(t.y[i])];
+                    const [x, y] = gd.chart.at(t.x[i], t.y[i]);
+                    return [box.left + x, box.top + y];
                 }""",
                 [trace, index],
             )
         )
 
+    def to_front(self) -> None:
+        """Scroll to the front chart, and wait until it shows the present state: out of sight it is not redrawn."""
+        self.page.locator("#front-chart").scroll_into_view_if_needed()
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        self.page.wait_for_timeout(100)
+
+    def texts(self, trace: str) -> list[str]:
+        """What hovering shows over each point of a trace of the front chart."""
+        return self.page.evaluate(
+            """(name) => {
+                const t = document.getElementById("front-chart").data.find((t) => t.name === name);
+                return t.x.map((_, i) => t.text(i));
+            }""",
+            trace,
+        )
+
     def click_point(self, trace: str, index: int) -> None:
-        """Click a point of the front chart as a hand does: two clicks within 0.3 s would be a double click."""
-        self.page.mouse.move(*self.point(trace, index))
-        self.page.wait_for_timeout(400)
+        """Click a point of the front chart."""
+        self.to_front()
         self.page.mouse.click(*self.point(trace, index))
 
     def scroll_through(self) -> None:

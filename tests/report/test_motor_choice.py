@@ -143,7 +143,7 @@ def test_the_page_shows_colours_and_filters_motors(several, folder, open_tab):
     ]
     assert marker("color") == [tints[k] for k in order]
     assert marker("symbol") == [["circle", "square", "diamond"][k] for k in order]
-    hovers = tab.page.evaluate("document.getElementById('front-chart').data.find((t) => t.name === 'front').text")
+    hovers = tab.texts("front")
     assert all(text.endswith(f"motor {motor}") for text, motor in zip(hovers, front["motor"], strict=True))
     # The selected design: its motor in words, in the table of its gearboxes, and in its commands.
     for place, motor in enumerate(front["motor"]):
@@ -162,6 +162,7 @@ def test_the_page_shows_colours_and_filters_motors(several, folder, open_tab):
     others = int((front["motor"] != left).sum())
     tab.expects("#brush-note", f"{others} of {len(front)} designs on the front")
     tab.page.click("#clear-ranges")
+    tab.to_front()
     assert tab.page.is_checked(f"[data-motor='{number}']")
     assert marker("opacity") == [1] * len(front)
     tab.scroll_through()

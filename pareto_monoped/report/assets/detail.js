@@ -120,15 +120,15 @@ function showMass(chosen) {
   } else {
     rows.push(["base frame, thigh, shank and foot", total - rows.reduce((sum, row) => sum + row[1], 0)]);
   }
-  const tints = ["--c1", "--c0", "--c4", "--c2", "--c3", "--dark"];
+  const shades = ["--c1", "--c0", "--c4", "--c2", "--c3", "--dark"];
   const bar = make("div", { class: "stack", "aria-hidden": "true" });
   const body = rows.map(([name, mass], i) => {
     const piece = make("i");
     piece.style.width = `${100 * Math.max(mass, 0) / total}%`;
-    piece.style.background = `var(${tints[i]})`;
+    piece.style.background = `var(${shades[i]})`;
     bar.append(piece);
     const swatch = make("span", { class: "swatch" });
-    swatch.style.background = `var(${tints[i]})`;
+    swatch.style.background = `var(${shades[i]})`;
     return make("tr", {}, make("th", { scope: "row" }, swatch, name), make("td", { class: "n" }, `${round(mass)} kg`), make("td", { class: "n" }, `${round(100 * mass / total, 0)} %`));
   });
   body.push(make("tr", {}, make("th", { scope: "row" }, make("b", {}, "robot")), make("td", { class: "n" }, make("b", {}, `${round(total)} kg`)), make("td", { class: "n" }, "100 %")));

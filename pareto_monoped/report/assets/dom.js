@@ -25,8 +25,12 @@ function draw(tag, attributes = {}, ...children) {
   return node;
 }
 
+const tints = new Map();
+
+// A colour of the style sheet; kept until the scheme changes, because asking for it makes the browser lay out the page.
 function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  if (!tints.has(name)) tints.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return tints.get(name);
 }
 
 function studyColour(index) { return colour(`c${index % 6}`); }
@@ -50,7 +54,7 @@ function told(names, valueOf) {
 
 function round(value, digits = 3) { return Number(value).toFixed(digits); }
 
-// Plotly interprets a few tags in its texts; escaping < removes them.
+// Text for the few places that show tags: escaping < removes those of the text itself.
 function plain(text) { return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;"); }
 
 function extent(values) {

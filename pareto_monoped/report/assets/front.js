@@ -1,87 +1,51 @@
-// The front: the first objective upward, another to the right, a third as colour; click a point to select it.
+// The front chart: by default the first objective upward and another to the right; click a point to select it.
 
-const CELL_PX = 3; // cells of this size show at most one trial of the cloud
-const MOST_DRAWN = 4000;
 const gd = byId("front-chart");
 const ring = make("div", { class: "ring", "aria-hidden": "true" });
-let points = []; // for each trace, what its points stand for: [study, row] or [study, case name]
+let front = null; // the chart
 
 // What a column or a case has on an axis, in the unit shown; null where it has nothing.
 function inShown(name, value) { return value === null || value === undefined ? null : value * quantity[name].scale; }
 
 function ofCase(made, name) { return inShown(name, made[name] ?? made.measures[name]); }
 
+function kindOf(side) { return state.axes[`log${side.toUpperCase()}`] ? "log" : "linear"; }
+
 // Work against gravity is a floor of these energies.
-function hasFloor() { return FIRST === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.axes.x); }
+function hasFloor() { return state.axes.y === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.axes.x); }
 
-function papersAxes() { return FIRST === "height_m" && state.axes.x === "energy_j"; }
+function papersAxes() { return state.axes.y === "height_m" && state.axes.x === "energy_j"; }
 
-function startRange() {
-  const x = [], y = [];
-  const see = (across, up) => {
-    if (across === null || up === null) return;
-    x.push(across);
-    y.push(up);
-  };
-  for (const study of page.studies) {
-    const { [state.axes.x]: e, [FIRST]: h } = study.trials.columns;
+function shownColumn(study, name, rows) {
+  const column = columnOf(study, name), { scale } = quantity[name];
+  return rows.map((row) => (column[row] === null || Number.isNaN(column[row]) ? null : column[row] * scale));
+}
+
+function rowsWith(study, letter, without) {
+  const letters = page.studies[study].trials.state, result = [];
+  for (let row = 0; row < letters.length; row += 1) if (letters[row] === letter && !without.has(row)) result.push(row);
+  return result;
+}
+
+// The middle part of the trials, without the few that would stretch an axis.
+function mostOf(study, name) {
+  const sorted = Float64Array.from(shownColumn(study, name, feasibleRows(page.studies[study])).filter((v) => v !== null)).sort();
+  return sorted.length ? [quantile(sorted, 0.01), quantile(sorted, 0.99)] : [];
+}
+
+function homeRange(side) {
+  const name = state.axes[side], kind = kindOf(side);
+  const values = page.studies.flatMap((study, i) => {
     const rows = study.front.length ? study.front : study.trials.trial.map((_, row) => row);
-    for (const row of rows) see(inShown(state.axes.x, e[row]), inShown(FIRST, h[row]));
-    for (const made of study.cases) see(ofCase(made, state.axes.x), ofCase(made, FIRST));
-  }
-  if (papersAxes()) for (const made of page.published) see(made.energy_j, made.height_m);
-  if (FIRST === "height_m") y.push(START_HEIGHT + 0.05, START_HEIGHT + 0.1);
-  const [low, high] = extent(y);
-  const room = 0.06 * (high - low) || 1e-3;
-  // With a floor, which begins at no energy, so does the chart.
-  return { x: hasFloor() ? [0, extent(x)[1] * 1.06] : padded(extent(x)), y: [low - room, high + room] };
-}
-
-let home = null;
-
-function viewRange() {
-  const full = gd._fullLayout;
-  return full ? { x: full.xaxis.range, y: full.yaxis.range } : home;
-}
-
-// What is drawn over the cloud, and how many cells it covers to each side of its own.
-function marks() {
-  return [...state.visible].flatMap((study) => {
-    const { cases, front, trials: { columns: { [state.axes.x]: e, [FIRST]: h } } } = page.studies[study];
-    const designs = state.layers.front ? front.map((row) => ({ x: inShown(state.axes.x, e[row]), y: inShown(FIRST, h[row]), cells: 1 })) : [];
-    const paper = state.layers.simulated ? cases.map((made) => ({ x: ofCase(made, state.axes.x), y: ofCase(made, FIRST), cells: 2 })) : [];
-    return [...designs, ...paper];
+    const more = page.objectives.includes(name) ? [] : mostOf(i, name);
+    return [...shownColumn(i, name, rows), ...more, ...study.cases.map((made) => ofCase(made, name))];
   });
-}
-
-// One row per small cell of the view: as many as can be told apart.
-function thinned(study, letter, skip) {
-  const { state: letters, columns: { [state.axes.x]: e, [FIRST]: h } } = page.studies[study].trials;
-  const { x, y } = viewRange();
-  const toX = quantity[state.axes.x].scale, toY = quantity[FIRST].scale;
-  const columns = Math.max(Math.floor((gd.clientWidth - 72) / CELL_PX), 50);
-  const rows = Math.max(Math.floor((gd.clientHeight - 60) / CELL_PX), 50);
-  const seen = new Set();
-  const cellAt = (u, v) => Math.floor(u * columns) * rows + Math.floor(v * rows);
-  // Nothing is drawn under a mark: a small point there would take the mark's clicks.
-  for (const mark of marks()) {
-    const u = (mark.x - x[0]) / (x[1] - x[0]), v = (mark.y - y[0]) / (y[1] - y[0]);
-    for (let i = -mark.cells; i <= mark.cells; i += 1) for (let j = -mark.cells; j <= mark.cells; j += 1) seen.add(cellAt(u + i / columns, v + j / rows));
-  }
-  const kept = [];
-  let within = 0;
-  for (let row = 0; row < letters.length; row += 1) {
-    if (letters[row] !== letter || skip.has(row) || e[row] === null || h[row] === null) continue;
-    const u = (e[row] * toX - x[0]) / (x[1] - x[0]), v = (h[row] * toY - y[0]) / (y[1] - y[0]);
-    if (u < 0 || u > 1 || v < 0 || v > 1) continue;
-    within += 1;
-    const cell = cellAt(u, v);
-    if (seen.has(cell)) continue;
-    seen.add(cell);
-    kept.push(row);
-  }
-  const every = Math.max(Math.ceil(kept.length / MOST_DRAWN), 1);
-  return { rows: every === 1 ? kept : kept.filter((_, i) => i % every === 0), within };
+  if (papersAxes()) values.push(...page.published.map((made) => inShown(name, made[name])));
+  if (name === "height_m" && kind === "linear") values.push(START_HEIGHT + 0.05, START_HEIGHT + 0.1);
+  const range = extent(kind === "log" ? values.filter((v) => v > 0) : values);
+  // With a floor, which begins at no energy, so does the chart.
+  if (side === "x" && hasFloor() && kind === "linear") return [0, range[1] * 1.06];
+  return paddedBy(kind, range);
 }
 
 function hoverText(study, row) {
@@ -89,192 +53,187 @@ function hoverText(study, row) {
   const { columns, trial } = card.trials;
   const lines = [`<b>trial ${trial[row]}</b>${page.studies.length > 1 ? `, ${plain(card.label)}` : ""}`];
   if (PAPERS_OWN) lines.push(told(page.objectives, (name) => columns[name][row]));
-  const named = PAPERS_OWN ? page.goals.filter((name) => !page.objectives.includes(name)) : page.goals;
-  for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, columns[name][row])}`);
-  for (const variable of page.variables) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
+  const { x, y, size } = state.axes;
+  const named = new Set([...page.goals, x, y, tinted(), size].filter((name) => name && !(PAPERS_OWN && page.objectives.includes(name))));
+  for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, valueAt(study, name, row))}`);
+  for (const variable of page.variables) if (!named.has(variable.name)) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
   if (columns.motor) lines.push(`motor ${plain(motorOf(card, row))}`);
   return lines.join("<br>");
 }
 
-function trace(name, entries, marker, more = {}) {
-  // entries: { x, y, text, stands }
-  points.push(entries.map((entry) => entry.stands));
+// A layer of designs of one study.
+function designs(name, study, rows, marker, more = {}) {
+  const { x, y, colour: _, size, space } = state.axes;
+  const tint = tinted();
+  if (tint && marker.ramp) marker.color = shownColumn(study, tint, rows);
+  if (size) marker.size = sizesOf(study, size, rows, entry(marker.size, 0) ?? 4);
   return {
-    type: "scatter", mode: "markers", name, x: entries.map((p) => p.x), y: entries.map((p) => p.y),
-    text: entries.map((p) => p.text), hovertemplate: "%{text}<extra></extra>", marker, ...more,
+    name, mode: "markers", x: shownColumn(study, x, rows), y: shownColumn(study, y, rows), ...(space ? { z: shownColumn(study, depthName(), rows) } : {}),
+    stands: rows.map((row) => [study, row]), text: (i) => hoverText(study, rows[i]), marker, ...more,
   };
 }
 
-function rowsOf(study, rows) {
-  const { [state.axes.x]: e, [FIRST]: h } = page.studies[study].trials.columns;
-  return rows.map((row) => ({ x: inShown(state.axes.x, e[row]), y: inShown(FIRST, h[row]), text: hoverText(study, row), stands: [study, row] }));
+// The measure that a 3D view has in its depth.
+function depthName() { return tinted() ?? page.goals.find((name) => name !== state.axes.x && name !== state.axes.y) ?? "mass_kg"; }
+
+function rangeOver(name) { return extent([...state.visible].flatMap((i) => shownColumn(i, name, page.studies[i].front))); }
+
+const LEAST_MARK = 0.7, MOST_MARK = 2.4; // of the usual diameter
+
+function sizesOf(study, name, rows, usual) {
+  const [low, high] = rangeOver(name);
+  return shownColumn(study, name, rows).map((value) => Math.round(2 * usual * (LEAST_MARK + (MOST_MARK - LEAST_MARK) * Math.min(Math.max(((value ?? low) - low) / (high - low || 1), 0), 1))) / 2);
 }
 
-function traces() {
-  points = [];
-  const list = [];
+function cloudLayers(study) {
+  const card = page.studies[study];
+  const onFront = new Set(card.front);
   const ranged = filtered();
-  const several = page.studies.length > 1;
-  let drawn = 0, within = 0;
-  const each = [...state.visible];
-  for (const study of each) {
-    const card = page.studies[study];
-    const onFront = new Set(card.front);
-    const tint = several ? studyColour(study) : colour("cloud");
-    for (const [letter, wanted] of [["f", state.layers.cloud], ["i", state.layers.infeasible]]) {
-      if (!wanted) continue;
-      const cloud = thinned(study, letter, onFront);
-      drawn += cloud.rows.length;
-      within += cloud.within;
-      const opacity = cloud.rows.map((row) => (!ranged || inRanges(study, row) ? (ranged ? 0.75 : 0.38) : 0.06));
-      const marker = letter === "f"
-        ? { size: 4.5, color: tint, opacity }
-        : { size: 6, symbol: "x-thin", line: { width: 1.2, color: colour("bad") }, opacity };
-      list.push(trace(letter === "f" ? "dominated" : "infeasible", rowsOf(study, cloud.rows), marker));
-    }
+  const tint = tinted();
+  const list = [];
+  for (const [letter, wanted, name] of [["f", state.layers.cloud, "dominated"], ["i", state.layers.infeasible, "infeasible"]]) {
+    if (!wanted) continue;
+    const rows = rowsWith(study, letter, onFront);
+    const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.05)) : tint ? 0.6 : 0.35;
+    const marker = letter === "f"
+      ? { size: 4, color: page.studies.length > 1 ? studyColour(study) : colour("cloud"), opacity, ...(tint ? { ramp: rangeOver(tint) } : {}) }
+      : { size: 6, symbol: "cross", color: colour("bad"), opacity: ranged ? opacity : 0.6 };
+    list.push(designs(name, study, rows, marker, letter === "f" ? { cloud: true } : {}));
   }
-  if (state.layers.floor && hasFloor()) {
-    const masses = each.map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
-    if (masses.length) {
-      const mass = Math.min(...masses), end = viewRange().x[1] * 4;
-      const line = [0, end].map((e) => ({ x: e, y: START_HEIGHT + e / (mass * GRAVITY), text: "", stands: null }));
-      list.push(trace("floor", line, {}, { mode: "lines", hoverinfo: "skip", hovertemplate: undefined, line: { color: colour("faint"), width: 1.5, dash: "dot" } }));
-    }
-  }
-  for (const study of each) {
-    const card = page.studies[study];
-    if (!state.layers.front) continue;
-    const tint = studyColour(study);
-    const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
-    const marker = { size: 7.5, symbol: MARKS[study % 6], color: tint, opacity, line: { width: 0.8, color: colour("card") } };
-    if (card.trials.columns.motor) {
-      // Motors differ in colour and in mark: a third objective takes the colour.
-      const motors = card.front.map((row) => motorTint(kitOf(card, row)));
-      Object.assign(marker, { symbol: motors.map((k) => MARKS[k]), color: motors.map((k) => colour(`c${k}`)) });
-    }
-    const third = tinted();
-    if (third) Object.assign(marker, colourOf(study, third, list));
-    // A line of steps joins designs that hold until the next one is reached; on other axes than its own a front is none.
-    const own = card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(state.axes.x);
-    const steps = page.directions[FIRST] === "maximise" ? "hv" : "vh";
-    list.push(trace("front", rowsOf(study, card.front), marker,
-      own ? { mode: "lines+markers", line: { shape: steps, width: 1.2, color: tint } } : { mode: "markers" }));
-    if (card.weighted.length) {
-      const rows = rowsOf(study, card.weighted.map(([, row]) => row));
-      rows.forEach((entry, i) => { entry.text = `weighted search, ${FIRST === "height_m" ? "height" : plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${entry.text}`; });
-      list.push(trace("weighted", rows, { size: 12, symbol: "square-open", color: tint, line: { width: 2, color: tint } }));
-    }
-  }
-  if (state.layers.picks) {
-    for (const study of each.toReversed()) {
-      const picks = page.studies[study].picks.filter((p) => p.name === "knee");
-      const entries = rowsOf(study, picks.map((p) => p.row));
-      entries.forEach((entry, i) => { entry.text = `<b>knee</b><br>${entry.text}`; entry.label = picks[i].name; });
-      list.push(trace("picks", entries, { size: 15, symbol: "star", color: colour("c4"), line: { width: 1, color: colour("ink") } }));
-    }
-  }
-  const paper = (entries, name, symbol) => list.push(trace(name, entries,
-    { size: 11, symbol, color: entries.map((p) => p.tint ?? colour("paper")), line: { width: 1.8, color: colour("paper") } },
-    { mode: "markers", customdata: entries.map((p) => p.label) }));
-  if (state.layers.published && papersAxes()) {
-    paper(page.published.map((c) => ({
-      x: c.energy_j, y: c.height_m, label: c.name, stands: null,
-      text: `<b>paper, ${c.name}</b>, as published<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J`,
-    })), "published", "diamond-open");
-  }
-  if (state.layers.simulated) {
-    const seen = new Set();
-    const entries = [];
-    for (const study of each) {
-      const card = page.studies[study];
-      const key = `${card.case_motor} ${card.calibration}`;
-      if (seen.has(key)) continue;
-      seen.add(key);
-      for (const c of card.cases) {
-        const across = ofCase(c, state.axes.x), up = ofCase(c, FIRST);
-        if (up === null || across === null) continue;
-        // Only the first motor's have names; the others are in the same order and have their study's colour.
-        entries.push({
-          x: across, y: up, label: seen.size === 1 ? c.name : "", stands: [study, c.name],
-          tint: seen.size === 1 ? colour("paper") : studyColour(study),
-          text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([FIRST, state.axes.x], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.case_motor)}, calibration ${plain(card.calibration)}`,
-        });
-      }
-    }
-    paper(entries, "simulated", "diamond");
-  }
-  const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
-  let note = within > drawn ? `${drawn} of the ${within} dominated or infeasible designs in view are drawn, at most one per ${CELL_PX} px; zoom in to see more.` : "";
-  if (left) note += ` ${left} dominated trials are left out of this page to keep it small; every count includes them.`;
-  byId("front-note").textContent = note;
   return list;
 }
 
-// Names beside the paper's diamonds and the knee, where they cover neither each other nor another of these marks.
-function labels(list) {
-  const { x, y } = viewRange();
-  const width = Math.max(gd.clientWidth - 72, 100), height = Math.max(gd.clientHeight - 72, 100);
-  const lastPicks = list.findLast((t) => t.name === "picks");
-  const marks = list.flatMap((one) => {
-    if (one.name !== "picks" && !one.customdata) return [];
-    // The knees of several studies lie close together: only the one drawn last has its name beside it.
-    const name = (i) => (one.name !== "picks" ? one.customdata[i] : one === lastPicks ? "knee" : "");
-    return one.x.map((value, i) => ({
-      x: value, y: one.y[i], text: name(i),
-      px: (value - x[0]) / (x[1] - x[0]) * width, py: (one.y[i] - y[0]) / (y[1] - y[0]) * height,
+function floorLayer() {
+  const masses = [...state.visible].map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
+  if (!masses.length || !hasFloor() || !state.layers.floor || state.axes.space) return [];
+  const mass = Math.min(...masses), end = 4 * homeRange("x")[1];
+  const x = kindOf("x") === "log" || kindOf("y") === "log" ? Array.from({ length: 80 }, (_, i) => end * 10 ** (i / 20 - 4)) : [0, end];
+  const lift = (e) => START_HEIGHT + e / (mass * GRAVITY);
+  return [{ name: "floor", mode: "lines", x, y: x.map(lift), line: { color: colour("faint"), width: 1.5, dash: "dot" } }];
+}
+
+function frontLayers(study) {
+  const card = page.studies[study];
+  if (!state.layers.front) return [];
+  const tint = studyColour(study);
+  const many = [...state.visible].reduce((sum, i) => sum + page.studies[i].front.length, 0);
+  const size = many > 1500 ? 4.5 : many > 300 ? 6 : 7.5;
+  const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
+  const marker = { size, symbol: MARKS[study % 6], color: tint, opacity };
+  if (card.trials.columns.motor) {
+    // Motors differ in colour and in mark: a measure may take the colour.
+    const motors = card.front.map((row) => motorTint(kitOf(card, row)));
+    Object.assign(marker, { symbol: motors.map((k) => MARKS[k]), color: motors.map((k) => colour(`c${k}`)) });
+  }
+  const measure = tinted();
+  if (measure) Object.assign(marker, { ramp: rangeOver(measure) });
+  // A line of steps joins designs that hold until the next one is reached; on other axes than its own a front is none.
+  const { x, y, space } = state.axes;
+  const own = !space && y === FIRST && card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(x);
+  const steps = page.directions[FIRST] === "maximise" ? "hv" : "vh";
+  const list = [designs("front", study, card.front, marker, own ? { mode: "lines+markers", line: { shape: steps, width: 1.2, color: tint, opacity: filtered() ? 0.25 : 1 } } : {})];
+  if (card.weighted.length) {
+    const rows = card.weighted.map(([, row]) => row);
+    list.push(designs("weighted", study, rows, { size: 12, symbol: "square-open", color: tint }, {
+      text: (i) => `weighted search, ${FIRST === "height_m" ? "height" : plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${hoverText(study, rows[i])}`,
     }));
+  }
+  return [...robustLayers(study), ...list];
+}
+
+function pickLayers() {
+  if (!state.layers.picks) return [];
+  return [...state.visible].toReversed().map((study) => {
+    const rows = page.studies[study].picks.filter((p) => p.name === "knee").map((p) => p.row);
+    return designs("picks", study, rows, { size: 15, symbol: "star", color: colour("ink") }, { text: (i) => `<b>knee</b><br>${hoverText(study, rows[i])}` });
   });
-  const taken = marks.map(({ px, py }) => [px - 9, px + 9, py]);
-  const spots = [[14, 0, "left"], [-14, 0, "right"], [0, -18, "center"], [0, 18, "center"], [12, -16, "left"], [-12, -16, "right"], [12, 16, "left"], [-12, 16, "right"]];
-  return marks.filter((mark) => mark.text).map(({ x: energy, y: jump, text, px, py }) => {
-    const size = 7.5 * text.length + 4;
-    const start = ([dx, , anchor]) => px + dx - (anchor === "right" ? size : anchor === "center" ? size / 2 : 0);
-    const free = (spot) => {
-      const from = start(spot), at = py + spot[1];
-      return from >= 0 && from + size <= width && !taken.some((t) => from < t[1] && from + size > t[0] && Math.abs(at - t[2]) < 15);
-    };
-    const spot = spots.find(free) ?? spots[0];
-    taken.push([start(spot), start(spot) + size, py + spot[1]]);
-    return { x: energy, y: jump, text, showarrow: false, xshift: spot[0], yshift: spot[1], xanchor: spot[2], font: { size: 12, color: colour("ink") } };
+}
+
+function paperLayers() {
+  const { x, y, space } = state.axes;
+  if (space) return [];
+  const layer = (name, symbol, entries) => ({
+    name, mode: "markers", x: entries.map((p) => p.x), y: entries.map((p) => p.y), stands: entries.map((p) => p.stands), text: (i) => entries[i].text,
+    labels: entries.map((p) => p.label), marker: { size: 11, symbol, color: entries.map((p) => p.tint ?? colour("paper")) },
+  });
+  const list = [];
+  if (state.layers.published && papersAxes()) {
+    list.push(layer("published", "diamond-open", page.published.map((c) => ({
+      x: inShown(x, c[x]), y: inShown(y, c[y]), label: c.name, stands: null, text: `<b>paper, ${c.name}</b>, as published<br>${round(c.height_m)} m on ${round(c.energy_j, 2)} J`,
+    }))));
+  }
+  if (!state.layers.simulated) return list;
+  const seen = new Set(), entries = [];
+  for (const study of state.visible) {
+    const card = page.studies[study];
+    const key = `${card.case_motor} ${card.calibration}`;
+    if (seen.has(key)) continue;
+    seen.add(key);
+    for (const c of card.cases) {
+      const across = ofCase(c, x), up = ofCase(c, y);
+      if (up === null || across === null) continue;
+      // Only the first motor's have names; the others are in the same order and have their study's colour.
+      entries.push({
+        x: across, y: up, label: seen.size === 1 ? c.name : "", stands: [study, c.name], tint: seen.size === 1 ? colour("paper") : studyColour(study),
+        text: `<b>paper, ${c.name}</b>, simulated here<br>${plain(told([y, x], (name) => c[name] ?? c.measures[name]))}<br>motor ${plain(card.case_motor)}, calibration ${plain(card.calibration)}`,
+      });
+    }
+  }
+  return [...list, layer("simulated", "diamond", entries)];
+}
+
+// Names of the paper's diamonds and of the knee that is drawn last.
+function namesOf(layers) {
+  const last = layers.findLast((layer) => layer.name === "picks");
+  return layers.flatMap((layer) => {
+    if (layer.name !== "picks" && !layer.labels) return [];
+    const words = (i) => (layer.labels ? layer.labels[i] : layer === last ? "knee" : "");
+    return layer.x.map((x, i) => ({ x, y: layer.y[i], text: words(i) }));
   });
 }
 
 function drawFront() {
-  for (const [key, fits] of [["published", papersAxes()], ["floor", hasFloor()]]) document.querySelector(`[data-show=${key}]`).closest("label").hidden = !fits;
-  const list = traces();
-  const x = axis(state.axes.x === "energy_j" ? "energy from start to apex, J" : titled(state.axes.x), { range: [...home.x], constraintoward: "left" });
-  const y = axis(FIRST === "height_m" ? "jump height of the base, m" : titled(FIRST), { range: [...home.y] });
-  const config = { ...CONFIG, modeBarButtonsToRemove: [...CONFIG.modeBarButtonsToRemove] };
-  const shape = layout(x, y, {
-    annotations: labels(list), dragmode: "zoom",
-    // The chart's buttons have a strip of their own above it: points under them could not be clicked.
-    margin: { l: 58, r: tinted() && !narrow() ? 84 : 14, t: tinted() && narrow() ? 92 : 26, b: 46 }, uirevision: state.axes.x,
-  });
-  const done = Plotly.react(gd, list, shape, config);
-  if (!gd.contains(ring)) gd.append(ring);
-  placeRing();
-  return done;
+  for (const [key, fits] of [["published", papersAxes()], ["floor", hasFloor()]]) document.querySelector(`[data-show=${key}]`).closest("label").hidden = !fits || state.axes.space;
+  const each = [...state.visible].sort((a, b) => a - b);
+  const layers = [...each.flatMap(cloudLayers), ...floorLayer(), ...each.flatMap(frontLayers), ...pickLayers(), ...paperLayers()];
+  const { x, y, space } = state.axes;
+  const side = (name, key) => ({ title: axisTitle(name), range: homeRange(key), kind: kindOf(key) });
+  front.space = space ? { title: axisTitle(depthName()), range: paddedBy("linear", rangeOver(depthName())), kind: "linear" } : null;
+  front.set(layers, side(x, "x"), side(y, "y"), { key: JSON.stringify(state.axes), names: space ? [] : namesOf(layers) });
+  showRamp();
+  showNote();
+}
+
+function axisTitle(name) {
+  if (name === "height_m") return "jump height of the base, m";
+  return name === "energy_j" ? "mechanical energy from start to apex, J" : titled(name);
+}
+
+function showNote() {
+  const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
+  byId("front-note").textContent = left ? `${left} dominated trials are left out of this page to keep it small; every count includes them.` : "";
 }
 
 // The ring lies over the chart, so that a selection does not redraw thousands of points.
 function placeRing() {
   const chosen = subject();
-  const full = gd._fullLayout;
   const value = (name) => (chosen ? inShown(name, chosen.measures[name] ?? chosen.more[name]) : null);
-  const e = value(state.axes.x), h = value(FIRST);
-  if (!full || !chosen || e === null || h === null) { ring.hidden = true; return; }
-  const { xaxis, yaxis } = full;
-  const left = xaxis._offset + xaxis.d2p(e), top = yaxis._offset + yaxis.d2p(h);
-  ring.hidden = left < xaxis._offset || left > xaxis._offset + xaxis._length || top < yaxis._offset || top > yaxis._offset + yaxis._length;
+  const { x, y } = state.axes;
+  const across = value(x), up = value(y);
+  if (!front?.box || !chosen || across === null || up === null) { ring.hidden = true; return; }
+  const [left, top] = front.at(across, up, front.space ? value(depthName()) : null);
+  const { box } = front;
+  ring.hidden = !(left >= box.left - 1 && left <= box.left + box.width + 1 && top >= box.top - 1 && top <= box.top + box.height + 1);
   ring.style.left = `${left}px`;
   ring.style.top = `${top}px`;
 }
 
 function describeFront() {
-  const { front, trials } = current();
-  const at = place();
-  gd.setAttribute("aria-valuemin", front.length ? 1 : 0);
-  gd.setAttribute("aria-valuemax", front.length);
+  const { trials } = current();
+  const rows = keptFront(state.study);
+  const at = rows.indexOf(state.row);
+  gd.setAttribute("aria-valuemin", rows.length ? 1 : 0);
+  gd.setAttribute("aria-valuemax", rows.length);
   gd.setAttribute("aria-valuenow", at + 1);
   const chosen = subject();
   gd.setAttribute("aria-valuetext", chosen
@@ -283,148 +242,41 @@ function describeFront() {
 }
 
 function startFront() {
-  home = startRange();
-  let waiting = 0;
-  drawFront().then(() => {
-    gd.on("plotly_click", (event) => {
-      const stands = points[event.points[0].curveNumber][event.points[0].pointIndex];
-      if (!stands) return;
-      if (typeof stands[1] === "number") select(...stands);
-      else selectCase(...stands);
-    });
-    gd.on("plotly_relayout", () => {
-      placeRing();
-      clearTimeout(waiting);
-      // A new view shows other trials of the cloud.
-      waiting = setTimeout(() => { if (gd._fullLayout) redrawView(); }, 60);
-    });
-    placeRing();
+  front = new SpaceChart(gd, {
+    margin: { t: 14 }, shown: placeRing,
+    chosen: (stands) => (typeof stands[1] === "number" ? select(...stands) : selectCase(...stands)),
   });
-  gd.addEventListener("keydown", (event) => {
-    const study = event.shiftKey && { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
-    if (study) {
-      event.preventDefault();
-      event.stopPropagation();
-      moveToStudy(study);
-      return;
-    }
-    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10, Home: -Infinity, End: Infinity }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    event.stopPropagation();
-    moveAlongFront(step);
-  });
+  gd.append(ring);
+  gd.addEventListener("keydown", frontKey);
   document.addEventListener("keydown", (event) => {
-    if (event.target.closest("input, select, textarea, button, canvas, summary, a") || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.target.closest("input, select, textarea, button, canvas, summary, a, [tabindex]") || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.key === "ArrowRight") moveAlongFront(1);
     if (event.key === "ArrowLeft") moveAlongFront(-1);
   });
   startAxes();
   startMotorSwitches();
   on("selection", () => { placeRing(); describeFront(); });
-  on("view", drawFront);
-  charts.push(drawFront);
+  on("view", () => describeFront());
+  on("view", lazily("front-chart", drawFront));
 }
 
-// On a narrow page the bar of colours lies above the chart.
-function narrow() { return gd.clientWidth < 520; }
-
-const ABOVE = { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", len: 1, thickness: 10 };
-
-// The colours of a front by a third measure: one scale for all studies, with one bar beside the chart.
-function colourOf(study, name, list) {
-  const values = (i) => page.studies[i].front.map((row) => inShown(name, page.studies[i].trials.columns[name][row]));
-  const [low, high] = extent([...state.visible].flatMap(values));
-  const first = !list.some((one) => one.name === "front");
-  return {
-    color: values(study), cmin: low, cmax: high, colorscale: "Viridis", showscale: first, size: 8.5,
-    colorbar: { title: { text: plain(titled(name)), side: narrow() ? "top" : "right" }, thickness: 12, outlinewidth: 0, tickcolor: colour("soft"), ...(narrow() ? ABOVE : {}) },
-  };
+function frontKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const study = event.shiftKey && { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+  const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10, Home: -Infinity, End: Infinity }[event.key];
+  const zoom = { "+": 1 / 1.5, "=": 1 / 1.5, "-": 1.5, 0: 0 }[event.key];
+  if (!study && !step && zoom === undefined) return;
+  event.preventDefault();
+  event.stopPropagation();
+  if (study) moveToStudy(study);
+  else if (step) moveAlongFront(step);
+  else zoomFront(zoom);
 }
 
-// A choice of what is to the right, where the page has more than one such measure.
-function startAxes() {
-  const names = page.goals.filter((name) => name !== FIRST);
-  if (names.length < 2) return;
-  const choice = make("select", { id: "across" }, ...names.map((name) => make("option", { value: name }, titled(name))));
-  choice.value = state.axes.x;
-  choice.addEventListener("change", () => setAxes({ x: choice.value }));
-  on("axes", () => { choice.value = state.axes.x; home = startRange(); });
-  byId("axes").append(make("label", {}, "To the right ", choice));
-  byId("axes").hidden = false;
-}
-
-let lastView = "";
-function redrawView() {
-  const { x, y } = viewRange();
-  const key = JSON.stringify([x, y, gd.clientWidth]);
-  if (key === lastView) return;
-  lastView = key;
-  drawFront();
-}
-
-// One of six colours and marks for a kit of motors, by its number.
-const MARKS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon"];
-function motorTint(kit) { return MOTORS.indexOf(kit) % MARKS.length; }
-
-const MARK_SHAPES = [
-  '<circle cx="7" cy="7" r="4"/>', '<path d="M3 3H11V11H3Z"/>', '<path d="M7 2L12 7L7 12L2 7Z"/>',
-  '<path d="M7 3L12 11H2Z"/>', '<path d="M7 11L2 3H12Z"/>', '<path d="M7 2L12 6L10 12H4L2 6Z"/>',
-];
-
-// A switch for each kit of motors that designs choose from: without it, its designs are out of range everywhere.
-function startMotorSwitches() {
-  const box = byId("motors");
-  box.hidden = MOTORS.length === 0;
-  for (const kit of MOTORS) {
-    const input = make("input", { type: "checkbox", "data-motor": kit });
-    input.checked = !state.withoutMotors.has(kit);
-    input.addEventListener("change", () => showMotor(kit, input.checked));
-    on("conditions", () => { input.checked = !state.withoutMotors.has(kit); });
-    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true", fill: `var(--c${motorTint(kit)})` });
-    symbol.innerHTML = MARK_SHAPES[motorTint(kit)]; // constant text from above
-    box.append(make("label", {}, input, symbol, page.kits[kit].motor));
-  }
-}
-
-const SYMBOLS = {
-  cloud: '<circle cx="7" cy="7" r="2.5" fill="var(--cloud)"/>',
-  infeasible: '<path d="M4 4L10 10M10 4L4 10" stroke="var(--bad)" stroke-width="1.5"/>',
-  front: '<path d="M0 7H14" stroke="var(--c0)"/><circle cx="7" cy="7" r="3.8" fill="var(--c0)"/>',
-  published: '<path d="M7 2L12 7L7 12L2 7Z" fill="none" stroke="var(--paper)" stroke-width="1.6"/>',
-  simulated: '<path d="M7 2L12 7L7 12L2 7Z" fill="var(--paper)"/>',
-  floor: '<path d="M0 11L14 3" stroke="var(--faint)" stroke-width="1.6" stroke-dasharray="2 2.5"/>',
-  picks: '<path d="M7 1L8.8 5.2L13.3 5.5L9.8 8.4L11 12.9L7 10.4L3 12.9L4.2 8.4L.7 5.5L5.2 5.2Z" fill="var(--c4)" stroke="var(--ink)" stroke-width=".7"/>',
-};
-
-function startSwitches() {
-  const names = {
-    front: "front", cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
-    simulated: "paper, simulated here", picks: "knee", floor: `floor m g (H − ${START_HEIGHT} m)`,
-  };
-  const box = byId("switches");
-  const mass = page.studies.map((s) => s.floor_mass_kg).filter((m) => m !== null);
-  for (const [key, text] of Object.entries(names)) {
-    const input = make("input", { type: "checkbox", "data-show": key });
-    input.checked = state.layers[key];
-    input.addEventListener("change", () => showLayer(key, input.checked));
-    on("layers", () => { input.checked = state.layers[key]; });
-    const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" });
-    symbol.innerHTML = SYMBOLS[key]; // constant text from above
-    const label = make("label", {}, input, symbol, text);
-    if (key === "floor" && mass.length) {
-      label.append(` of the lightest robot, ${round(Math.min(...mass), 2)} kg`);
-      label.title = "The work of lifting that robot's weight. A leg that stretches in flight rises a little less than the base.";
-    }
-    box.append(label);
-  }
-  if (page.studies.length < 2) return;
-  page.studies.forEach((study, i) => {
-    const input = make("input", { type: "checkbox", "data-study": i });
-    input.checked = state.visible.has(i);
-    input.addEventListener("change", () => showStudy(i, input.checked));
-    on("conditions", () => { input.checked = state.visible.has(i); });
-    const symbol = make("span", { class: "swatch", style: `background: var(--c${i % 6})` });
-    box.append(make("label", {}, input, symbol, study.label));
-  });
+// Nearer about the selection, farther, or with 0 the whole.
+function zoomFront(factor) {
+  if (factor === 0) { front.whole(); return; }
+  const { left, top, width, height } = front.box;
+  const here = ring.hidden ? [left + width / 2, top + height / 2] : [parseFloat(ring.style.left), parseFloat(ring.style.top)];
+  if (!front.space) front.zoom(factor, here);
 }

@@ -134,10 +134,10 @@ function drawAlong() {
     for (const bound of limits) chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(bound * q.scale), y2: chart.toY(bound * q.scale), stroke: "var(--faint)", "stroke-dasharray": "2 3" }));
     const change = joint ? switchRatio() : null;
     if (change !== null && change > y[0] && change < y[1]) {
-      chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(change), y2: chart.toY(change), stroke: "var(--c4)", "stroke-width": 1.4 }));
+      chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(change), y2: chart.toY(change), stroke: "var(--soft)", "stroke-width": 1.4 }));
       chart.svg.append(text(chart.left + chart.w - 3, chart.toY(change) - 4, "ESSPG", "end"), text(chart.left + chart.w - 3, chart.toY(change) + 12, "ISSPG", "end"));
     }
-    const dot = draw("circle", { r: 6, fill: "none", stroke: "var(--c1)", "stroke-width": 2.5 });
+    const dot = draw("circle", { r: 6, fill: "none", stroke: "var(--select)", "stroke-width": 2.5 });
     chart.svg.append(dot);
     dots.push({ dot, chart, variable, q });
     box.append(chart.svg);
@@ -189,6 +189,5 @@ function moveDots() {
 function startLines() {
   on("selection", (how) => { drawTimes(); if (how.other) drawAlong(); else moveDots(); });
   on("time", moveCursors);
-  on("view", drawAlong);
-  drawAlong();
+  on("view", lazily("along-charts", drawAlong));
 }

@@ -53,10 +53,10 @@ const READERS = {
     }
     if (texts.length > SHORTLIST_MOST) throw new Error(`${texts.length} designs on the shortlist`);
   },
-  x: (s, [text]) => { s.axes.x = known(text); },
-  y: (s, [text]) => { s.axes.y = known(text); },
-  colour: (s, [text]) => { s.axes.colour = text === "" || text === "auto" ? text : known(text); },
-  size: (s, [text]) => { s.axes.size = text && known(text); },
+  x: (s, [text]) => { s.axes.x = axisNamed(text); },
+  y: (s, [text]) => { s.axes.y = axisNamed(text); },
+  colour: (s, [text]) => { s.axes.colour = text === "" || text === "auto" ? text : axisNamed(text); },
+  size: (s, [text]) => { s.axes.size = text && axisNamed(text); },
   log: (s, [text]) => { Object.assign(s.axes, { logX: text.includes("x"), logY: text.includes("y") }); },
   space: (s, [text]) => { s.axes.space = text === "1"; },
   layers: (s, [text]) => {
@@ -75,6 +75,9 @@ function oneOf(value, allowed) {
 }
 
 function known(name) { return oneOf(name, knownNames()); }
+
+// A measure that trials differ in.
+function axisNamed(name) { return oneOf(name, page.axes); }
 
 function studyOf(text) { return oneOf(/^\d+$/.test(text) ? Number(text) : NaN, page.studies.map((_, i) => i)); }
 

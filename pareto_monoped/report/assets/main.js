@@ -1,6 +1,10 @@
 // Start: the state in the address first, then what listens to it, then the first selection and the charts.
 
-function redrawAll() { for (const redraw of charts) redraw(); }
+function redrawAll() {
+  tints.clear();
+  pictures.clear();
+  for (const redraw of charts) redraw();
+}
 
 function start() {
   startLink();
@@ -15,7 +19,7 @@ function start() {
   describeFront();
   startParallel();
   startSearch();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
+  for (const medium of ["(prefers-color-scheme: dark)", "print"]) matchMedia(medium).addEventListener("change", redrawAll);
 }
 
 // Text and tables are painted first; the charts wait for the next frame.

@@ -1,31 +1,19 @@
-// Parallel coordinates of variables and objectives, drawn on a canvas; ranges and selection are shared with the front.
+// Parallel coordinates of variables and objectives, drawn on a canvas; conditions and selection are the page's own.
 
 const AXES = [...page.variables.map((v) => v.name), ...(page.goals.includes("mass_kg") ? [] : ["mass_kg"]), ...page.goals];
-const MOST_LINES = 3000;
-const NEAR_PX = 8;
-const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 46, right: 46, limits: {}, lines: [] };
+// As many lines as can be told apart; more become a block of one colour.
+const MOST_OF_FRONT = 260, MOST_OTHERS = 260;
+const LINE_PX = 8; // a click this near to a line means it
+const SOFT_SHARE = 1e-3; // of the top of an axis with zeros: below it the axis is linear
+const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 46, right: 50, scales: {}, front: [], others: [] };
 
 function axisX(i) { return par.left + i / (AXES.length - 1) * (par.width - par.left - par.right); }
 
-function axisY(name, value) {
-  const [low, high] = par.limits[name];
-  return par.height - par.bottom - (value - low) / (high - low || 1) * (par.height - par.top - par.bottom);
-}
+function axisY(name, value) { return par.height - par.bottom - Math.min(Math.max(par.scales[name].share(value), 0), 1) * (par.height - par.top - par.bottom); }
 
 function valueAtY(name, y) {
-  const [low, high] = par.limits[name];
   const share = (par.height - par.bottom - y) / (par.height - par.top - par.bottom);
-  return low + Math.min(Math.max(share, 0), 1) * (high - low);
-}
-
-// Limits of each axis and which trials are drawn: the fronts, and every n-th of the other feasible ones.
-function prepareParallel() {
-  for (const name of AXES) {
-    const values = page.studies.flatMap((s) => s.bounds[name] ?? []);
-    if (!values.length) for (const s of page.studies) values.push(...extent(feasibleRows(s).map((row) => s.trials.columns[name][row])));
-    const [low, high] = extent(values);
-    par.limits[name] = low === high ? padded([low, high]) : [low, high];
-  }
+  return par.scales[name].value(Math.min(Math.max(share, 0), 1));
 }
 
 function feasibleRows(study) {
@@ -33,29 +21,48 @@ function feasibleRows(study) {
   return study.feasible;
 }
 
+// Each axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
+function prepareScales() {
+  for (const name of AXES) {
+    const values = page.studies.flatMap((s) => feasibleRows(s).map((row) => s.trials.columns[name][row]));
+    const ends = page.studies.flatMap((s) => s.bounds[name] ?? []);
+    const [low, high] = extent(ends.length ? ends : values);
+    const kind = low === high ? "linear" : kindFor([...values, low, high]);
+    par.scales[name] = scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
+  }
+}
+
+function thinnedTo(list, most) {
+  if (list.length <= most) return list;
+  return Array.from({ length: most }, (_, i) => list[Math.round(i * (list.length - 1) / (most - 1))]);
+}
+
+// Which designs have a line: of those that obey the conditions, evenly along the fronts and among the others.
 function linesToDraw() {
-  const clouds = [], fronts = [];
+  const others = [], onFronts = [];
   for (const i of state.visible) {
     const study = page.studies[i];
     const onFront = new Set(study.front);
-    for (const row of feasibleRows(study)) if (!onFront.has(row)) clouds.push([i, row]);
-    for (const row of study.front) fronts.push([i, row]);
+    if (state.layers.cloud) for (const row of feasibleRows(study)) if (!onFront.has(row) && inRanges(i, row)) others.push([i, row]);
+    for (const row of study.front) if (inRanges(i, row)) onFronts.push([i, row]);
   }
-  const every = Math.max(Math.ceil(clouds.length / MOST_LINES), 1);
-  return { clouds: clouds.filter((_, k) => k % every === 0), fronts, every };
+  par.all = onFronts.length + others.length;
+  par.front = thinnedTo(onFronts, MOST_OF_FRONT);
+  par.others = thinnedTo(others, MOST_OTHERS);
 }
 
 function drawParallel() {
   par.width = Math.max(par.node.clientWidth, 300);
   par.height = par.node.clientHeight;
-  const scale = window.devicePixelRatio || 1;
+  const scale = paperScale() ?? (window.devicePixelRatio || 1);
   par.canvas.width = par.width * scale;
   par.canvas.height = par.height * scale;
   par.xs = AXES.map((_, i) => axisX(i));
-  par.lines = linesToDraw();
-  drawAxes();
+  linesToDraw();
+  drawParallelAxes();
   drawLines();
   drawSelected();
+  describeRanges();
 }
 
 function polyline(context, [study, row]) {
@@ -68,93 +75,92 @@ function polyline(context, [study, row]) {
 }
 
 function stroke(context, list, tint, width, alpha) {
-  context.strokeStyle = tint;
-  context.lineWidth = width;
-  context.globalAlpha = alpha;
+  Object.assign(context, { lineWidth: width, globalAlpha: alpha });
   for (const line of list) {
+    context.strokeStyle = tint(line);
     context.beginPath();
     polyline(context, line);
     context.stroke();
   }
 }
 
+// As on the front chart: by a measure, by motor or by study; one study alone by its first objective.
+function lineTint() {
+  const motors = page.studies.some((study) => study.trials.columns.motor);
+  const measure = tinted() ?? (motors || page.studies.length > 1 ? null : FIRST);
+  if (measure) {
+    const [low, high] = rangeOver(measure), { scale } = quantity[measure];
+    return ([study, row]) => RAMP_TEXT[shadeOf(valueAt(study, measure, row) * scale, low, high)];
+  }
+  return ([study, row]) => (page.studies[study].trials.columns.motor ? colour(`c${motorTint(kitOf(page.studies[study], row))}`) : studyColour(study));
+}
+
 function drawLines() {
   const context = par.canvas.getContext("2d");
-  const scale = window.devicePixelRatio || 1;
+  const scale = par.canvas.width / par.width;
   context.setTransform(scale, 0, 0, scale, 0, 0);
   context.clearRect(0, 0, par.width, par.height);
-  const kept = (list) => list.filter(([study, row]) => inRanges(study, row));
-  const ranged = filtered();
-  if (state.layers.cloud) stroke(context, kept(par.lines.clouds), colour("cloud"), 1, ranged ? 0.3 : 0.09);
-  const several = page.studies.length > 1;
-  for (const i of state.visible) {
-    const own = par.lines.fronts.filter(([study]) => study === i);
-    if (page.studies[i].trials.columns.motor) {
-      for (const kit of MOTORS) stroke(context, kept(own).filter(([, row]) => kitOf(page.studies[i], row) === kit), colour(`c${motorTint(kit)}`), 1.2, 0.55);
-    } else stroke(context, kept(own), several ? studyColour(i) : colour("c0"), 1.2, 0.55);
-  }
+  const cloud = colour("cloud");
+  stroke(context, par.others, () => cloud, 0.8, 0.16);
+  stroke(context, par.front, lineTint(), 1.1, par.front.length > 120 ? 0.45 : 0.7);
   context.globalAlpha = 1;
 }
 
 // The selected design's line has a layer of its own, so that the many below are not drawn again.
 function drawSelected() {
+  if (!par.xs) return;
   const { columns } = current().trials;
-  const d = state.row === null ? "" : `M${AXES.map((name, i) => `${par.xs[i].toFixed(1)} ${axisY(name, columns[name][state.row] ?? par.limits[name][0]).toFixed(1)}`).join("L")}`;
+  const d = state.row === null ? "" : `M${AXES.map((name, i) => `${par.xs[i].toFixed(1)} ${axisY(name, columns[name][state.row] ?? par.scales[name].range[0]).toFixed(1)}`).join("L")}`;
   for (const path of par.selected.children) path.setAttribute("d", d);
 }
 
-function drawAxes() {
-  par.svg.replaceChildren();
-  AXES.forEach((name, i) => {
-    const q = quantity[name], x = par.xs[i], [low, high] = par.limits[name];
-    const group = draw("g", { class: "axis", "data-axis": name });
+function drawParallelAxes() {
+  par.svg.replaceChildren(...AXES.map((name, i) => {
+    const q = quantity[name], x = par.xs[i], scale = par.scales[name], [low, high] = scale.range;
+    const group = draw("g", { class: "axis", "data-axis": name, "data-kind": scale.kind, "data-soft": high * SOFT_SHARE });
     group.append(draw("rect", { x: x - 20, y: par.top - 8, width: 40, height: par.height - par.top - par.bottom + 16, fill: "transparent" }));
     group.append(draw("line", { x1: x, x2: x, y1: par.top, y2: par.height - par.bottom, stroke: "var(--soft)" }));
     const words = q.label.split(" ");
     const half = words.length > 1 ? [words[0], words.slice(1).join(" ")] : ["", words[0]];
-    group.append(text(x, 11, half[0], "middle", "strong"), text(x, 23, half[1], "middle", "strong"), text(x, 35, q.unit, "middle"));
-    for (const value of ticks(low * q.scale, high * q.scale, 5)) {
-      const label = text(x + 5, axisY(name, value / q.scale) + 4, tickText(value));
-      label.setAttribute("style", "paint-order: stroke; stroke: var(--card); stroke-width: 3px");
-      group.append(draw("line", { x1: x - 3, x2: x + 3, y1: axisY(name, value / q.scale), y2: axisY(name, value / q.scale), stroke: "var(--soft)" }), label);
+    group.append(text(x, 11, half[0], "middle", "strong"), text(x, 23, half[1], "middle", "strong"), text(x, 35, scale.kind === "linear" ? q.unit : `${q.unit}, log`, "middle"));
+    // Ticks are round numbers in the unit shown.
+    const inUnits = scaleOf([low * q.scale, high * q.scale], scale.kind, high * q.scale * SOFT_SHARE);
+    for (const value of inUnits.ticks(5)) {
+      const y = axisY(name, value / q.scale);
+      group.append(draw("line", { x1: x - 3, x2: x + 3, y1: y, y2: y, stroke: "var(--soft)" }), text(x + 5, y + 4, tickText(value), "start", "halo"));
     }
     const range = state.ranges[name];
     if (range) {
-      const y = axisY(name, Math.min(range[1] ?? high, high)), end = axisY(name, Math.max(range[0] ?? low, low));
-      group.append(draw("rect", { x: x - 8, y, width: 16, height: Math.max(end - y, 2), fill: "var(--c4)", "fill-opacity": 0.45, stroke: "var(--c4)" }));
+      const y = axisY(name, range[1] ?? high), end = axisY(name, range[0] ?? low);
+      group.append(draw("rect", { x: x - 8, y, width: 16, height: Math.max(end - y, 2), class: "kept" }));
     }
-    par.svg.append(group);
-  });
+    return group;
+  }));
 }
-
 
 function describeRanges() {
   const note = byId("brush-note");
-  if (!filtered()) {
-    const { every } = par.lines;
-    note.textContent = every > 1 ? `Drawn are the whole front and one in ${every} of the other feasible trials.` : "";
-    return;
-  }
-  let front = 0, fronts = 0, all = 0, total = 0;
+  const drawn = par.front.length + par.others.length;
+  const words = drawn < par.all ? `Drawn are ${drawn} of ${par.all} designs, evenly along the front and among the others.` : "";
+  if (!filtered()) { note.textContent = words; return; }
+  let onFront = 0, fronts = 0, all = 0, total = 0;
   for (const i of state.visible) {
     const study = page.studies[i];
     fronts += study.front.length;
-    front += study.front.filter((row) => inRanges(i, row)).length;
+    onFront += keptFront(i).length;
     total += feasibleRows(study).length;
     all += feasibleRows(study).filter((row) => inRanges(i, row)).length;
   }
-  note.textContent = `Within the ranges: ${front} of ${fronts} designs on the front, ${all} of ${total} feasible trials on this page. `;
-  const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all ranges");
+  note.textContent = `Within the conditions: ${onFront} of ${fronts} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
+  const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all conditions");
   clear.addEventListener("click", clearConditions);
   note.append(clear);
 }
 
 function fillFields() {
   for (const name of AXES) {
-    const range = state.ranges[name];
-    const [from, to] = par.fields[name];
-    [from, to].forEach((field, side) => {
-      const end = range?.[side] ?? null;
+    par.fields[name].forEach((field, side) => {
+      const end = state.ranges[name]?.[side] ?? null;
       if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(5));
     });
   }
@@ -164,7 +170,7 @@ function buildFields() {
   par.fields = {};
   for (const name of AXES) {
     const q = quantity[name];
-    const pair = ["from", "to"].map((word, side) => {
+    par.fields[name] = ["from", "to"].map((word) => {
       const input = make("input", { type: "number", step: "any", "aria-label": `${q.label} ${word}, ${q.unit}`, placeholder: word, "data-range": `${name}-${word}` });
       input.addEventListener("change", () => {
         const typed = par.fields[name].map((field) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber / q.scale : null));
@@ -172,18 +178,16 @@ function buildFields() {
       });
       return input;
     });
-    par.fields[name] = pair;
-    byId("brush-fields").append(make("label", {}, `${q.label}, ${q.unit}`, make("span", {}, pair[0], " ", pair[1])));
+    byId("brush-fields").append(make("div", {}, `${q.label}, ${q.unit}`, make("span", {}, par.fields[name][0], " ", par.fields[name][1])));
   }
 }
 
 function nearestLine(x, y) {
-  let best = null, least = NEAR_PX;
+  let best = null, least = LINE_PX;
   const left = par.xs.findLastIndex((at) => at <= x);
   if (left < 0 || left >= AXES.length - 1) return null;
   const share = (x - par.xs[left]) / (par.xs[left + 1] - par.xs[left]);
-  for (const line of [...par.lines.fronts, ...(state.layers.cloud ? par.lines.clouds : [])]) {
-    if (!inRanges(...line)) continue;
+  for (const line of [...par.front, ...par.others]) {
     const { columns } = page.studies[line[0]].trials;
     const a = axisY(AXES[left], columns[AXES[left]][line[1]]), b = axisY(AXES[left + 1], columns[AXES[left + 1]][line[1]]);
     const off = Math.abs(a + share * (b - a) - y);
@@ -196,12 +200,26 @@ function startParallel() {
   par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables and measures" });
   par.svg = draw("svg", { "aria-hidden": "true" });
   par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
-    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--c1)", "stroke-width": 3, id: "parallel-selected" }));
+    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--select)", "stroke-width": 3, id: "parallel-selected" }));
   par.node.append(par.canvas, par.selected, par.svg);
-  prepareParallel();
+  prepareScales();
   buildFields();
-  drawParallel();
+  fillFields();
+  listenToAxes();
+  on("selection", drawSelected);
+  on("conditions", ({ final }) => {
+    if (final) fillFields();
+    if (!final && par.xs) drawParallelAxes();
+  });
+  const redraw = lazily("parallel-chart", drawParallel);
+  on("view", () => { linesToDraw(); describeRanges(); redraw(); });
+  linesToDraw();
   describeRanges();
+  new ResizeObserver(() => { if (par.xs && par.width !== Math.max(par.node.clientWidth, 300)) redraw(); }).observe(par.node);
+}
+
+// A mouse draws a range on an axis; a finger scrolls, and types its ranges.
+function listenToAxes() {
   let drag = null;
   const at = (event) => {
     const box = par.node.getBoundingClientRect();
@@ -211,15 +229,13 @@ function startParallel() {
     const [x, y] = at(event);
     const i = par.xs.findIndex((value) => Math.abs(value - x) < 20);
     drag = { name: i >= 0 ? AXES[i] : null, x, y, moved: false };
-    if (drag.name) par.node.setPointerCapture(event.pointerId);
+    if (drag.name && event.pointerType !== "touch") par.node.setPointerCapture(event.pointerId);
   });
   par.node.addEventListener("pointermove", (event) => {
-    if (!drag || !drag.name) return;
+    if (!drag?.name || event.pointerType === "touch") return;
     const [, y] = at(event);
     if (Math.abs(y - drag.y) > 4) drag.moved = true;
-    if (!drag.moved) return;
-    const range = [valueAtY(drag.name, drag.y), valueAtY(drag.name, y)].sort((a, b) => a - b);
-    setRange(drag.name, range, false);
+    if (drag.moved) setRange(drag.name, [valueAtY(drag.name, drag.y), valueAtY(drag.name, y)].sort((a, b) => a - b), false);
   });
   par.node.addEventListener("pointerup", (event) => {
     if (!drag) return;
@@ -233,14 +249,4 @@ function startParallel() {
     drag = null;
   });
   par.node.addEventListener("pointercancel", () => { drag = null; });
-  on("selection", drawSelected);
-  on("conditions", ({ final }) => {
-    drawAxes();
-    drawLines();
-    if (final) fillFields();
-  });
-  on("view", () => { par.lines = linesToDraw(); drawLines(); describeRanges(); });
-  fillFields();
-  charts.push(drawParallel);
-  window.addEventListener("resize", drawParallel);
 }

@@ -1,44 +1,71 @@
-// What all Plotly charts share: theme, margins, redrawing when the colour scheme changes.
+// What all charts share: drawing when they come into view, names, legends, printing.
 
-const charts = [];
-
-function axis(title, more = {}) {
-  return {
-    title: { text: title, standoff: 8 }, gridcolor: colour("grid"), linecolor: colour("line"), zeroline: false,
-    tickcolor: colour("line"), color: colour("soft"), automargin: false, ...more,
-  };
-}
-
-function layout(x, y, more = {}) {
-  return {
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 58, r: 14, t: 12, b: 48 },
-    font: { family: "system-ui, sans-serif", size: 12, color: colour("soft") }, showlegend: false,
-    hoverlabel: { bgcolor: colour("card"), bordercolor: colour("faint"), font: { color: colour("ink"), size: 12 }, align: "left" },
-    hovermode: "closest", xaxis: x, yaxis: y, uirevision: "keep", ...more,
-  };
-}
-
-const CONFIG = {
-  displaylogo: false, showSendToCloud: false, responsive: true, scrollZoom: false,
-  modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
-};
-
-// Draws a chart when it comes near the view, and again when the colours change.
+// Draws a chart when it comes near the view; later changes wait until it is there again. Returns what asks for a redraw.
 function lazily(id, render) {
   const node = byId(id);
-  let drawn = false;
-  const now = () => { drawn = true; render(node); };
-  charts.push(() => { if (drawn) render(node); });
-  const watcher = new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) return;
-    watcher.disconnect();
-    now();
-  }, { rootMargin: "300px" });
-  watcher.observe(node);
-  window.addEventListener("beforeprint", () => { if (!drawn) now(); });
+  let near = false, stale = true;
+  const now = () => { stale = false; render(node); };
+  const again = () => { stale = true; if (near) now(); };
+  charts.push(again);
+  new IntersectionObserver((entries) => {
+    near = entries.at(-1).isIntersecting;
+    if (near && stale) now();
+  }, { rootMargin: "300px" }).observe(node);
+  window.addEventListener("beforeprint", () => { if (stale) now(); });
+  return again;
 }
 
-function describe(node, text) {
+// A page is printed with more dots per inch than a screen has.
+function paperScale() { return matchMedia("print").matches ? 3 : null; }
+
+function describe(node, words) {
   node.setAttribute("role", "img");
-  node.setAttribute("aria-label", text);
+  node.setAttribute("aria-label", words);
+}
+
+// The lines and marks of a chart with their names, as a list under it.
+function legend(node, layers) {
+  const old = node.nextElementSibling?.classList.contains("legend") ? node.nextElementSibling : null;
+  const list = make("ul", { class: "legend" }, ...layers.map((layer) => {
+    const tint = layer.line?.color ?? entry(layer.marker.color, 0);
+    const symbol = draw("svg", { width: 22, height: 12, "aria-hidden": "true" });
+    if (layer.mode.includes("lines")) symbol.append(draw("line", { x1: 0, x2: 22, y1: 6, y2: 6, stroke: tint, "stroke-width": layer.line.width ?? 1.5, "stroke-dasharray": (DASHES[layer.line.dash ?? "solid"]).join(" ") || "none" }));
+    else symbol.append(markOf(entry(layer.marker.symbol, 0), 11, 6, tint));
+    return make("li", {}, symbol, layer.title ?? layer.name);
+  }));
+  if (old) old.replaceWith(list);
+  else node.after(list);
+}
+
+// A small mark in SVG, as the canvas draws it.
+function markOf(kind, x, y, tint) {
+  const d = {
+    square: "M-4 -4H4V4H-4Z", diamond: "M0 -5L5 0L0 5L-5 0Z", "triangle-up": "M0 -5L5 4H-5Z", "triangle-down": "M0 5L5 -4H-5Z",
+    pentagon: "M0 -5L5 -1L3 4H-3L-5 -1Z",
+  }[kind.replace("-open", "")] ?? "M-4 0A4 4 0 1 0 4 0A4 4 0 1 0 -4 0Z";
+  const open = kind.endsWith("-open");
+  return draw("path", { d, transform: `translate(${x} ${y})`, fill: open ? "none" : tint, stroke: open ? tint : "none", "stroke-width": 1.6 });
+}
+
+const SPOTS = [[1, 0], [-1, 0], [0, -1], [0, 1], [0.75, -0.75], [-0.75, -0.75], [0.75, 0.75], [-0.75, 0.75]];
+const LETTER_PX = 7.2; // of a letter of 12 px
+
+// Where names go: beside their own mark, farther away where others are in the way.
+function placedNames(marks, { left, top, width, height }) {
+  const taken = marks.map(({ px, py }) => [px - 8, px + 8, py - 8, py + 8]);
+  return marks.filter((mark) => mark.text).map((mark) => {
+    const half = (LETTER_PX * mark.text.length + 4) / 2;
+    const spots = [13, 24, 38, 54].flatMap((away) => SPOTS.map(([dx, dy]) => [mark.px + dx * (away + half - 4), mark.py + dy * (away + 4)]));
+    const boxed = ([x, y]) => [x - half, x + half, y - 8, y + 8];
+    const others = marks.filter((other) => other !== mark);
+    const own = ([x, y]) => others.every((other) => Math.hypot(other.px - x, other.py - y) > Math.hypot(mark.px - x, mark.py - y));
+    const free = (spot) => {
+      const [a, b, c, d] = boxed(spot);
+      return a >= left && b <= left + width && c >= top && d <= top + height && !taken.some(([e, f, g, h]) => a < f && b > e && c < h && d > g);
+    };
+    const spot = spots.find((one) => free(one) && own(one)) ?? spots.find(free) ?? spots[0];
+    const box = boxed(spot);
+    taken.push(box);
+    return { ...mark, from: box[0], to: box[1], at: spot[1] };
+  });
 }

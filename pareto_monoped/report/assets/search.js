@@ -1,15 +1,26 @@
-// Convergence, the stage 1 map and link mass, by Plotly.
+// Convergence, the stage 1 map and link mass.
 
 function seriesStyle(i) {
   return { color: studyColour(i), width: 1.8, dash: ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"][i % 6] };
 }
 
 function band(x, low, middle, high, tint, name) {
-  const edge = { type: "scatter", mode: "lines", x, line: { width: 0 }, hoverinfo: "skip", showlegend: false };
   return [
-    { ...edge, y: low }, { ...edge, y: high, fill: "tonexty", fillcolor: `${tint}33` },
-    { type: "scatter", mode: "lines", name, x, y: middle, line: { color: tint, width: 2.5 } },
+    { name: `${name}, least to greatest`, mode: "area", x, y: low, y2: high, fill: tint },
+    { name, mode: "lines", x, y: middle, line: { color: tint, width: 2.5 }, text: (i) => `${plain(name)}<br>${x[i]} evaluations: ${round(middle[i])}` },
   ];
+}
+
+// Draws layers of lines or marks on axes that hold all of them.
+function plot(node, layers, x, y, { fromZero = [false, false], names = true } = {}) {
+  const span = (key, zero) => {
+    const [low, high] = extent(layers.flatMap((layer) => [...layer[key], ...(key === "y" ? layer.y2 ?? [] : [])]));
+    const room = 0.05 * (high - low) || 1;
+    return zero ? [0, high + room] : [low - room, high + room];
+  };
+  const chart = node.chart ?? new Chart(node);
+  chart.set(layers, { title: x, range: span("x", fromZero[0]) }, { title: y, range: span("y", fromZero[1]) });
+  if (names) legend(node, layers.filter((layer) => layer.mode !== "area" && layer.x.length));
 }
 
 function drawConvergence(node) {
@@ -24,17 +35,15 @@ function drawConvergence(node) {
   const unit = alike ? page.studies[0].hypervolume_unit : "% of the last";
   const volumes = ({ hypervolume: all }) => (alike ? all : all.map((value) => 100 * value / (all.at(-1) || 1)));
   const list = page.studies.map((study, i) => ({
-    type: "scatter", mode: study.history.evaluations.length > 1 ? "lines" : "markers", name: plain(study.label),
-    x: study.history.evaluations, y: volumes(study.history), line: { ...seriesStyle(i), shape: "hv" },
-    hovertemplate: `%{x} evaluations: %{y:.3f} ${unit}<extra></extra>`,
+    mode: study.history.evaluations.length > 1 ? "lines" : "markers", name: study.label,
+    x: study.history.evaluations, y: volumes(study.history), line: { ...seriesStyle(i), shape: "hv" }, marker: { size: 6, symbol: "circle", color: studyColour(i) },
+    text: (k) => `${plain(study.label)}<br>${study.history.evaluations[k]} evaluations: ${round(volumes(study.history)[k])} ${unit}`,
   }));
   (comparison?.growth ?? []).forEach((growth, k) => {
     const first = page.studies.findIndex((study) => study.label === growth.labels[0]);
     list.push(...band(growth.evaluations, growth.low, growth.median, growth.high, studyColour(first), `median of ${growth.labels.length} seeds`));
   });
-  Plotly.react(node, list, layout(axis("evaluations", { rangemode: "tozero" }), axis(`hypervolume, ${unit}`), {
-    showlegend: list.length > 1, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
-  }), CONFIG);
+  plot(node, list, "evaluations", `hypervolume, ${unit}`, { fromZero: [true, false], names: list.length > 1 });
   const last = page.studies[0].history;
   describe(node, last.evaluations.length ? `Hypervolume over evaluations: ${round(last.hypervolume.at(-1), 2)} ${page.studies[0].hypervolume_unit} after ${last.evaluations.at(-1)}` : "No evaluations yet");
 }
@@ -44,12 +53,13 @@ function drawAttainment(node) {
   const list = page.comparison.surfaces.flatMap((surface) => {
     const first = page.studies.findIndex((study) => study.label === surface.labels[0]);
     const tint = studyColour(first);
-    const line = (name, y, dash, width) => ({ type: "scatter", mode: "lines", name, x: inUnit(SECOND, y), y: inUnit(FIRST, surface.first), line: { color: tint, dash, width }, hovertemplate: `${plain(quantity[FIRST].label)} %{y}, ${plain(quantity[SECOND].label)} %{x}<extra></extra>` });
+    const line = (name, y, dash, width) => ({
+      mode: "lines", name, x: inUnit(SECOND, y), y: inUnit(FIRST, surface.first), line: { color: tint, dash, width },
+      text: (i) => `${name}<br>${plain(quantity[FIRST].label)} ${shown(FIRST, surface.first[i])}, ${plain(quantity[SECOND].label)} ${shown(SECOND, y[i])}`,
+    });
     return [line("best seed", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst seed", surface.worst, "dash", 1.2)];
   });
-  Plotly.react(node, list, layout(axis(titled(SECOND), { rangemode: "tozero" }), axis(`${quantity[FIRST].label} reached, ${quantity[FIRST].unit}`), {
-    showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
-  }), CONFIG);
+  plot(node, list, titled(SECOND), `${quantity[FIRST].label} reached, ${quantity[FIRST].unit}`, { fromZero: [true, false] });
   describe(node, `Attainment surfaces: the ${quantity[FIRST].label} that the best, the median and the worst seed reached at each ${quantity[SECOND].label}`);
 }
 
@@ -57,7 +67,7 @@ function inUnit(name, values) { return values.map((value) => (value === null ? n
 
 function drawMap(node) {
   const list = [];
-  const style = { ISSPG: [colour("c1"), "circle"], ESSPG: [colour("c0"), "diamond"] };
+  const style = { ISSPG: [colour("c2"), "circle"], ESSPG: [colour("c0"), "diamond"] };
   const many = page.maps.length > 2; // colours then tell motors apart, filled symbols only one
   page.maps.forEach((map, k) => {
     for (const [family, [own, symbol]] of Object.entries(style)) {
@@ -65,30 +75,27 @@ function drawMap(node) {
       const rows = map.points.filter((p) => p.family_mass_kg[family] !== undefined);
       const best = (p) => p.gearbox !== null && page.gearboxes[p.gearbox].family === family;
       list.push({
-        type: "scatter", mode: "markers", name: `${family}${page.maps.length > 1 ? `, ${plain(map.motor)}` : ""}`,
+        mode: "markers", name: `${family}${page.maps.length > 1 ? `, ${map.motor}` : ""}`,
         x: rows.map((p) => p.ratio_low), y: rows.map((p) => p.family_mass_kg[family]),
-        marker: { size: 7, symbol: rows.map((p) => (k && !many ? `${symbol}-open` : symbol)), color: tint, opacity: rows.map((p) => (best(p) ? 1 : 0.35)) },
-        text: rows.map((p) => {
-          const g = best(p) ? page.gearboxes[p.gearbox] : null;
+        marker: { size: 7, symbol: rows.map(() => (k && !many ? `${symbol}-open` : symbol)), color: tint, opacity: rows.map((p) => (best(p) ? 1 : 0.35)) },
+        text: (i) => {
+          const p = rows[i], g = best(p) ? page.gearboxes[p.gearbox] : null;
           const teeth = g ? `<br>${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth}, module ${g.module_mm} mm, ${g.planets} planets` : "<br>not the lighter family here";
           return `<b>${family}</b>, [${round(p.ratio_low, 1)}, ${round(p.ratio_low + map.ratio_step, 1)})<br>${round(p.family_mass_kg[family])} kg${teeth}`;
-        }),
-        hovertemplate: "%{text}<extra></extra>",
+        },
       });
     }
   });
-  Plotly.react(node, list, layout(axis("gear ratio"), axis("actuator mass with motor, kg"), {
-    showlegend: true, legend: { x: 0, y: 1, bgcolor: "rgba(0,0,0,0)" },
-  }), CONFIG);
+  plot(node, list, "gear ratio", "actuator mass with motor, kg");
   describe(node, `Actuator mass over gear ratio; ${page.maps.map((m) => m.points.filter((p) => p.gearbox !== null).length).join(" and ")} intervals of ${page.maps[0].ratio_step} have a gearbox`);
   byId("map-note").textContent = `Lightest actuator of each family in each ratio interval of ${page.maps[0].ratio_step}${page.maps.length === 1 ? `, motor ${page.maps[0].motor}` : many ? "; circles: ISSPG, diamonds: ESSPG" : "; open symbols: the second motor"}. Faint: the other family is lighter.`;
 }
 
 function drawLinks(node) {
   const inMm = (leg) => leg.length_m.map((l) => l * 1000);
-  const line = (name, x, y, more) => ({ type: "scatter", mode: "lines", name, x, y, line: more, hovertemplate: "%{x:.0f} mm: %{y:.3f} kg<extra></extra>" });
+  const line = (name, x, y, more) => ({ mode: "lines", name, x, y, line: more, text: (i) => `${plain(name)}<br>${round(x[i], 0)} mm: ${round(y[i])} kg` });
   const links = page.maps.flatMap(({ motor, leg }, k) => {
-    const own = page.maps.length > 1 ? `, ${plain(motor)}` : "";
+    const own = page.maps.length > 1 ? `, ${motor}` : "";
     const dash = k ? "dot" : "solid";
     return [
       line(`thigh${own}`, inMm(leg), leg.thigh_kg, { color: colour("hip"), width: 2.2, dash }),
@@ -101,9 +108,7 @@ function drawLinks(node) {
     ...links,
     line("published link", mm, page.maps[0].leg.length_m.map((l) => base + slope * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
   ];
-  Plotly.react(node, list, layout(axis("link length, mm"), axis("mass, kg", { rangemode: "tozero" }), {
-    showlegend: true, legend: { x: 1, xanchor: "right", y: 0, bgcolor: "rgba(0,0,0,0)" },
-  }), CONFIG);
+  plot(node, list, "link length, mm", "mass, kg", { fromZero: [false, true] });
   describe(node, "Mass of thigh and shank over their length");
 }
 
