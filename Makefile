@@ -25,7 +25,7 @@ $(STAMP): pyproject.toml constraints.txt tools/system_libraries.sh
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "error: $(PYTHON) cannot make virtual environments; on Debian or Ubuntu: sudo apt-get install python3-venv" >&2; exit 1; }
 	@echo "setting up $(VENV) (once; about a gigabyte, most of it the CAD kernel)" >&2
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cad,dev]'
 	@sh tools/system_libraries.sh $(BIN)/python
 	@touch $@
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, load_study
+from pareto_monoped.cad.installed import require_cad
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.jump.calibration import DEFAULT, strength_for
@@ -48,6 +49,7 @@ def export(
         InputError: an unknown format, an unusable motor or calibration, or a folder that holds something else.
         CheckError: the design cannot be built as it stands; the message says what does not hold.
     """
+    require_cad()
     from pareto_monoped.cad.batch import run
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.cad.write.formats import chosen_formats
@@ -98,6 +100,7 @@ def export_trial(
         InputError: see ``export``.
         CheckError: see ``export``.
     """
+    require_cad()
     from pareto_monoped.cad.batch import run
     from pareto_monoped.cad.jobs import trial_job
 

@@ -12,6 +12,7 @@ from pareto_monoped import __version__
 
 _COMMANDS = {
     "pareto": "pareto",
+    "init": "starting",
     "actuators": "actuators",
     "simulate": "jumps",
     "table1": "jumps",

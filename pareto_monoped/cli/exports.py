@@ -81,6 +81,9 @@ def export(
     for option, value in given.items():
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
+    from pareto_monoped.cad.installed import require_cad
+
+    require_cad()
     from pareto_monoped.cad.interrupt import ending_at
     from pareto_monoped.cad.kernel import client as kernel
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("study_file", metavar="[STUDY.toml]", type=click.Path(path_type=Path), default="studies/case_c.toml")
+@click.argument("study_file", metavar="[STUDY.toml]", required=False, type=click.Path(path_type=Path))
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.  [default: reports/STUDY]"
 )
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold.")
 def pareto(
-    study_file: Path,
+    study_file: Path | None,
     output: Path | None,
     db: Path | None,
     evaluations: int | None,
@@ -37,11 +37,16 @@ def pareto(
     """Do the main job: actuator map, two fronts, knee design, its CAD, report.
 
     The first front is that of the study. The second has the other energy in place of the study's: that at the battery
-    for mechanical energy. A study of other objectives has one front only.
+    for mechanical energy. A study of other objectives has one front only. Without
+    a STUDY.toml it is studies/case_c.toml, which is written if it is missing.
 
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
     """
+    from pareto_monoped.cad.installed import require_cad
+
+    # Before the search: minutes later would be too late to say so.
+    require_cad()
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.made import is_made
     from pareto_monoped.pareto.pick import Knee, pick
@@ -49,6 +54,7 @@ def pareto(
     from pareto_monoped.study.definition import NO_STRENGTH, load_study
     from pareto_monoped.study.reader import read_study
 
+    study_file = study_file or _first_study()
     study = load_study(study_file)
     folder = output or Path("reports") / study_file.stem
     db = db or study_file.with_suffix(".db")
@@ -96,6 +102,18 @@ def pareto(
         echo(f"Note: {NO_STRENGTH}.")
     counts = ", ".join(f"{len(data.front())} by {_by(data)}" for data in studies)
     echo(f"Designs on the front: {counts}.")
+
+
+def _first_study() -> Path:
+    """The study of the main job where none is named; outside a checkout, one to begin with is written."""
+    from pareto_monoped.cli.starting import write_study
+    from pareto_monoped.study.shipped import START
+
+    path = Path("studies") / f"{START}.toml"
+    if not path.exists():
+        path.parent.mkdir(exist_ok=True)
+        write_study(START, path)
+    return path
 
 
 def _named(table: Path, motor: str) -> Path:

@@ -20,7 +20,9 @@ import pareto_monoped as pm
 from pareto_monoped.actuator.search import map_for
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "studies").glob("*.md")])
+PAGES = sorted(
+    [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "studies").glob("*.md")]
+)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -126,3 +128,15 @@ def test_the_program_of_the_readme_runs(tmp_path):
     assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines()[0].split() == ["height_m", "electrical_energy_j"]
     assert len(run.stdout.splitlines()) == 3
+
+
+def test_every_file_that_contributing_names_exists():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = [
+        word
+        for word in re.findall(r"`([^`\s]+/[^`\s]*)`", text)
+        if not word.startswith(("out/", "leg/", "actuator/", "study/"))
+    ]
+    assert len(named) > 20
+    for word in named:
+        assert (ROOT / word).exists(), word
