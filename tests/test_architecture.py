@@ -32,7 +32,7 @@ LEVELS = [
 ]
 # Rooms that may import from another room of their level: the report and the CAD read what a study stored.
 BESIDE = {("report", "study"), ("cad", "study"), ("report", "cad"), ("design", "config")}
-HEAVY = {"mujoco": "jump", "OCP": "cad/kernel", "optuna": "study", "pymoo": "study", "cma": "study"}
+HEAVY = {"mujoco": "jump", "OCP": "cad/kernel", "optuna": "study", "pymoo": "study", "cma": "study", "plotly": "report"}
 
 ANYWHERE = {"OCP"}
 """Libraries that no other folder may import even inside a function: the CAD kernel has a process of its own."""
