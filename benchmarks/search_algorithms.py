@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from search_reference import FOLDER, corner_of, read
 
-from pareto_monoped.jump.calibration import rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
 from pareto_monoped.pareto.objectives import Objectives

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.jump.calibration import rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm

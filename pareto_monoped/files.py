@@ -17,7 +17,7 @@ _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
 @contextmanager
-def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
+def replacing(path: Path, *, force: bool = False, temporary: Path | None = None) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, which replaces ``path`` if the block succeeds and is deleted if not.
 
     The temporary file keeps the suffix of ``path``, for writers that choose the format by it.
@@ -25,6 +25,7 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
     Args:
         path: the file to write.
         force: whether it may replace a file of another kind.
+        temporary: the temporary path, for a writer that holds a lock. What a killed writer left there is deleted.
 
     Raises:
         OutputError: the folder is missing or cannot be written to, or ``path`` is a database or a file of another kind.
@@ -32,16 +33,20 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     refuse_database(path)
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        if temporary is None:
+            handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+            os.close(handle)
+            temporary = Path(name)
+        else:
+            temporary.unlink(missing_ok=True)
+            temporary.touch(0o600, exist_ok=False)
     except OSError as error:
         raise unwritable(path, error, "give a file in a writable folder") from error
-    os.close(handle)
-    temporary = Path(name)
     try:
         try:
             yield temporary
         except OSError as error:
-            if error.filename not in (None, name) or not is_failure(error):
+            if error.filename not in (None, str(temporary)) or not is_failure(error):
                 raise
             raise unwritable(path, error, "") from error
         if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):

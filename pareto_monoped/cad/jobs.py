@@ -10,7 +10,8 @@ from pareto_monoped.actuator.motors import Motor
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
 from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
-from pareto_monoped.jump.calibration import DEFAULT, Calibration, load_calibration, strength_for
+from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 from pareto_monoped.leg.motor_fit import maps_for
 
 if TYPE_CHECKING:

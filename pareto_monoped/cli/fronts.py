@@ -61,7 +61,8 @@ def front(
     and the audit has not seen all of them.
     """
     from pareto_monoped.study.foreign import foreign_note
-    from pareto_monoped.study.reader import read_front, read_study
+    from pareto_monoped.study.front_reader import read_front
+    from pareto_monoped.study.reader import read_study
 
     if objectives is None and not include_all:
         kept = read_front(db)
@@ -176,7 +177,8 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
     from pareto_monoped.pareto.pick import pick as pick_design
     from pareto_monoped.study.alternatives import alternatives
     from pareto_monoped.study.binding import binding_limits, front_alone
-    from pareto_monoped.study.reader import read_front, read_study
+    from pareto_monoped.study.front_reader import read_front
+    from pareto_monoped.study.reader import read_study
 
     wanted = required(selector)
     data = read_front(db)

@@ -24,7 +24,7 @@ from pareto_monoped.design import (
     columns,
 )
 from pareto_monoped.errors import DesignError, complaint
-from pareto_monoped.jump.calibration import DEFAULT
+from pareto_monoped.jump.calibration_defaults import DEFAULT
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.joint_maps import JointMaps
@@ -71,7 +71,8 @@ def simulate(
     audited: bool,
 ) -> None:
     """Simulate one jump and print its measures."""
-    from pareto_monoped.jump.calibration import load_calibration, rules_for
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.calibration_defaults import rules_for
     from pareto_monoped.jump.single import simulate as jump
     from pareto_monoped.leg.motor_fit import maps_for
     from pareto_monoped.robot.frames import JOINTS
@@ -241,7 +242,7 @@ def table1(as_json: bool) -> None:
     Simulated under the calibrations `paper` and `reference`.
     """
     from pareto_monoped.actuator.search import map_for
-    from pareto_monoped.jump.calibration import rules_for
+    from pareto_monoped.jump.calibration_defaults import rules_for
     from pareto_monoped.jump.table1 import table1 as rows_of
 
     paper, reference = (map_for(PAPER_MOTOR, rules_for(name)) for name in ("paper", "reference"))

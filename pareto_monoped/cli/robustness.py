@@ -52,7 +52,7 @@ def robust(
     Masses, motors, friction, springs, lengths, gains, delay and battery vary together; all designs get the same
     samples. The results are stored in DB; what is there is not simulated again.
     """
-    from pareto_monoped.study.reader import read_front
+    from pareto_monoped.study.front_reader import read_front
     from pareto_monoped.study.robustness import robust as run_robust
 
     if trials and every > 1:

@@ -137,7 +137,7 @@ def _state(facts: dict[str, Any]) -> str:
 
 def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
     """The line on the limits besides the least height; none if there are no others."""
-    from pareto_monoped.strength.joint import REQUIRED_MEASURES
+    from pareto_monoped.strength.groups import REQUIRED_MEASURES
 
     limits: dict[str, float | None] = facts["settings"]["constraints"]
     told = {"min_height_m": None, **(dict.fromkeys((f"min_{measure}" for measure in REQUIRED_MEASURES), 1.0))}

@@ -16,8 +16,8 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.design import DEFAULT_RULES, RuleSet
-from pareto_monoped.errors import CalibrationError, InputError, complaint
+from pareto_monoped.errors import CalibrationError, InputError
+from pareto_monoped.jump.calibration_defaults import DEFAULT
 from pareto_monoped.robot.population import MassOptions
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -26,8 +26,6 @@ Share = Annotated[float, Field(gt=0.0, le=1.0)]
 Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
 _STRICT = ConfigDict(extra="forbid")
 
-DEFAULT = "reference"
-_PAPER = "paper"
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 # As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
@@ -344,38 +342,6 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
             name: value for name, value in values[table].items() if name not in names or value != defaults[name]
         }
     return values
-
-
-def rules_for(
-    calibration: str, asked: RuleSet | None = None, *, key: str = "rules", error: type[InputError] = CalibrationError
-) -> RuleSet:
-    """The gearbox rules that go with a calibration.
-
-    The calibration ``paper`` is fitted to the paper's table with the paper's gearboxes, and means the rules ``paper``.
-
-    Args:
-        calibration: its name, or the path of a file.
-        asked: the rules that were asked for, if any.
-        key: where they were, for a message.
-        error: which kind of ``InputError`` to raise.
-
-    Raises:
-        CalibrationError: (or ``error``) other rules than ``paper`` were asked for with the calibration ``paper``.
-    """
-    if calibration != _PAPER:
-        return DEFAULT_RULES if asked is None else asked
-    if asked not in (None, "paper"):
-        allowed = f"'paper' with the calibration {_PAPER!r}, which is fitted with these gearboxes"
-        raise error(complaint(key, asked, allowed, "drop it, or choose another calibration"))
-    return "paper"
-
-
-def strength_for(calibration: str) -> bool:
-    """Whether a study under a calibration asks for strength unless its file says otherwise.
-
-    The calibration ``paper`` follows the paper's simulation, whose robot has no end stops.
-    """
-    return calibration != _PAPER
 
 
 def calibration_names() -> tuple[str, ...]:

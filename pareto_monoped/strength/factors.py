@@ -12,8 +12,8 @@ from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.strength.joint import (
-    GROUP_MEASURES,
     SIDES,
     ActuatorJoint,
     LegJoint,

@@ -7,26 +7,12 @@ from typing import Any, Literal
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.strength.groups import INFORMING, Group
 from pareto_monoped.strength.loads import LOAD_NAMES
 
 Side = Literal["hip", "knee"]
 SIDES: tuple[Side, ...] = ("hip", "knee")
 """The joints of the robot, each with its actuator."""
-
-Group = Literal["gears", "gear_strikes", "chain", "stops", "joints", "links"]
-GROUP_MEASURES: dict[Group, str] = {
-    "gears": "gear_safety",
-    "gear_strikes": "gear_strike_safety",
-    "chain": "chain_safety",
-    "stops": "stop_safety",
-    "joints": "joint_safety",
-    "links": "link_safety",
-}
-"""Group -> the measure that is the least factor over required factor of its rows."""
-INFORMING: frozenset[Group] = frozenset({"gear_strikes"})
-"""Groups that inform: their factors are shown and stored, but no study and no export requires them by itself."""
-REQUIRED_MEASURES: tuple[str, ...] = tuple(name for group, name in GROUP_MEASURES.items() if group not in INFORMING)
-"""The measures that a design must have at 1 or more to hold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,8 @@ import pandas as pd
 
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.measures import measure
-from pareto_monoped.study.reader import Checkpoint, StudyData, StudyFront
+from pareto_monoped.study.front_reader import StudyFront
+from pareto_monoped.study.reader import Checkpoint, StudyData
 from pareto_monoped.study.remarks import at_bounds
 
 _AT = 0.01

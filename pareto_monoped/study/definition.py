@@ -13,11 +13,11 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.jump.calibration import rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.measures import SHARE_MEASURES, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
-from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.study.algorithm_settings import (
     ALGORITHMS,
     DEFAULT_ALGORITHM,

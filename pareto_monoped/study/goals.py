@@ -14,7 +14,7 @@ from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import GOAL_NAMES, MEASURES, STATISTICS, is_robust, measure
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
-from pareto_monoped.strength.joint import REQUIRED_MEASURES
+from pareto_monoped.strength.groups import REQUIRED_MEASURES
 from pareto_monoped.uncertainty.settings import MOST_FAILED
 
 Side = Literal["min", "max"]

@@ -10,22 +10,19 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.joint_maps import motor_label
 from pareto_monoped.config import parsed_json
-from pareto_monoped.design import DEFAULTS, PAPER_MOTOR, VARIABLES, Variable, in_use
+from pareto_monoped.design import PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.database import reading, undamaged
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.derived import with_agility
-from pareto_monoped.study.foreign import FOREIGN_COUNT
-from pareto_monoped.study.kept_front import rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
-from pareto_monoped.study.named_motors import MOTOR_KEYS, names_of
+from pareto_monoped.study.named_motors import names_of
 from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
+from pareto_monoped.study.trial_frame import trial_frame, with_motors
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.joint_maps import JointMaps
@@ -34,7 +31,6 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.study.motor_choice import AnyCoordinates
 
-_DTYPES = {column.name: column.dtype for column in COLUMNS}
 _HISTORY = {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
 """Columns of the table ``monoped_history`` and their types in the data frame."""
 
@@ -206,7 +202,7 @@ def _read_study(db: Path) -> StudyData:
         sealed = has_seals(connection)
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = _frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
+        trials = trial_frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
         seals = read_seals(connection, db) if sealed else None
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
@@ -222,8 +218,8 @@ def _read_study(db: Path) -> StudyData:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
-    named = with_agility(_with_motors(trials, study, meta, db))
-    if seals is not None and (findings := seal_findings(seals, trials, rows)):
+    named = with_agility(with_motors(trials, study, meta, db))
+    if seals is not None and (findings := _seal_findings(seals, trials, rows)):
         raise damaged(db, findings)
     links = 0 if seals is None else seals.links
     return StudyData(
@@ -239,134 +235,10 @@ def _read_study(db: Path) -> StudyData:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StudyFront:
-    """The front of a study, read without its other trials.
-
-    Attributes:
-        db, study, meta, sealed: as in ``StudyData``.
-        rows: as by ``StudyData.front``.
-        used: the paper's seven variables, and the optional ones of which some trial has another value than the default.
-        foreign: how many of Optuna's trials are not of this package.
-    """
-
-    db: Path
-    study: Study
-    meta: StudyMeta
-    rows: pd.DataFrame
-    used: tuple[Variable, ...]
-    foreign: int
-    sealed: bool
-
-
-def read_front(db: Path) -> StudyFront:
-    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, or of a newer version.
-    """
-    with undamaged(db):
-        return _read_front(db)
-
-
-def _read_front(db: Path) -> StudyFront:
-    with reading(db) as connection:
-        sealed = has_seals(connection)
-        foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
-        if sealed:
-            rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
-            seals = read_seals(connection, db)
-            findings = [line for table in rows for line in seals.row_findings(table, rows[table])]
-            if findings:
-                raise damaged(db, findings)
-            numbers = parsed_json(rows["front"][0][1])
-            columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
-            trials = _frame(columns, rows_of(connection, columns, numbers), db)
-            if len(trials) < len(numbers):
-                findings = ["trials of its kept front are missing"]
-            findings += seals.trial_findings({name: trials[name].to_numpy() for name in trials}, trials["trial"])
-            if findings:
-                raise damaged(db, findings)
-    if not sealed:
-        data = read_study(db)
-        return StudyFront(
-            db=db,
-            study=data.study,
-            meta=data.meta,
-            rows=data.front(),
-            used=in_use(data.trials),
-            foreign=foreign,
-            sealed=False,
-        )
-    meta = meta_of_rows(rows["meta"], db)
-    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-    front = with_agility(_with_motors(trials, study, meta, db)).sort_values(
-        study.objectives.names[0], kind="stable", ignore_index=True
-    )
-    optional = set(parsed_json(rows["front"][0][5]))
-    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in optional)
-    return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, foreign=foreign, sealed=True)
-
-
-def seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
+def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
     """What does not match the running hash of a study of which everything was read; ``rows`` as by ``seals.ROWS``."""
     numbers = trials["trial"].to_numpy()
     findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
     if len(numbers) < seals.trials:
         findings.append(f"{seals.trials - len(numbers)} trials are missing")
     return findings + [line for table in rows for line in seals.row_findings(table, rows[table])]
-
-
-def _with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:
-    """The trials with the names of each one's motors, which the database leaves out where all have the same.
-
-    The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
-    study names them.
-    """
-    contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
-    known = {
-        named.lower(): str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)
-    }
-    for key in MOTOR_KEYS:
-        given = getattr(study, key)
-        if given is None:
-            trials = trials.drop(columns=key)
-            continue
-        names = [known[named.lower()] for named in names_of(given)]
-        if len(names) == 1:
-            trials = trials.assign(**{key: pd.array(names * len(trials), dtype="str")})
-        unknown = trials.loc[~trials[key].isin(names), key]
-        if len(unknown):
-            raise DatabaseError(
-                f"study database {str(db)!r}: its trials are damaged ({key.replace('_', ' ')} {unknown.iloc[0]!r} is "
-                "not of the study); restore a copy"
-            )
-    if study.motor is None:
-        labels = map(motor_label, trials["hip_motor"], trials["knee_motor"])
-        trials = trials.assign(motor=pd.array(list(labels), dtype="str"))
-    return trials
-
-
-def _frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
-    columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
-    if rows:
-        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
-    for column in LATER:
-        columns.setdefault(column.name, (DEFAULTS.get(column.name),) * len(rows))
-    known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
-    ordered = [*known, *(name for name in columns if name not in known)]
-    try:
-        # A column that only a later version knows is read as a number, as every measure is.
-        return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise DatabaseError(
-            f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
-        ) from None
-
-
-def _typed(values: tuple[Any, ...], dtype: str) -> Any:
-    if dtype == "str":
-        return pd.array(["" if value is None else str(value) for value in values], dtype="str")
-    if dtype == "int64":
-        return np.array(values, dtype=np.int64)
-    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -226,6 +226,10 @@ def _go_on(
     lock: Lock,
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
+        if any(Path(f"{db.resolve()}{end}").exists() for end in ("-wal", "-journal")):
+            # A kill at the very end has left a log; opening the study for writing makes it a single file again.
+            with Store(db, study, lock=lock):
+                pass
         return _summary(db, data, data, 0.0)
     _refuse_other_results(data, simulator, db)
     coordinates = simulator.coordinates(study)

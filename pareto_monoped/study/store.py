@@ -50,8 +50,10 @@ _OUR_TABLES += SEALS + FRONT
 def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
     """Create a study database without trials; after an error there is no file.
 
+    A killed creation leaves the hidden file ``.NAME-new`` and perhaps its journal, which the next creation deletes.
+
     Args:
-        path: where to; must not exist.
+        path: where to; must not exist. The caller holds its lock.
         study: the definition.
         meta: everything else that is known about the study.
         state: state of the algorithm before its first ``ask``.
@@ -60,7 +62,10 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
         DatabaseError: it cannot be written.
         OutputError: the folder cannot be written to.
     """
-    with replacing(path) as temporary:
+    new = path.with_name(f".{path.name}-new")
+    # Before the file itself: a journal without its file would be rolled back into the next file of that name.
+    Path(f"{new}-journal").unlink(missing_ok=True)
+    with replacing(path, temporary=new) as temporary:
         temporary.unlink()
         attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
         create_tables(temporary, study, attributes)

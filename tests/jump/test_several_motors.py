@@ -13,7 +13,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.rows import joined, take
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.strength.joint import GROUP_MEASURES
+from pareto_monoped.strength.groups import GROUP_MEASURES
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 import itertools
 import math
 
+import moocore
 import numpy as np
 import pytest
 from hypothesis import given
@@ -124,3 +125,18 @@ def test_a_corner_takes_what_is_not_given_from_the_table_of_measures():
         "mass_kg": 4.0,
     }
     assert reference_point(HEIGHT_AND_ENERGY).text() == "0.55 m, 100 J"
+
+
+def test_two_objectives_are_summed_as_moocore_sums_them():
+    """Equal to the last bit, so that stored hypervolumes and what follows from them stay as they are."""
+    generator = np.random.default_rng(7)
+    for number in range(300):
+        count = int(generator.integers(1, 300))
+        points = np.column_stack((generator.uniform(0.5, 2.0, count), generator.uniform(0.0, 10.0, count)))
+        if number % 2:  # most of them on a front
+            points[:, 1] = 2.0 * points[:, 0] ** 2 + generator.normal(0.0, 1e-3, count)
+        if number % 3 == 0:  # many equal
+            points = points.round(1)
+        inside = points[(points[:, 0] > 0.5) & (points[:, 1] < 10.0)] * [-1.0, 1.0]
+        expected = moocore.hypervolume(inside, ref=[-0.5, 10.0]) if len(inside) else 0.0
+        assert hypervolume(points, REFERENCE) == expected

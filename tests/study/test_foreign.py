@@ -5,7 +5,8 @@ import pytest
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_front, read_study
+from pareto_monoped.study.front_reader import read_front
+from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.repair import repair
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.status import status

@@ -9,7 +9,7 @@ from pareto_monoped.cli import cli
 from pareto_monoped.errors import StudyError
 from pareto_monoped.report.summary import notes
 from pareto_monoped.strength.factors import strength_factors
-from pareto_monoped.strength.joint import GROUP_MEASURES, REQUIRED_MEASURES
+from pareto_monoped.strength.groups import GROUP_MEASURES, REQUIRED_MEASURES
 from pareto_monoped.strength.loads import loads_of
 from pareto_monoped.strength.table import TABLE
 from pareto_monoped.study.definition import NO_STRENGTH, load_study, study_from_dict

@@ -1,0 +1,88 @@
+"""Read the front that a study keeps, without its other trials."""
+
+import sqlite3
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from pareto_monoped.config import parsed_json
+from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.study.database import reading, undamaged
+from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.derived import with_agility
+from pareto_monoped.study.foreign import FOREIGN_COUNT
+from pareto_monoped.study.kept_front import rows_of
+from pareto_monoped.study.meta import StudyMeta, meta_of_rows
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.seals import ROWS, damaged, has_seals, read_seals
+from pareto_monoped.study.trial_frame import trial_frame, with_motors
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyFront:
+    """The front of a study, read without its other trials.
+
+    Attributes:
+        db, study, meta, sealed: as in ``StudyData``.
+        rows: as by ``StudyData.front``.
+        used: the paper's seven variables, and the optional ones of which some trial has another value than the default.
+        foreign: how many of Optuna's trials are not of this package.
+    """
+
+    db: Path
+    study: Study
+    meta: StudyMeta
+    rows: pd.DataFrame
+    used: tuple[Variable, ...]
+    foreign: int
+    sealed: bool
+
+
+def read_front(db: Path) -> StudyFront:
+    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    with undamaged(db):
+        return _read_front(db)
+
+
+def _read_front(db: Path) -> StudyFront:
+    with reading(db) as connection:
+        foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
+        if has_seals(connection):
+            return _kept(connection, db, foreign)
+    data = read_study(db)
+    return StudyFront(
+        db=db,
+        study=data.study,
+        meta=data.meta,
+        rows=data.front(),
+        used=in_use(data.trials),
+        foreign=foreign,
+        sealed=data.sealed,
+    )
+
+
+def _kept(connection: sqlite3.Connection, db: Path, foreign: int) -> StudyFront:
+    seals = read_seals(connection, db)
+    rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
+    if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
+        raise damaged(db, findings)
+    ((_, listed, _, _, _, optional),) = rows["front"]
+    numbers = parsed_json(listed)
+    columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
+    trials = trial_frame(columns, rows_of(connection, columns, numbers), db)
+    if len(trials) < len(numbers):
+        raise damaged(db, ["trials of its kept front are missing"])
+    if findings := seals.trial_findings({name: trials[name].to_numpy() for name in trials}, trials["trial"]):
+        raise damaged(db, findings)
+    meta = meta_of_rows(rows["meta"], db)
+    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
+    named = with_agility(with_motors(trials, study, meta, db))
+    front = named.sort_values(study.objectives.names[0], kind="stable", ignore_index=True)
+    chosen = set(parsed_json(optional))
+    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in chosen)
+    return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, foreign=foreign, sealed=True)

@@ -1,0 +1,86 @@
+"""Stored rows of trials as a data frame: every column there is, each of its type, with the names of the motors."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.design import DEFAULTS
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.meta import StudyMeta, motor_keys
+from pareto_monoped.study.named_motors import MOTOR_KEYS, names_of
+
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
+
+
+def trial_frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
+    """Trials as read from the database.
+
+    Args:
+        names: of the columns that were read.
+        rows: values of these columns, one row per trial.
+        db: the database, for messages.
+
+    Raises:
+        DatabaseError: a value is not of its column's type, or a required column is missing.
+    """
+    columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
+    if rows:
+        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+    for column in LATER:
+        columns.setdefault(column.name, (DEFAULTS.get(column.name),) * len(rows))
+    known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
+    ordered = [*known, *(name for name in columns if name not in known)]
+    try:
+        # A column that only a later version knows is read as a number, as every measure is.
+        return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise DatabaseError(
+            f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
+
+
+def _typed(values: tuple[Any, ...], dtype: str) -> Any:
+    if dtype == "str":
+        return pd.array(["" if value is None else str(value) for value in values], dtype="str")
+    if dtype == "int64":
+        return np.array(values, dtype=np.int64)
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:
+    """The trials with the names of each one's motors, which the database leaves out where all have the same.
+
+    The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
+    study names them.
+
+    Raises:
+        DatabaseError: a trial has a motor that the study does not name.
+    """
+    contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
+    known = {
+        named.lower(): str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)
+    }
+    for key in MOTOR_KEYS:
+        given = getattr(study, key)
+        if given is None:
+            trials = trials.drop(columns=key)
+            continue
+        names = [known[named.lower()] for named in names_of(given)]
+        if len(names) == 1:
+            trials = trials.assign(**{key: pd.array(names * len(trials), dtype="str")})
+        unknown = trials.loc[~trials[key].isin(names), key]
+        if len(unknown):
+            raise DatabaseError(
+                f"study database {str(db)!r}: its trials are damaged ({key.replace('_', ' ')} {unknown.iloc[0]!r} is "
+                "not of the study); restore a copy"
+            )
+    if study.motor is None:
+        from pareto_monoped.actuator.joint_maps import motor_label
+
+        labels = map(motor_label, trials["hip_motor"], trials["knee_motor"])
+        trials = trials.assign(motor=pd.array(list(labels), dtype="str"))
+    return trials
