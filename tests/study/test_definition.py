@@ -6,7 +6,7 @@ import pytest
 
 from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
 from pareto_monoped.errors import StudyError
-from pareto_monoped.jump import calibration
+from pareto_monoped.jump import calibration_defaults
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
 from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
 from tests.study.support import assert_refused
@@ -84,7 +84,7 @@ def test_the_rules_paper_are_not_stored_and_others_are():
 
 def test_a_file_without_rules_takes_the_default_but_a_stored_study_does_not(tmp_path, monkeypatch):
     """What happens when the default changes: the calibration ``paper`` keeps its rules, as stored studies do."""
-    monkeypatch.setattr(calibration, "DEFAULT_RULES", "iso6336")
+    monkeypatch.setattr(calibration_defaults, "DEFAULT_RULES", "iso6336")
     path = tmp_path / "s.toml"
     path.write_text('name = "s"\nevaluations = 5\n')
     assert load_study(path).rules == "iso6336"
