@@ -93,6 +93,8 @@ def main() -> int:
                 arguments.keep.mkdir(parents=True, exist_ok=True)
                 (arguments.keep / f"{number}.db").write_bytes(damaged)
             findings += [f"{number}: {what}: {line}" for line in lines]
+            for line in findings[len(findings) - len(lines) :]:
+                print(line, file=sys.stderr, flush=True)
             shutil.rmtree(copy.parent)
             if (number + 1) % 100 == 0:
                 print(f"{number + 1} damages, {len(findings)} findings", file=sys.stderr, flush=True)
@@ -241,15 +243,13 @@ def _content_is(db: Path, whole: Whole) -> bool:
 
 
 def _rows(db: Path) -> dict[str, list[tuple[object, ...]]]:
-    """All that a database holds: every row of every table, and the definitions of tables."""
+    """All that a database holds: every row of every table."""
     connection = sqlite3.connect(f"{db.as_uri()}?mode=ro", uri=True)
     connection.text_factory = bytes
     try:
-        tables = connection.execute("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY name").fetchall()
-        names = sorted(name.decode() for kind, name, *_ in tables if kind == b"table")
-        return {"": tables} | {
-            name: connection.execute(f'SELECT * FROM "{name}" NOT INDEXED').fetchall() for name in names
-        }
+        tables = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name").fetchall()
+        names = [name.decode() for (name,) in tables]
+        return {name: connection.execute(f'SELECT * FROM "{name}" NOT INDEXED').fetchall() for name in names}
     finally:
         connection.close()
 

@@ -1,15 +1,15 @@
 """Whether Optuna's tables say the same as ours, and which of Optuna's trials are not of this package."""
 
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.optuna_tables import stored_digest
+from pareto_monoped.study.optuna_tables import stored_digest, study_digests
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.seals import Seals
+from pareto_monoped.study.seals import OPTUNA_STUDY, Seals
 
 
 def optuna_numbers(count: int, seals: Seals | None) -> list[int]:
@@ -32,6 +32,8 @@ def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seal
     """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
     numbers = optuna_numbers(len(data.trials), seals)
     findings = [*_study_findings(connection, data.study), *_trial_findings(connection, data, numbers)]
+    if seals is not None:
+        findings += _attribute_findings(connection, seals.written.get(OPTUNA_STUDY, {}))
     if not findings and seals is not None:
         # Equal in what both hold; dates, constraints and attributes stand in Optuna's tables alone.
         findings += _digest_findings(connection, numbers, seals)
@@ -46,6 +48,17 @@ def _study_findings(connection: sqlite3.Connection, study: Study) -> Iterator[st
     rows = connection.execute("SELECT direction FROM study_directions ORDER BY objective").fetchall()
     if [direction for (direction,) in rows] != wanted:
         yield "Optuna's directions of the objectives are not ours"
+
+
+def _attribute_findings(connection: sqlite3.Connection, sealed: Mapping[str, str]) -> Iterator[str]:
+    """What Optuna's tables say otherwise of the study itself than when it was created; additions are a user's right."""
+    found = study_digests(connection)
+    different = [name for name, digest in sealed.items() if found.get(name) != digest]
+    versions = ("alembic_version", "version_info")
+    if all(name in different for name in versions):  # 'optuna storage upgrade' has changed both
+        different = [name for name in different if name not in versions]
+    for name in different:
+        yield f"Optuna's {name} " + ("does not match its hash" if name in found else "is missing")
 
 
 def _trial_findings(connection: sqlite3.Connection, data: StudyData, numbers: Sequence[int]) -> Iterator[str]:

@@ -66,6 +66,23 @@ def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str
     return _digest(rows)
 
 
+_OF_STUDY = {
+    "alembic_version": "SELECT * FROM alembic_version",
+    "version_info": "SELECT * FROM version_info",
+    "studies": "SELECT * FROM studies ORDER BY study_id",
+    "study_directions": "SELECT * FROM study_directions ORDER BY study_direction_id",
+}
+
+
+def study_digests(connection: sqlite3.Connection) -> dict[str, str]:
+    """Digests of what Optuna's tables say of the study itself: per table, and per attribute of the study."""
+    rows: dict[str, list[Any]] = {table: connection.execute(sql).fetchall() for table, sql in _OF_STUDY.items()}
+    for kind in ("user", "system"):
+        for row in connection.execute(f"SELECT * FROM study_{kind}_attributes"):
+            rows[f"study_{kind}_attributes {row[2]}"] = [row]
+    return {name: row_digest(found) for name, found in rows.items()}
+
+
 def _digest(rows: list[list[Any]]) -> str:
     """Digest of rows of the tables of ``_WRITTEN``; the long texts of distributions are the same for all trials."""
     trials, params, *others = rows

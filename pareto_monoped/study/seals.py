@@ -44,6 +44,9 @@ ROWS = {
 Besides, ``optuna`` has the digest of all rows of a link's trials in Optuna's tables, by the number of the first trial,
 and ``optuna_first`` Optuna's own number of that trial where it is another one."""
 
+OPTUNA_STUDY = "optuna_study"
+"""What is sealed of Optuna's tables on the study itself when it is created, see ``optuna_tables.study_digests``."""
+
 UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed; it gets one when it goes on"
 """What is said of a study of version 0.2.0 or earlier."""
 

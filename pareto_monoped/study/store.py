@@ -30,8 +30,9 @@ from pareto_monoped.study.optuna_tables import (
     create_tables,
     drop_trials,
     stored_digest,
+    study_digests,
 )
-from pareto_monoped.study.seals import ROWS, SEALS, Sealer, row_digests
+from pareto_monoped.study.seals import OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
 
 _OUR_TABLES = """
 CREATE TABLE monoped_meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -80,7 +81,8 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
                 connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
                 connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
                 KeptFront(study.objectives).store(connection)
-                Sealer(connection).add({table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()})
+                written = {table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()}
+                Sealer(connection).add(written | {OPTUNA_STUDY: study_digests(connection)})
                 connection.execute("COMMIT")
             finally:
                 connection.close()
@@ -181,6 +183,7 @@ class Store:
             self._front.leave_out(self._connection, self._ill_conditioned())
             self._front.store(self._connection)
             written = {table: row_digests(execute(sql)) for table, sql in ROWS.items()}
+            written[OPTUNA_STUDY] = study_digests(self._connection)
             self._sealer.add(written, 0, names if rows else (), trials)
 
     def _ill_conditioned(self) -> set[int]:

@@ -58,7 +58,7 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)
         findings = [
-            *(f"SQLite: {row[0]}" for row in connection.execute("PRAGMA integrity_check(5)") if row[0] != "ok"),
+            *_sqlite_findings(connection),
             *implausible(data),
             *_kept_front_findings(connection, data),
             *optuna_findings(connection, data, seals),
@@ -73,6 +73,14 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
         simulated=len(numbers),
         findings=tuple(findings),
     )
+
+
+def _sqlite_findings(connection: sqlite3.Connection) -> Iterator[str]:
+    """What SQLite finds wrong with pages and indexes; it lists all of one kind in one text of several lines."""
+    for (text,) in connection.execute("PRAGMA integrity_check(5)"):
+        for line in text.splitlines():
+            if line != "ok" and not line.startswith("***"):
+                yield f"SQLite: {line}"
 
 
 def _kept_front_findings(connection: sqlite3.Connection, data: StudyData) -> Iterator[str]:

@@ -48,6 +48,13 @@ def test_a_sound_study(path):
         ("UPDATE trial_system_attributes SET value_json = '[0.0]' WHERE trial_id = 30", "trials 20 to 39 do not match"),
         ("UPDATE studies SET study_name = 'w'", "Optuna's name of the study is 'w', ours 'v'"),
         ("UPDATE study_directions SET direction = 'MINIMIZE'", "Optuna's directions"),
+        ("UPDATE version_info SET library_version = '5.0.9'", "Optuna's version_info does not match its hash"),
+        ("UPDATE alembic_version SET version_num = 'v3.2.0.q'", "Optuna's alembic_version does not match its hash"),
+        (
+            "UPDATE study_user_attributes SET value_json = upper(value_json) WHERE key = 'hash'",
+            "Optuna's study_user_attributes hash does not match its hash",
+        ),
+        ("DELETE FROM study_system_attributes", "Optuna's study_system_attributes study:metric_names is missing"),
     ],
 )
 def test_optunas_tables_must_be_ours(path, statement, words):
@@ -56,6 +63,18 @@ def test_optunas_tables_must_be_ours(path, statement, words):
     assert any(words in line for line in result.findings), result.findings
     with pytest.raises(DatabaseError, match="restore a copy"):
         require_sound(path, result)
+
+
+def test_what_optuna_and_its_users_may_change_is_no_damage(path):
+    """An upgrade of Optuna's tables changes both of its versions; the dashboard keeps notes as attributes."""
+    change(
+        path,
+        "UPDATE version_info SET library_version = '6.0.0'",
+        "UPDATE alembic_version SET version_num = 'v6.0.0.a'",
+        "INSERT INTO study_user_attributes (study_id, key, value_json) VALUES (1, 'note', '1')",
+        "INSERT INTO study_system_attributes (study_id, key, value_json) VALUES (1, 'dashboard:note_ver', '1')",
+    )
+    assert verify(path).findings == ()
 
 
 FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
