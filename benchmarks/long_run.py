@@ -1,6 +1,6 @@
 """Many evaluations in one process: whether memory stays flat and the rate stays up, on a study that is stored.
 
-    python benchmarks/long_run.py                               # 20,000 jumps
+    python benchmarks/long_run.py                               # 10,000 jumps
     python benchmarks/long_run.py --full                        # 200,000 jumps: what benchmarks/README.md shows
     python benchmarks/long_run.py --full --algorithm nsga2 --db FILE   # another algorithm; keeps the database
 
@@ -75,12 +75,12 @@ def table(samples: list[Sample]) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--full", action="store_true", help="200,000 jumps instead of 20,000")
+    parser.add_argument("--full", action="store_true", help="200,000 jumps instead of 10,000")
     parser.add_argument("--algorithm", default=DEFAULT_ALGORITHM.name)
     parser.add_argument("--workers", type=int, default=default_workers())
     parser.add_argument("--db", type=Path, help="keep the study here")
     arguments = parser.parse_args()
-    evaluations, searched = 200_000 if arguments.full else 20_000, arguments.algorithm
+    evaluations, searched = 200_000 if arguments.full else 10_000, arguments.algorithm
     study = study_from_dict(
         {
             "name": "long",
