@@ -63,7 +63,7 @@ def undamaged(path: Path) -> Iterator[None]:
 def _clear(path: Path, error: sqlite3.Error) -> DatabaseError | DiskError:
     code = getattr(error, "sqlite_errorcode", 0) & 0xFF
     kind = DiskError if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_NOMEM) else DatabaseError
-    return kind(f"study database {str(path)!r}: {_explained(error)}")
+    return kind(f"study database {str(path)!r}: {' '.join(_explained(error).split())}")
 
 
 def _explained(error: sqlite3.Error) -> str:

@@ -31,9 +31,10 @@ def foreign_trials(connection: sqlite3.Connection, count: int, seals: Seals | No
 def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seals | None) -> list[str]:
     """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
     numbers = optuna_numbers(len(data.trials), seals)
-    findings = [*_study_findings(connection, data.study), *_trial_findings(connection, data, numbers)]
-    if seals is not None:
+    findings = list(_study_findings(connection, data.study))
+    if not findings and seals is not None:
         findings += _attribute_findings(connection, seals.written.get(OPTUNA_STUDY, {}))
+    findings += _trial_findings(connection, data, numbers)
     if not findings and seals is not None:
         # Equal in what both hold; dates, constraints and attributes stand in Optuna's tables alone.
         findings += _digest_findings(connection, numbers, seals)
