@@ -25,8 +25,9 @@ from pareto_monoped.design import (
     complete,
 )
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
-from pareto_monoped.jump.calibration import DEFAULT, Calibration, rules_for
+from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
+from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
 from pareto_monoped.leg.motor_fit import require_leg
 from pareto_monoped.robot.build import Robot
 from pareto_monoped.robot.build import build_robot as robot_of

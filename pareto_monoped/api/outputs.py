@@ -8,7 +8,7 @@ from pareto_monoped.api.studies import Picked, StoredStudy, as_path, load_study
 from pareto_monoped.cad.installed import require_cad
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.jump.calibration import DEFAULT, strength_for
+from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 
 
 def export(

@@ -69,7 +69,7 @@ def sensitivity(
     """
     from pareto_monoped.pareto.pick import Trial
     from pareto_monoped.pareto.pick import pick as pick_design
-    from pareto_monoped.study.reader import read_front
+    from pareto_monoped.study.front_reader import read_front
     from pareto_monoped.study.sensitivity import sensitivity as find
 
     wanted, kept = required(selector), read_front(db)
