@@ -7,7 +7,8 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.derived import with_agility
-from pareto_monoped.study.reader import read_front, read_study
+from pareto_monoped.study.front_reader import read_front
+from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
 
 DATA = Path(__file__).parent / "data"

@@ -11,7 +11,8 @@ from pareto_monoped.cli import _run as cli
 from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.reader import read_front, read_study
+from pareto_monoped.study.front_reader import read_front
+from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.verify import verify
 
