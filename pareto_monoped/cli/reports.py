@@ -25,8 +25,16 @@ from pareto_monoped.cli.terminal import echo
     metavar="DIR",
     help="Folder of exported designs, DIR/trial_N.",
 )
+@click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
 @force_option
-def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exports: Path | None, force: bool) -> None:
+def report(
+    dbs: tuple[Path, ...],
+    output: Path | None,
+    figures: Path | None,
+    exports: Path | None,
+    no_jumps: bool,
+    force: bool,
+) -> None:
     """Write the report of a study, or of several in comparison.
 
     The page is one file that works without a network.
@@ -38,7 +46,9 @@ def report(dbs: tuple[Path, ...], output: Path | None, figures: Path | None, exp
 
     if output is not None:
         refuse_database(output)
-    payload = payload_of(dbs, exports=exports, note=lambda text: echo(f"note: {text}", err=True))
+    # Figures show one jump only.
+    most_jumps = 0 if no_jumps else 1 if output is None else None
+    payload = payload_of(dbs, exports=exports, most_jumps=most_jumps, note=lambda text: echo(f"note: {text}", err=True))
     if output is not None:
         write_text(output, page(payload), force=force)
         echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)

@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
+from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
 from pareto_monoped.report.comparison import group_of
+from pareto_monoped.report.jump_packing import packed as packed_jumps
 from pareto_monoped.report.motors import gearbox_numbers
 from pareto_monoped.report.provenance import command, provenance
-from pareto_monoped.report.resimulation import Resimulation
+from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import notes, sentences
@@ -148,7 +150,9 @@ def study_card(
         picks=_picks(data, front, row_of),
         more=front_columns(_body_masses_kg(data, front)),
         audits=audit_records(data.audits),
-        jumps={str(trial): jump for trial, jump in again.jumps.items()},
+        jumps=packed_jumps(again.jumps, again.frames),
+        case_jumps=packed_jumps(again.case_jumps, MOST_FRAMES),
+        stops_rad={str(places.kits[kit.label]): _stops_rad(data, kit) for kit in data.kits},
         models={str(trial): model for trial, model in source.models.items()},
         cases=again.cases,
         case_gearboxes=_gearboxes(cases, [(data.case_kit, np.arange(len(cases)))], places.maps, suffix=""),
@@ -188,6 +192,15 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
         values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
         masses[rows] = robot_arrays(values, kit, data.calibration.mass).body_mass_kg
     return masses
+
+
+def _stops_rad(data: StudyData, kit: JointMaps) -> list[list[float | None]]:
+    """Ends of the ranges of hip and knee with a kit of motors, whatever the design; None where there is no stop."""
+    robot = robot_arrays(PAPER_CASES["nominal"].design.as_array()[None], kit, data.calibration.mass)
+    return [
+        [None, None] if stop is None else [stop.lower_rad, stop.upper_rad]
+        for stop in end_stops(robot, data.calibration.joints)
+    ]
 
 
 def _foot(data: StudyData) -> tuple[float, float]:

@@ -13,9 +13,10 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.errors import OutputError, complaint
 from pareto_monoped.files import replacing
 from pareto_monoped.measures import measure
-from pareto_monoped.report.front_figure import STYLES, axis_title, front_figure, values
+from pareto_monoped.report.front_figure import JOINTS, STYLES, axis_title, front_figure, values
+from pareto_monoped.report.jump_packing import lift_off_s, unpacked
 from pareto_monoped.report.quantities import QUANTITIES
-from pareto_monoped.report.schema import Jump, Payload
+from pareto_monoped.report.schema import Payload, StudyCard
 
 _WIDTH_IN, _HEIGHT_IN = 3.5, 2.6  # one column of an IEEE paper is 3.5 in wide
 _DPI = 300
@@ -138,7 +139,7 @@ def _map(payload: Payload, figure: Any) -> bool:
     return bool(payload.maps)
 
 
-_FAMILY_STYLES = {"ISSPG": STYLES[1], "ESSPG": STYLES[0]}
+_FAMILY_STYLES = {"ISSPG": STYLES[2], "ESSPG": STYLES[0]}
 
 
 def _family_points(axes: Any, family: str, x: ArrayLike, y: ArrayLike, of: str, *, hollow: bool) -> None:
@@ -189,8 +190,8 @@ def _links(payload: Payload, figure: Any) -> bool:
         leg, motor = table.leg, f", {table.motor}" if len(payload.maps) > 1 else ""
         length = 1000.0 * values(leg.length_m)
         more = {"marker": STYLES[k % len(STYLES)][1], "ms": 2.5, "markevery": 10} if k else {}
-        axes.plot(length, values(leg.thigh_kg), color=STYLES[1][0], label=f"thigh{motor}", **more)
-        axes.plot(length, values(leg.shank_kg), "--", color=STYLES[0][0], label=f"shank{motor}", **more)
+        axes.plot(length, values(leg.thigh_kg), color=JOINTS["hip"], label=f"thigh{motor}", **more)
+        axes.plot(length, values(leg.shank_kg), "--", color=JOINTS["knee"], label=f"shank{motor}", **more)
     axes.set(xlabel="link length (mm)", ylabel="mass (kg)", ylim=(0.0, None))
     axes.legend(loc="lower right")
     return True
@@ -198,11 +199,12 @@ def _links(payload: Payload, figure: Any) -> bool:
 
 def _states(payload: Payload, figure: Any) -> bool:
     """States and inputs over time, like a figure of the paper, for the first picked design whose jump is kept."""
-    jump, title = _knee_jump(payload)
-    if jump is None:
+    found = _knee_jump(payload)
+    if found is None:
         return False
-    figure.set_size_inches(_WIDTH_IN, 1.7 * _HEIGHT_IN)
-    data = {name: np.array(values) * jump.scale[name] for name, values in jump.columns.items()}
+    card, row, title = found
+    data, limits = _states_data(card, row), _torque_limits_n_m(payload, card, row)
+    figure.set_size_inches(_WIDTH_IN, 1.9 * _HEIGHT_IN)
     rows = (
         ("torque (N m)", (("hip_motor_torque_n_m", "hip"), ("knee_motor_torque_n_m", "knee"))),
         ("speed (rad/s)", (("hip_rad_per_s", "hip"), ("knee_rad_per_s", "knee"))),
@@ -211,22 +213,49 @@ def _states(payload: Payload, figure: Any) -> bool:
     for k, (label, series) in enumerate(rows):
         axes = figure.add_subplot(3, 1, k + 1)
         for (name, legend), style in zip(series, ("-", "--"), strict=True):
-            axes.plot(
-                data["time_s"], data[name], style, color=STYLES[k == 2][0] if style == "-" else "black", label=legend
-            )
-        if jump.lift_off_s is not None:
-            axes.axvline(float(jump.lift_off_s), color="#888888", lw=0.6)
+            axes.plot(data["time_s"], data[name], style, color=_TINTS[legend], label=legend)
+        for joint, limit in limits.items() if k == 0 else ():
+            for sign in (1.0, -1.0):
+                axes.axhline(sign * limit, color=_TINTS[joint], lw=0.7, ls=":")
+        if k == 0 and limits:
+            axes.plot([], [], ":", color="black", lw=0.7, label="limits of the gearboxes")
+        axes.axvline(data["lift_off_s"], color="#888888", lw=0.6)
         axes.set_ylabel(label)
-        axes.legend(loc="best")
-    axes.set_xlabel("time (s)")
+        axes.legend(**_ABOVE)
+    axes.set_xlabel("time (s); the vertical line is the lift-off")
     figure.suptitle(title, fontsize=8)
     return True
 
 
-def _knee_jump(payload: Payload) -> tuple[Jump | None, str]:
+_TINTS = {**JOINTS, "base": "black", "foot": "#777777"}
+_ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 3, "borderaxespad": 0.1}
+"""Where a legend covers no data: in a row above its axes."""
+
+
+def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:
+    """Study, row of its trials, and title of the first picked design that jumps."""
     for card in payload.studies:
         for picked in card.picks:
             trial = card.trials.trial[picked.row]
-            if str(trial) in card.jumps:
-                return card.jumps[str(trial)], f"{card.label}, trial {trial} ({picked.name})"
-    return None, ""
+            if trial in card.jumps.keys:
+                return card, picked.row, f"{card.label}, trial {trial} ({picked.name})"
+    return None
+
+
+def _states_data(card: StudyCard, row: int) -> dict[str, Any]:
+    """The columns of a jump with the height of the foot, and the time of lift-off."""
+    trial = card.trials.trial[row]
+    data: dict[str, Any] = dict(unpacked(card.jumps, trial))
+    thigh, shank = (float(card.trials.columns[name][row] or 0.0) for name in ("thigh_length_m", "shank_length_m"))
+    leg = thigh * np.cos(data["hip_rad"]) + shank * np.cos(data["hip_rad"] + data["knee_rad"])
+    return data | {"foot_z_m": data["base_z_m"] - leg, "lift_off_s": lift_off_s(card.jumps, trial)}
+
+
+def _torque_limits_n_m(payload: Payload, card: StudyCard, row: int) -> dict[str, float]:
+    """Peak torque of the gearbox of each joint; without those that no gearbox is known of."""
+    numbers = {joint: card.trials.columns[f"{joint}_gearbox"][row] for joint in ("hip", "knee")}
+    return {
+        joint: payload.gearboxes[int(number)].peak_torque_n_m
+        for joint, number in numbers.items()
+        if number is not None and number >= 0
+    }

@@ -12,8 +12,11 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.report.goals import ENERGIES
 from pareto_monoped.report.schema import Column, Payload, StudyCard
 
-# Okabe and Ito's colours, each with a marker of its own, so that studies can be told apart without colour.
-STYLES = (("#0072b2", "o"), ("#d55e00", "s"), ("#009e73", "D"), ("#b0548a", "^"), ("#b87d00", "v"), ("#2f9bd8", "p"))
+# The page's colours (--c0 to --c5 of its light style), each with a marker of its own, so that studies can be told apart
+# without colour.
+STYLES = (("#0072b2", "o"), ("#008060", "s"), ("#a3487f", "D"), ("#59636e", "^"), ("#9a6700", "v"), ("#2f9bd8", "p"))
+JOINTS = {"hip": "#a3487f", "knee": "#0072b2"}
+"""The page's colours of the joints (--hip, --knee)."""
 Mark = tuple[float, float, str]
 """Where a design stands, to the right and upward, in the units shown, and its name."""
 Axes2 = tuple[str, str]

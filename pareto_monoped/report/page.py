@@ -19,17 +19,18 @@ from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
 from pareto_monoped.report.goals import ask_fields, kind, order
 from pareto_monoped.report.payload import build
-from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.report.resimulation import frames_for, resimulate
 from pareto_monoped.report.schema import Payload
 from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.seals import UNSEALED
 from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 SCRIPTS = (
-    "dom", "data", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes", "robust",
-    "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
+    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
+    "robust", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
 
@@ -55,9 +56,23 @@ def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None)
 
 
 def payload_of(
-    dbs: Sequence[Path], *, exports: Path | None = None, note: Callable[[str], None] = lambda _: None
+    dbs: Sequence[Path],
+    *,
+    exports: Path | None = None,
+    most_jumps: int | None = None,
+    note: Callable[[str], None] = lambda _: None,
 ) -> Payload:
-    """Read the studies and simulate what the page shows beyond them; ``note`` hears of exports that are left out."""
+    """Read the studies and simulate what the page shows beyond them.
+
+    Args:
+        dbs: study databases.
+        exports: as for ``write_report``.
+        most_jumps: how many designs of each front jump on the page; None: all of them.
+        note: hears of exports that are left out.
+
+    Raises:
+        DatabaseError, StudyError: as ``write_report``.
+    """
     if not dbs:
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
     # Everything is read before anything is simulated, so that a wrong name is reported at once.
@@ -65,15 +80,17 @@ def payload_of(
     if not all(data.sealed for data in studies):
         note(UNSEALED)
     models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
+    frames = frames_for(sum(len(data.front()) for data in studies))
+    again = [resimulate(data, most_jumps=most_jumps, frames=frames, workers=default_workers()) for data in studies]
     sources = [
         Source(
             data=data,
-            resimulation=resimulate(data),
+            resimulation=simulated,
             models=found,
             robustness=read_robustness(data.db),
             sensitivities=read_sensitivity(data.db),
         )
-        for data, found in zip(studies, models, strict=True)
+        for data, simulated, found in zip(studies, again, models, strict=True)
     ]
     return build(sources, literal_cases())
 

@@ -5,37 +5,33 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, columns
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.rounding import number
-from pareto_monoped.report.schema import Case, Jump
+from pareto_monoped.report.schema import Case
 from pareto_monoped.study.reader import StudyData
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.joint_maps import Maps
     from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.jump.frames import Recording
 
-FRAMES = 56
-"""Moments of a jump that the page keeps."""
-MOST_JUMPS = 60
-"""Jumps that the page keeps of a front; if it has more designs, these are spread evenly over it."""
+MOST_FRAMES, LEAST_FRAMES = 56, 16
+"""Moments of a jump that the page keeps: as many as a chart can show, or enough to see the motion."""
+JUMPS_BYTES = 2_400_000
+"""What all jumps of a page may take, so that a page with a front of 5,000 designs stays within 8 MB. More designs than
+``LEAST_FRAMES`` allows (some 12,600) take more."""
+_BYTES, _BYTES_PER_FRAME = 130.0, 3.7
+"""What one jump takes, as measured on a front of 4,216 designs with 32 to 56 frames."""
 
-COUNTS: Mapping[str, float] = {
-    "time_s": 1e-4,
-    "base_x_m": 1e-4,
-    "base_z_m": 1e-4,
-    "foot_z_m": 1e-4,
-    "hip_rad": 1e-4,
-    "knee_rad": 1e-4,
-    "hip_rad_per_s": 1e-2,
-    "knee_rad_per_s": 1e-2,
-    "hip_motor_torque_n_m": 1e-2,
-    "knee_motor_torque_n_m": 1e-2,
-    "contact_z_n": 1e-1,
-}
-"""Columns of a jump's trace that the page keeps as whole numbers, and the value of one count."""
+
+def frames_for(jumps: int) -> int:
+    """Moments of each jump on a page of so many: fewer for many, so that the page stays small."""
+    room = JUMPS_BYTES / max(jumps, 1)
+    return int(np.clip((room - _BYTES) / _BYTES_PER_FRAME, LEAST_FRAMES, MOST_FRAMES))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,35 +41,62 @@ class Resimulation:
     Attributes:
         jumps: of designs on the front, by trial number.
         cases: the paper's designs, with ``StudyData.case_kit``.
+        case_jumps: of those that jump, by place among them.
+        frames: of each jump.
         drift_m: largest difference between a stored height and the height simulated now.
     """
 
-    jumps: Mapping[int, Jump]
+    jumps: Mapping[int, "Recording"]
     cases: Sequence[Case]
+    case_jumps: Mapping[int, "Recording"]
+    frames: int
     drift_m: float
 
 
-def resimulate(data: StudyData, *, most_jumps: int = MOST_JUMPS) -> Resimulation:
-    """Simulate what the page shows of a study beyond its database."""
-    from pareto_monoped.pareto.pick import Knee, pick
+def resimulate(
+    data: StudyData, *, most_jumps: int | None = None, frames: int = MOST_FRAMES, workers: int = 1
+) -> Resimulation:
+    """Simulate what the page shows of a study beyond its database.
 
+    Args:
+        data: the study.
+        most_jumps: how many designs of the front jump, spread evenly over it and the knee besides; None: all of them.
+        frames: of each jump, see ``frames_for``.
+        workers: threads that simulate.
+    """
     front = data.front()
-    chosen = set(_spread(len(front), most_jumps))
-    if len(front):
-        knee = pick(front, Knee(), data.study.objectives).trial
-        chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
-    rows = front.iloc[sorted(chosen)]
-    jumps: dict[int, Jump] = {}
+    rows = front if most_jumps is None else front.iloc[_chosen(front, data, most_jumps)]
+    jumps: dict[int, Recording] = {}
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
-        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration)
-        jumps |= zip(members["trial"].astype(int).tolist(), made, strict=True)
-    heights = zip(rows["trial"].astype(int), rows["height_m"], strict=True)
+        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, frames, workers)
+        numbers = members["trial"].astype(int).tolist()
+        jumps |= {trial: jump for trial, jump in zip(numbers, made, strict=True) if jump is not None}
+    heights = zip(rows["trial"].astype(int).tolist(), rows["height_m"].tolist(), strict=True)
+    cases, case_jumps = paper_cases(data.case_kit, data.calibration)
     return Resimulation(
-        jumps={trial: jumps[trial] for trial in rows["trial"].astype(int)},
-        cases=paper_cases(data.case_kit, data.calibration),
-        drift_m=max((abs(jumps[trial].height_m - height) for trial, height in heights), default=0.0),
+        jumps={trial: jumps[trial] for trial in rows["trial"].astype(int).tolist() if trial in jumps},
+        cases=cases,
+        case_jumps=case_jumps,
+        frames=frames,
+        # A design that no longer jumps is off by all of its height.
+        drift_m=max((abs(_height_m(jumps, trial) - height) for trial, height in heights), default=0.0),
     )
+
+
+def _height_m(jumps: Mapping[int, "Recording"], trial: int) -> float:
+    return jumps[trial].height_m if trial in jumps else 0.0
+
+
+def _chosen(front: pd.DataFrame, data: StudyData, most: int) -> list[int]:
+    """Positions on the front of at most ``most`` designs spread evenly over it, and of the knee."""
+    from pareto_monoped.pareto.pick import Knee, pick
+
+    chosen = set(_spread(len(front), most)) if most else set()
+    if len(front) and most:
+        knee = pick(front, Knee(), data.study.objectives).trial
+        chosen.add(int(np.flatnonzero(front["trial"] == knee)[0]))
+    return sorted(chosen)
 
 
 def _spread(n: int, most: int) -> list[int]:
@@ -81,48 +104,28 @@ def _spread(n: int, most: int) -> list[int]:
     return sorted(set(np.linspace(0, n - 1, min(n, most)).round().astype(int).tolist())) if n else []
 
 
-def jumps_of(designs: NDArray[np.float64], maps: "Maps", calibration: "Calibration") -> list[Jump]:
-    """Jumps of designs that can stand, shape (n, number of variables), each in a few frames."""
-    from pareto_monoped.jump.rows import take
-    from pareto_monoped.jump.single import trace_of
+def jumps_of(
+    designs: NDArray[np.float64], maps: "Maps", calibration: "Calibration", frames: int = MOST_FRAMES, workers: int = 1
+) -> "list[Recording | None]":
+    """Jumps of designs that can stand, shape (n, number of variables), each in a few frames; None without an apex."""
+    from pareto_monoped.jump.frames import recordings
     from pareto_monoped.robot.population import robot_arrays
 
     if len(designs) == 0:
         return []
     robots, control = robot_arrays(designs, maps, calibration.mass), columns(designs, CONTROL)
-    return [
-        in_few_frames(trace_of(take(robots, np.array([i])), control[i : i + 1], calibration))
-        for i in range(len(designs))
-    ]
+    return recordings(robots, control, calibration, frames, workers)
 
 
-def in_few_frames(trace: Mapping[str, NDArray[np.float64]], frames: int = FRAMES) -> Jump:
-    """A trace at ``frames`` moments, two thirds of them before lift-off, when most of the motion takes place.
-
-    Args:
-        trace: columns of ``jump.single.TRACE_COLUMNS``, shape (steps,).
-        frames: how many.
-    """
-    time = trace["time_s"]
-    touching = np.flatnonzero(trace["contact_z_n"] > 0.0)
-    last = int(touching[-1]) if len(touching) else 0
-    stance = 2 * frames // 3
-    wanted = np.concatenate((np.linspace(0, last, stance), np.linspace(last, len(time) - 1, frames - stance + 1)[1:]))
-    rows = np.unique(wanted.round().astype(int))
-    counts = {
-        name: np.round(np.nan_to_num(trace[name][rows]) / size).astype(int).tolist() for name, size in COUNTS.items()
-    }
-    return Jump(height_m=float(trace["base_z_m"].max()), lift_off_s=float(time[last]), columns=counts, scale=COUNTS)
-
-
-def paper_cases(maps: "Maps", calibration: "Calibration") -> list[Case]:
-    """The paper's designs, simulated."""
+def paper_cases(maps: "Maps", calibration: "Calibration") -> "tuple[list[Case], dict[int, Recording]]":
+    """The paper's designs, simulated, and the jumps of those that jump, by place among them."""
     from pareto_monoped.jump.evaluate import Evaluator
 
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
     result = Evaluator(maps, calibration)(designs)
-    jumps = iter(jumps_of(designs[result.ok], maps, calibration))
-    return [
+    places = np.flatnonzero(result.ok).tolist()
+    made = zip(places, jumps_of(designs[result.ok], maps, calibration), strict=True)
+    cases = [
         Case(
             name=name,
             status=str(result.status[i]),
@@ -131,7 +134,7 @@ def paper_cases(maps: "Maps", calibration: "Calibration") -> list[Case]:
             energy_j=number(result.energy_j[i]),
             mass_kg=number(result.mass_kg[i]),
             measures={name: number(getattr(result, name)[i]) for name in MEASURE_NAMES},
-            jump=next(jumps) if result.ok[i] else None,
         )
         for i, name in enumerate(PAPER_CASES)
     ]
+    return cases, {place: jump for place, jump in made if jump is not None}

@@ -114,20 +114,34 @@ class Kit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Jump:
-    """A jump in a few frames.
+class JumpColumn:
+    """A column of packed jumps: its name, the value of one count, how counts are predicted, and its Rice parameter."""
+
+    name: str
+    count: float
+    predictor: str
+    rice: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Jumps:
+    """Jumps in a few frames each, packed as in ``report.jump_packing``.
 
     Attributes:
-        height_m: of the apex.
-        lift_off_s: time of the last contact.
-        columns: by name, one whole number per frame, which keeps the page small.
-        scale: value of one count in each column.
+        keys: number of the trial or of the case that each belongs to.
+        lengths: bytes of each.
+        step_s: time of one simulated step.
+        frames: moments of each jump; a jump of fewer steps has fewer.
+        columns: in the order in which they are packed.
+        data: all jumps one after the other, in base64.
     """
 
-    height_m: float
-    lift_off_s: Number
-    columns: Mapping[str, Sequence[int]]
-    scale: Mapping[str, float]
+    keys: Sequence[int]
+    lengths: Sequence[int]
+    step_s: float
+    frames: int
+    columns: Sequence[JumpColumn]
+    data: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,7 +155,6 @@ class Case:
     energy_j: Number
     mass_kg: Number
     measures: Mapping[str, Number]
-    jump: Jump | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -261,7 +274,11 @@ class StudyCard:
         front, ill_conditioned: rows of ``trials``.
         more: columns of the front alone, in its order: masses of the bodies.
         audits: trial number -> measures of its audit.
-        jumps, models: by trial number.
+        jumps: of the designs on the front, by trial number.
+        case_jumps: of ``cases``, by place among them.
+        stops_rad: ends of the joints' ranges as each kit of motors has them: index of the kit -> [least, most] of hip
+            and of knee, None where a joint has no stop.
+        models: by trial number.
         case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
         robust: designs under uncertainty; None where none is stored.
         sensitivity: trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``.
@@ -302,7 +319,9 @@ class StudyCard:
     picks: Sequence[Picked]
     more: Mapping[str, Column]
     audits: Mapping[str, Mapping[str, Any]]
-    jumps: Mapping[str, Jump]
+    jumps: Jumps
+    case_jumps: Jumps
+    stops_rad: Mapping[str, Sequence[Sequence[Number]]]
     models: Mapping[str, Model3D]
     cases: Sequence[Case]
     case_gearboxes: Mapping[str, Sequence[int]]

@@ -1,5 +1,7 @@
+import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -9,8 +11,9 @@ from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import _along, _links, _states, write_figures, write_map_figure
-from pareto_monoped.report.front_figure import front_figure
+from pareto_monoped.report.figures import _along, _links, _states, _states_data, write_figures, write_map_figure
+from pareto_monoped.report.front_figure import JOINTS, STYLES, front_figure
+from pareto_monoped.report.jump_packing import unpacked
 from pareto_monoped.report.payload import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
@@ -82,7 +85,8 @@ def test_the_floor_is_that_of_the_lightest_robot_of_all_studies(payload):
 
 def test_states_over_time_are_those_of_the_knees_jump(payload):
     (card,) = payload.studies
-    jump = card.jumps[str(card.trials.trial[card.picks[0].row])]
+    row = card.picks[0].row
+    data = _states_data(card, row)
     figure = Figure()
     _states(payload, figure)
     columns = [
@@ -91,10 +95,34 @@ def test_states_over_time_are_those_of_the_knees_jump(payload):
         ("base_z_m", "foot_z_m"),
     ]
     for axes, names in zip(figure.axes, columns, strict=True):
-        assert axes.lines[2].get_xdata() == pytest.approx([jump.lift_off_s] * 2)
+        assert data["lift_off_s"] in [line.get_xdata()[0] for line in axes.lines if len(line.get_xdata()) == 2]
         for line, name in zip(axes.lines, names, strict=False):
-            np.testing.assert_allclose(line.get_xdata(), np.array(jump.columns["time_s"]) * jump.scale["time_s"])
-            np.testing.assert_allclose(line.get_ydata(), np.array(jump.columns[name]) * jump.scale[name])
+            np.testing.assert_allclose(line.get_xdata(), data["time_s"])
+            np.testing.assert_allclose(line.get_ydata(), data[name])
+    trial = card.trials.trial[row]
+    base = unpacked(card.jumps, trial)["base_z_m"].max()
+    assert base == pytest.approx(card.trials.columns["height_m"][row], abs=1e-3)
+
+
+def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_colours(payload):
+    (card,) = payload.studies
+    row = card.picks[0].row
+    figure = Figure()
+    _states(payload, figure)
+    torques = figure.axes[0]
+    for joint, line in zip(("hip", "knee"), torques.lines, strict=False):
+        gearbox = payload.gearboxes[card.trials.columns[f"{joint}_gearbox"][row]]
+        same = [one for one in torques.lines if one.get_color() == line.get_color() and one.get_linestyle() == ":"]
+        assert sorted(one.get_ydata()[0] for one in same) == [-gearbox.peak_torque_n_m, gearbox.peak_torque_n_m]
+        assert np.abs(line.get_ydata()).max() <= gearbox.peak_torque_n_m * 1.01
+
+
+def test_colours_are_the_pages():
+    style = (resources.files("pareto_monoped.report") / "assets" / "style.css").read_text(encoding="utf-8")
+    light = style[: style.index("@media")]
+    page = dict(re.findall(r"--(\w+): (#\w+);", light))
+    assert [tint for tint, _ in STYLES] == [page[f"c{i}"] for i in range(len(STYLES))]
+    assert {joint: page[joint] for joint in JOINTS} == JOINTS
 
 
 def test_variables_along_the_front_are_in_their_shown_units(payload, data):

@@ -61,19 +61,30 @@ function drawTimes() {
   for (const [name, tint] of [["hip", "--hip"], ["knee", "--knee"]]) {
     legend.append(make("span", { class: "swatch", style: `background: var(${tint})` }), name);
   }
-  legend.append(`; dashed: limits of the gearboxes; vertical: lift-off at ${round(chosen.jump.lift_off_s)} s`);
-  const limit = (value) => [{ x, y: [value, value] }, { x, y: [-value, -value] }];
-  const limits = (key) => ["hip", "knee"].flatMap((side) => (chosen[side] ? limit(chosen[side][key]).map((s) => ({ ...s, colour: `var(--${side})`, dash: "3 3", thick: 1 })) : []));
-  const pair = (suffix) => ["hip", "knee"].map((side) => ({ x: j.time_s, y: j[side + suffix], colour: `var(--${side})` }));
+  legend.append(`; dashed: limits of the gearboxes and end stops; vertical: lift-off at ${round(j.lift_off_s)} s`);
+  const level = (value, side) => ({ x, y: [value, value], colour: `var(--${side})`, dash: "3 3", thick: 1 });
+  const sides = ["hip", "knee"];
+  const limits = sides.flatMap((side) => (chosen[side] ? [1, -1].map((sign) => level(sign * chosen[side].peak_torque_n_m, side)) : []));
+  const angles = sides.map((side) => ({ x: j.time_s, y: j[`${side}_rad`].map((angle) => angle * DEGREES), colour: `var(--${side})` }));
+  // Of the stops, those that the jump comes near; the others would flatten the lines.
+  const stops = sides.flatMap((side, k) => {
+    const [low, high] = extent(angles[k].y), near = 0.25 * (high - low);
+    const ends = (chosen.study.stops_rad[chosen.kit]?.[k] ?? []).filter((end) => end !== null).map((end) => end * DEGREES);
+    return ends.filter((end) => end > low - near && end < high + near).map((end) => level(end, side));
+  });
+  const pair = (suffix) => sides.map((side) => ({ x: j.time_s, y: j[side + suffix], colour: `var(--${side})` }));
   const rows = [
-    { title: "motor torque at the joint, N m", series: [...pair("_motor_torque_n_m"), ...limits("peak_torque_n_m")] },
+    { title: "motor torque at the joint, N m", series: [...pair("_motor_torque_n_m"), ...limits] },
     { title: "joint speed, rad/s", series: pair("_rad_per_s") },
+    { title: "joint angle, degrees", series: [...angles, ...stops] },
+    { title: "force of the floor on the foot, N", series: [{ x: j.time_s, y: j.contact_z_n, colour: "var(--c1)" }] },
     { title: "height of base and (thin) foot, m", series: [{ x: j.time_s, y: j.base_z_m, colour: "var(--ink)" }, { x: j.time_s, y: j.foot_z_m, colour: "var(--ink)", thick: 0.9 }] },
   ];
   rows.forEach((row, i) => {
     const y = padded(extent(row.series.flatMap((s) => s.y)));
-    const chart = smallChart({ x, y, title: row.title, series: row.series, xTitle: i === 2 ? "time, s" : "", bottom: i === 2 ? 32 : 20, height: i === 2 ? 146 : 134, label: `${row.title}, over ${round(x[1], 2)} s` });
-    const at = chart.toX(chosen.jump.lift_off_s);
+    const last = i === rows.length - 1;
+    const chart = smallChart({ x, y, title: row.title, series: row.series, xTitle: last ? "time, s" : "", bottom: last ? 32 : 20, height: last ? 132 : 116, label: `${row.title}, over ${round(x[1], 2)} s` });
+    const at = chart.toX(j.lift_off_s);
     chart.svg.append(draw("line", { x1: at, x2: at, y1: chart.top, y2: chart.top + chart.h, stroke: "var(--faint)" }));
     const cursor = draw("line", { y1: chart.top, y2: chart.top + chart.h, stroke: "var(--c4)", "stroke-width": 1.5 });
     chart.svg.append(cursor);
@@ -95,7 +106,8 @@ function noJump(chosen) {
   if (!chosen) return "Nothing is selected.";
   if (chosen.kind === "case") return `This design does not jump here: ${chosen.measures.reason || chosen.measures.status}.`;
   if (chosen.at < 0) return "Jumps are kept for designs on the front; the commands below simulate this one.";
-  return `This page keeps the jumps of ${Object.keys(chosen.study.jumps).length} of the ${chosen.study.front.length} designs on the front; the commands below simulate this one.`;
+  if (!chosen.study.jumps.keys.length) return "This page was made without jumps; the commands below simulate this design.";
+  return "Simulated again for this page, this design did not come to an apex; the commands below simulate it.";
 }
 
 // Each variable against the first objective along the front.

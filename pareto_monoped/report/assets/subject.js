@@ -11,7 +11,7 @@ function caseSubject(index, name) {
   const made = study.cases[at];
   const published = page.published.find((c) => c.name === name);
   return {
-    kind: "case", study, index, name: made.name, values: published.design, measures: { ...made.measures, ...made }, more: {}, jump: made.jump, status: made.status,
+    kind: "case", study, index, name: made.name, values: published.design, measures: { ...made.measures, ...made }, more: {}, status: made.status,
     kit: study.kit, hip: page.gearboxes[study.case_gearboxes.hip[at]] ?? null, knee: page.gearboxes[study.case_gearboxes.knee[at]] ?? null, published,
     why: `published: ${published.height_m.toFixed(3)} m on ${published.energy_j.toFixed(2)} J`,
   };
@@ -29,7 +29,7 @@ function trialSubject(index, row) {
   const letter = study.trials.state[row];
   return {
     kind: "trial", study, index, number, row, values, measures, more, at, why: whyOf(study, row, at), letter, kit: kitOf(study, row),
-    jump: study.jumps[number] ?? null, audit: study.audits[number] ?? null, model: study.models[number] ?? null,
+    audit: study.audits[number] ?? null, model: study.models[number] ?? null,
     hip: page.gearboxes[columns.hip_gearbox[row]] ?? null, knee: page.gearboxes[columns.knee_gearbox[row]] ?? null,
   };
 }

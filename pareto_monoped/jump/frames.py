@@ -1,0 +1,186 @@
+"""The course of many jumps in a few frames each: what an animation or a chart over time needs.
+
+The jumps are those of ``population``, stepped one step at a time, and read from the controller's records. A trace of
+``jump.single`` has more columns and every step, and takes thirty times as long.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import GRAVITY_M_PER_S2, complete_control
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.population import Population, Records, prepare
+from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.rows import take
+from pareto_monoped.robot.population import RobotArrays
+
+Floats = NDArray[np.float64]
+
+FRAME_COLUMNS = (
+    "base_x_m", "base_z_m", "hip_rad", "knee_rad", "hip_rad_per_s", "knee_rad_per_s",
+    "hip_motor_torque_n_m", "knee_motor_torque_n_m", "contact_z_n",
+)  # fmt: skip
+"""Columns of a recording, with the meaning that they have in ``jump.single.TRACE_COLUMNS``."""
+
+# Jumps stepped together: few enough that their whole course fits into some ten megabytes.
+_CHUNK = 256
+_FIRST_ROOM = 512  # steps that there is room for at first; most jumps end sooner
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recording:
+    """A jump in a few frames.
+
+    Attributes:
+        height_m: of the apex.
+        step_s: time of one step.
+        lift_off_step: number of the last step with contact, from 0.
+        steps: number of every frame's step.
+        columns: ``FRAME_COLUMNS`` to values, each of shape (frames,).
+    """
+
+    height_m: float
+    step_s: float
+    lift_off_step: int
+    steps: NDArray[np.intp]
+    columns: Mapping[str, Floats]
+
+    @property
+    def time_s(self) -> Floats:
+        """Time of each frame, shape (frames,)."""
+        return self.steps.astype(np.float64) * self.step_s
+
+
+def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.intp]:
+    """Which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
+
+    The steps between two frames are equal in number before lift-off, and again after it, except at the first and the
+    last frame. Equal steps have small differences, which ``report.jump_packing`` makes use of.
+    """
+    stance = 2 * frames // 3
+    before = max(-(-lift_off_step // (stance - 1)), 1)
+    after = max(-(-(last_step - lift_off_step) // (frames - stance)), 1)
+    steps = {0, *range(lift_off_step, 0, -before), *range(lift_off_step, last_step, after), last_step}
+    return np.array(sorted(steps), dtype=np.intp)
+
+
+def recordings(
+    robots: RobotArrays, control: Floats, calibration: Calibration, frames: int, workers: int = 1
+) -> list[Recording | None]:
+    """Jump with robots that can stand, and keep a few frames of each jump.
+
+    Args:
+        robots: n robots.
+        control: of each, see ``design.complete_control``.
+        calibration: the jump model.
+        frames: how many, at least 4; a jump of fewer steps has fewer.
+        workers: threads.
+
+    Returns:
+        One per robot, in their order; None for a jump that does not reach its apex.
+    """
+    result: list[Recording | None] = []
+    control = complete_control(control)
+    for start in range(0, len(robots), _CHUNK):
+        rows = np.arange(start, min(start + _CHUNK, len(robots)))
+        chosen = take(robots, rows)
+        pose = start_pose(chosen, calibration)
+        population = prepare(chosen, control[rows], pose, calibration, workers)
+        result += _chosen_frames(_course(population), population.records, frames)
+    return result
+
+
+def _course(population: Population) -> Floats:
+    """``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
+    from mujoco import batch
+
+    from pareto_monoped.jump.callback import controlled
+    from pareto_monoped.jump.controller import DIVERGED, FLYING
+
+    records = population.records
+    course = np.zeros((len(records), _FIRST_ROOM, len(FRAME_COLUMNS)))
+    momentum, body = np.zeros(len(records)), _Bodies.of(records)
+    weight_n = body.mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
+    status, torque = records["status"], records["motor_torque_n_m"]
+    step = 0
+    with controlled():
+        while len(ids := np.flatnonzero(status <= FLYING)):
+            if step == course.shape[1]:
+                course = np.concatenate((course, np.zeros_like(course)), axis=1)
+            try:
+                population.batch.step(ids, 1)
+            except batch.SimulationError as problem:
+                status[problem.ids] = DIVERGED
+            # A record is long: only the fields in question are read.
+            position, velocity, directions = (records[name][ids] for name in ("position", "velocity", "directions"))
+            now = take(body, ids)
+            course[ids, step, :4] = position
+            course[ids, step, 4:6] = velocity[:, 2:]
+            course[ids, step, 6:8] = np.where((status[ids] <= FLYING)[:, None], torque[ids], 0.0)
+            course[ids, step, 8] = now.clearance_m(position, directions) <= 0.0
+            risen = now.momentum_kg_m_per_s(velocity, directions)
+            if step:
+                # What changes the upward momentum is the floor's force against the weight.
+                course[ids, step - 1, 8] *= (risen - momentum[ids]) / now.step_s + weight_n[ids]
+            momentum[ids] = risen
+            step += 1
+    return course[:, :step]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Bodies:
+    """What does not change in n jumps, as in ``controller.RECORD``."""
+
+    step_s: Floats
+    mass_kg: Floats
+    thigh_com_m: Floats
+    shank_com_m: Floats
+    thigh_length_m: Floats
+    shank_length_m: Floats
+    foot_radius_m: Floats
+
+    @classmethod
+    def of(cls, records: Records) -> "_Bodies":
+        names = ("thigh_com_m", "shank_com_m", "thigh_length_m", "shank_length_m", "foot_radius_m")
+        given = {name: records[name].copy() for name in names}
+        return cls(step_s=records["timestep_s"].copy(), mass_kg=records["body_mass_kg"].copy(), **given)
+
+    def clearance_m(self, position: Floats, directions: Floats) -> Floats:
+        """Gap between foot and floor."""
+        reach = self.thigh_length_m * directions[:, 1] + self.shank_length_m * directions[:, 3]
+        return np.asarray(position[:, 1] - reach - self.foot_radius_m)
+
+    def momentum_kg_m_per_s(self, velocity: Floats, directions: Floats) -> Floats:
+        """Upward momentum of the whole robot."""
+        rise, hip, below = velocity[:, 1], velocity[:, 2], velocity[:, 2] + velocity[:, 3]
+        sin_hip, cos_hip, sin_knee, cos_knee = directions.T
+        thigh, shank = self.thigh_com_m, self.shank_com_m
+        at_thigh = rise - hip * (cos_hip * thigh[:, 0] + sin_hip * thigh[:, 1])
+        at_knee = rise + hip * sin_hip * self.thigh_length_m
+        at_shank = at_knee - below * (cos_knee * shank[:, 0] + sin_knee * shank[:, 1])
+        return np.asarray(self.mass_kg[:, 0] * rise + self.mass_kg[:, 1] * at_thigh + self.mass_kg[:, 2] * at_shank)
+
+
+def _chosen_frames(course: Floats, records: Records, frames: int) -> list[Recording | None]:
+    from pareto_monoped.jump.controller import APEX
+
+    found: list[Recording | None] = []
+    for values, record in zip(course, records, strict=True):
+        if record["status"] != APEX:
+            found.append(None)
+            continue
+        lift_off = int(record["lift_off_step"]) - 1
+        steps = frame_steps(lift_off, int(record["steps"]) - 1, frames)
+        found.append(
+            Recording(
+                height_m=float(record["height_m"]),
+                step_s=float(record["timestep_s"]),
+                lift_off_step=lift_off,
+                steps=steps,
+                columns=dict(zip(FRAME_COLUMNS, values[steps].T, strict=True)),
+            )
+        )
+    return found
