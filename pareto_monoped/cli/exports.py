@@ -120,10 +120,11 @@ def export(
             _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1)
         else:
             from pareto_monoped.pareto.pick import pick
+            from pareto_monoped.study.behind import with_numbered
 
             study, wanted = _given(db), required(selector)
             data = _read(study)
-            picked = pick(data.front(), wanted, data.study.objectives)
+            picked = pick(with_numbered(data, data.front(), wanted), wanted, data.study.objectives)
             _note(picked.why)
             trial = picked.trial
             job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)

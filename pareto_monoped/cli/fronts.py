@@ -4,6 +4,7 @@ import json
 import math
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -176,6 +177,7 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
     from pareto_monoped.pareto.one_more import one_more
     from pareto_monoped.pareto.pick import pick as pick_design
     from pareto_monoped.study.alternatives import alternatives
+    from pareto_monoped.study.behind import better_than, numbered, with_numbered
     from pareto_monoped.study.binding import binding_limits, front_alone
     from pareto_monoped.study.front_reader import read_front
     from pareto_monoped.study.reader import read_study
@@ -187,14 +189,20 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
         whole, compared, rows = _robust(db)
     else:
         whole, rows = front_alone(data), data.rows
+    number = numbered(wanted)
+    if number is not None and not (rows["trial"] == number).any():
+        known = read_study(db)
+        whole = known if compared is None else replace(known, trials=compared.rows)
+        rows = with_numbered(whole, rows, wanted)
     names = shown_columns(data.study, data.used, data.study.objectives)
     picked = pick_design(rows, wanted, data.study.objectives)
     step = one_more(rows, picked.trial, data.study.objectives)
     limits = binding_limits(whole, picked.trial)
+    ahead = better_than(rows, picked.trial, data.study.objectives)
     others: tuple[Alternative, ...] = ()
     if count:
         others = alternatives(
-            read_study(db) if compared is None else whole,
+            read_study(db),
             picked.trial,
             count=count,
             tolerance=0.01 * tolerance,
@@ -206,6 +214,8 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
     row = rows.loc[rows["trial"] == picked.trial, list(dict.fromkeys((*names, *shares)))].to_dict(orient="records")[0]
     if as_json:
         more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
+        if ahead:
+            more["behind"] = ahead
         if count:
             more["alternatives"] = [other.as_dict() for other in others]
         echo(json.dumps(row | more, indent=2))
@@ -213,6 +223,10 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
     echo(wrapped(picked.why))
     for name in names[1:]:
         echo(f"{name:<34} {row[name]}" if name in _MOTORS else f"{name:<34} {row[name]:.6g}")
+    if ahead:
+        echo(
+            wrapped(f"behind the front: {len(ahead)} of its designs are no worse in any objective, as trial {ahead[0]}")
+        )
     echo(wrapped(step.text()))
     echo(wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
     if by_robust:
@@ -223,7 +237,7 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
         _print_alternatives(others, tolerance)
         if compared is not None:
             note = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
-            click.echo(wrapped(f"{note}; 'robust DB --trial N' adds others"))
+            echo(wrapped(f"{note}; 'robust DB --trial N' adds others"))
 
 
 def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
@@ -235,7 +249,7 @@ def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
     data = read_study(db)
     trials = robust_trials(data, read_robustness(db))
     if trials.others:
-        click.echo(f"note: left out: {trials.others} trials with other ranges, samples or seed", err=True)
+        echo(f"note: left out: {trials.others} trials with other ranges, samples or seed", err=True)
     return data, trials, robust_front(data, trials)
 
 

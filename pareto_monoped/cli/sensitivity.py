@@ -10,6 +10,7 @@ from pareto_monoped.cli.fronts import wrapped
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.robustness import asked
 from pareto_monoped.cli.selection import required, selector_options
+from pareto_monoped.cli.terminal import echo
 
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
@@ -82,10 +83,10 @@ def sensitivity(
         from pareto_monoped.report.sensitivity_figure import sensitivity_page
 
         write_text(plot, sensitivity_page(trial, found, _shown(kept.study)), force=force)
-        click.echo(f"wrote {plot}", err=True)
+        echo(f"wrote {plot}", err=True)
     if as_json:
         both = {one.about: one.as_dict() for one in found}
-        click.echo(json.dumps({"trial": trial, "uncertainty": ranges.name, "seed": chosen_seed, **both}, indent=2))
+        echo(json.dumps({"trial": trial, "uncertainty": ranges.name, "seed": chosen_seed, **both}, indent=2))
         return
     shown = _shown(kept.study)
     for one in found:
@@ -116,16 +117,16 @@ def _print(trial: int, found: "Sensitivity", shown: "list[Measure]") -> None:
     """One line per factor, by its share of the height's variance."""
     title = {"variables": "variables, moved around", "assumptions": "assumptions about the robot as built, around"}
     failed = f"; {100.0 * found.failed:.1f} % fail" if found.failed else ""
-    click.echo(f"{title[found.about]} trial {trial} ({found.jumps} jumps{failed})")
+    echo(f"{title[found.about]} trial {trial} ({found.jumps} jumps{failed})")
     heads = "".join(f"{f'{entry.short} {_unit(entry)}':>10} {'share %':>8}" for entry in shown)
-    click.echo(f"{'':<19} {'range':>22}{heads}")
+    echo(f"{'':<19} {'range':>22}{heads}")
     for one in found.ranked(shown[0].name):
         cells = ""
         for entry in shown:
             influence = one.measures[entry.name]
             share = f"{100.0 * influence.total:.0f}+-{100.0 * influence.error:.0f}"
             cells += f"{_change(entry, one):>10} {share:>8}"
-        click.echo(f"{one.factor.label:<19} {one.factor.text:>22}{cells}")
+        echo(f"{one.factor.label:<19} {one.factor.text:>22}{cells}")
 
 
 def _say_which(found: "Sensitivity", shown: "list[Measure]") -> None:
@@ -137,5 +138,5 @@ def _say_which(found: "Sensitivity", shown: "list[Measure]") -> None:
             share = 100.0 * made[0].measures[entry.name].total
             words.append(f"for {entry.words} {made[0].factor.label} ({share:.0f} %)")
     if words:
-        click.echo(wrapped(f"the manufacturing tolerance that matters most: {', '.join(words)}"))
-    click.echo(wrapped("share: total Sobol' index, with its 95 percent interval; change from end to end of the range"))
+        echo(wrapped(f"the manufacturing tolerance that matters most: {', '.join(words)}"))
+    echo(wrapped("share: total Sobol' index, with its 95 percent interval; change from end to end of the range"))
