@@ -55,7 +55,7 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
 @force_option
-@click.option("--audit", "audited", is_flag=True, help="Check energy balance, finer steps, perturbations.")
+@click.option("--audit", "audited", is_flag=True, help="Numerical audit: energy balance, finer steps, perturbations.")
 def simulate(
     case: str,
     changes: tuple[str, ...],

@@ -284,7 +284,7 @@ class StudyCard:
         sensitivity: trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``.
         weighted: results of a weighted search: weight of the first objective, and row.
         floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
-        notes: what readers have to know before they trust the page.
+        notes: what readers have to know before they use the page.
     """
 
     label: str

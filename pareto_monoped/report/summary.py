@@ -89,7 +89,7 @@ def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
 
 
 def notes(data: StudyData, again: "Resimulation") -> list[str]:
-    """What the reader has to know before trusting the page."""
+    """What the reader has to know before using the page."""
     lines = []
     done, budget = len(data.trials), data.meta.budget
     if not data.meta.finished:

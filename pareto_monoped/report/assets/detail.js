@@ -150,13 +150,24 @@ function showAudit(chosen) {
   const box = byId("audit");
   box.replaceChildren();
   const audit = chosen?.audit;
+  if (chosen?.kind === "trial") box.append(make("p", { class: "small built" }, asBuilt(chosen)));
   if (!audit) {
     box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : chosen ? "Only designs on the front are audited." : "Nothing is selected."));
     return;
   }
-  box.append(make("p", { class: `verdict${audit.good ? "" : " no"}` }, audit.good ? "Well-conditioned: its height and energy can be trusted." : `Ill-conditioned: ${audit.reason}.`));
+  box.append(make("p", { class: `verdict${audit.good ? "" : " no"}` }, audit.good ? "Well-conditioned: neither rounding nor the time step decides its height and energy." : `Ill-conditioned: ${audit.reason}.`));
   const rows = Object.entries(audit).filter(([name]) => quantity[name]).map(([name, value]) => [quantity[name].label, shown(name, value)]);
   box.append(table(["what changes", "by"], rows));
+}
+
+// The physical test beside the numerical one: what jumps under uncertainty say of a design.
+function asBuilt(chosen) {
+  const { index, row, number } = chosen, { robust } = page.studies[index];
+  const of = (name) => valueAt(index, name, row);
+  if (!robust?.rows.includes(row)) return `Not tested as built: pareto-monoped robust DB --trial ${number} does that.`;
+  const range = (name) => (of(`${name}.p05`) === null ? "" : `${quantity[name].label} ${shown(name, of(`${name}.p05`))} to ${shown(name, of(`${name}.p95`))}, `);
+  const share = (name) => `${(100 * of(name)).toFixed(1)} %`;
+  return `Tested as built in ${robust.samples} jumps, nine of ten robots: ${page.objectives.map((name) => range(name.split(".")[0])).join("")}${share("failed_share")} of the jumps fail, ${share("overloaded_share")} overload a part.`;
 }
 
 // A word, quoted for a POSIX shell where necessary.
