@@ -21,6 +21,7 @@ _COMMANDS = {
     "status": "studies",
     "verify": "storage",
     "repair": "storage",
+    "trials": "trials",
     "front": "fronts",
     "pick": "fronts",
     "robust": "robustness",

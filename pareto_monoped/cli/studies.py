@@ -4,6 +4,7 @@ import json
 import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,9 @@ _evaluations = click.option(
 )
 _workers = click.option(
     "--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]"
+)
+_as_json = click.option(
+    "--json", "as_json", is_flag=True, help="Print JSON: a line per stored generation, and one at the end."
 )
 _SECONDS_BETWEEN_LINES = 5.0
 _AT_HEIGHT = f"{HEADLINE_HEIGHT_M:g} m"
@@ -45,6 +49,7 @@ _REASONS = {
     "--objectives", metavar="A,B", help="Two or three measures, instead of the study's; needs a --db of its own."
 )
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
+@_as_json
 def run(
     study_file: Path,
     evaluations: int | None,
@@ -53,6 +58,7 @@ def run(
     db: Path | None,
     objectives: str | None,
     no_strength: bool,
+    as_json: bool,
 ) -> int:
     """Run a study, or continue it where it stopped.
 
@@ -68,24 +74,25 @@ def run(
         strength=False if no_strength else None,
     )
     target = db or study_file.with_suffix(".db")
-    with progress_reports() as progress:
+    with progress_reports(as_json) as progress:
         summary = run_study(
             study, target, evaluations=evaluations, seed=seed, workers=workers, progress=progress, notify=_say
         )
-    return _finish(summary)
+    return _finish(summary, as_json)
 
 
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
 @_evaluations
 @_workers
-def resume(db: Path, evaluations: int | None, workers: int | None) -> int:
+@_as_json
+def resume(db: Path, evaluations: int | None, workers: int | None, as_json: bool) -> int:
     """Continue a study from its database alone, without its TOML file."""
     from pareto_monoped.study.run import resume as resume_study
 
-    with progress_reports() as progress:
+    with progress_reports(as_json) as progress:
         summary = resume_study(db, evaluations=evaluations, workers=workers, progress=progress, notify=_say)
-    return _finish(summary)
+    return _finish(summary, as_json)
 
 
 @click.command()
@@ -174,7 +181,17 @@ def _say(line: str) -> None:
     echo(line, err=True)
 
 
-def _finish(summary: "RunSummary") -> int:
+def _finish(summary: "RunSummary", as_json: bool) -> int:
+    """Say how a run ended; returns the exit code."""
+    code = 130 if summary.stop_reason == "interrupted" else 0
+    if as_json:
+        echo(json.dumps({"event": "end"} | asdict(summary) | {"db": str(summary.db)}))
+    else:
+        _print_end(summary)
+    return code
+
+
+def _print_end(summary: "RunSummary") -> None:
     from pareto_monoped.study.definition import NO_STRENGTH
 
     _say(
@@ -189,15 +206,19 @@ def _finish(summary: "RunSummary") -> int:
         _say(f"note: {line}")
     if not summary.strength:
         _say(f"note: {NO_STRENGTH}")
-    return 130 if summary.stop_reason == "interrupted" else 0
 
 
 @contextmanager
-def progress_reports() -> "Iterator[Callable[[Progress], None]]":
-    """A callback that shows progress on stderr: a bar on a terminal, otherwise one line every few seconds."""
+def progress_reports(as_json: bool = False) -> "Iterator[Callable[[Progress], None]]":
+    """A callback that shows progress on stderr: a bar on a terminal, otherwise one line every few seconds.
+
+    As JSON it is a line on stdout for every stored generation.
+    """
     import sys
 
-    if sys.stderr is not None and sys.stderr.isatty():
+    if as_json:
+        yield _json_report
+    elif sys.stderr is not None and sys.stderr.isatty():
         yield from _bar()
     else:
         yield _line_reports()
@@ -214,6 +235,21 @@ def _bar() -> "Iterator[Callable[[Progress], None]]":
             bar.update(task, total=progress.budget, completed=progress.evaluations, description=_described(progress))
 
         yield show
+
+
+def _json_report(progress: "Progress") -> None:
+    echo(
+        json.dumps(
+            {
+                "event": "generation",
+                "evaluations": progress.evaluations,
+                "budget": progress.budget,
+                "per_second": round(progress.per_second, 1),
+                "seconds_left": round(progress.seconds_left, 1),
+                "hypervolume": progress.hypervolume,
+            }
+        )
+    )
 
 
 def _line_reports() -> "Callable[[Progress], None]":

@@ -1,0 +1,68 @@
+"""``trials``: every trial of a study with all its measures, for other programs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.terminal import echo
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+_FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+@click.command()
+@click.argument("db", type=click.Path(path_type=Path))
+@click.option("--csv", "csv_file", metavar="FILE", type=_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE", type=_FILE, help="Write a table of Apache Parquet.")
+@click.option(
+    "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
+)
+@force_option
+def trials(db: Path, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
+    """Give all trials of a study: variables, state and every measure.
+
+    Columns have their stored names and SI units. Without a file the table goes to stdout, as CSV.
+    """
+    from pareto_monoped.study.reader import read_study
+
+    if parquet is not None:
+        _require_pyarrow()
+    rows = read_study(db).trials
+    if state is not None:
+        rows = rows[rows["state"] == state]
+    if csv_file is None and parquet is None:
+        echo(rows.to_csv(index=False, lineterminator="\n"), nl=False)
+        return
+    from pareto_monoped.files import write_bytes, write_text
+
+    if csv_file is not None:
+        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
+        _say(csv_file, rows)
+    if parquet is not None:
+        write_bytes(parquet, rows.to_parquet(index=False), force=force)
+        _say(parquet, rows)
+
+
+def _say(path: Path, rows: "DataFrame") -> None:
+    echo(f"wrote {path} ({len(rows)} trials)", err=True)
+
+
+def _require_pyarrow() -> None:
+    """Refuse a Parquet file without the library that writes it.
+
+    Raises:
+        InputError: pyarrow is not installed.
+    """
+    from importlib.util import find_spec
+
+    from pareto_monoped.errors import InputError
+
+    if find_spec("pyarrow") is None:
+        raise InputError(
+            "--parquet: pyarrow is not installed, which writes it; install the extra: "
+            "pip install 'pareto-monoped[parquet]', or use --csv"
+        )
