@@ -7,7 +7,7 @@ import errno
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pareto_monoped.errors import DiskError, OutputError
@@ -17,7 +17,7 @@ _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
 @contextmanager
-def replacing(path: Path, *, force: bool = False, temporary: Path | None = None) -> Iterator[Path]:
+def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, which replaces ``path`` if the block succeeds and is deleted if not.
 
     The temporary file keeps the suffix of ``path``, for writers that choose the format by it.
@@ -25,13 +25,42 @@ def replacing(path: Path, *, force: bool = False, temporary: Path | None = None)
     Args:
         path: the file to write.
         force: whether it may replace a file of another kind.
-        temporary: the temporary path, for a writer that holds a lock. What a killed writer left there is deleted.
 
     Raises:
-        OutputError: the folder is missing or cannot be written to, or ``path`` is a database or a file of another kind.
+        OutputError: the folder is missing or cannot be written to, or ``path`` is a database, a device, or a file of
+            another kind.
         DiskError: the disk is full or fails.
     """
     refuse_database(path)
+    with temporary_beside(path) as temporary:
+        try:
+            yield temporary
+        except OSError as error:
+            if error.filename not in (None, str(temporary)) or not is_failure(error):
+                raise
+            raise unwritable(path, error, "") from error
+        if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):
+            raise OutputError(
+                f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or --force"
+            )
+        try:
+            temporary.replace(path)
+        except OSError as error:
+            raise unwritable(path, error, "give the name of a file") from error
+
+
+@contextmanager
+def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path]:
+    """Yield a new, empty file beside ``path``, with its suffix and ordinary permissions; at the end it is deleted.
+
+    Args:
+        path: the file.
+        temporary: name of the new file, for a writer that holds a lock. What a killed writer left there is deleted.
+
+    Raises:
+        OutputError: the folder is missing or cannot be written to.
+        DiskError: the disk is full or fails.
+    """
     try:
         if temporary is None:
             handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
@@ -43,24 +72,13 @@ def replacing(path: Path, *, force: bool = False, temporary: Path | None = None)
     except OSError as error:
         raise unwritable(path, error, "give a file in a writable folder") from error
     try:
-        try:
-            yield temporary
-        except OSError as error:
-            if error.filename not in (None, str(temporary)) or not is_failure(error):
-                raise
-            raise unwritable(path, error, "") from error
-        if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):
-            raise OutputError(
-                f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or --force"
-            )
         # mkstemp makes private files, but results should have the permissions of any other file of the user.
         temporary.chmod(0o666 & ~current_umask())
-        try:
-            temporary.replace(path)
-        except OSError as error:
-            raise unwritable(path, error, "give the name of a file") from error
+        yield temporary
     finally:
-        temporary.unlink(missing_ok=True)
+        for end in ("", *_BESIDE_A_DATABASE):
+            with suppress(OSError):
+                Path(f"{temporary}{end}").unlink(missing_ok=True)
 
 
 def refuse_database(path: Path) -> None:

@@ -7,21 +7,10 @@ from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.compare import difference
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import design_record
-from pareto_monoped.cad.write.folder import RECORD
-from pareto_monoped.cad.write.formats import FILES
+from pareto_monoped.cad.write.formats import ALWAYS, FILES, RECORD
 from pareto_monoped.config import read_json
 from pareto_monoped.errors import DesignError
 
-_ALWAYS = (
-    "README.md",
-    "bom.csv",
-    "strength.csv",
-    "parameters.csv",
-    "monoped_equations.txt",
-    "checks.json",
-    RECORD,
-)
-"""Files of every export."""
 _NOT_COMPARED = ("jumps", "formats", "files")
 """Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
 _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
@@ -58,7 +47,7 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
 def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
     """Whether all listed files are there, and the list has what the record's formats make."""
     names = [str(name) for name in record["files"]]
-    needed = [*_ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
+    needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
     if record["jumps"]["as_built"]["status"] == "cannot_stand":
         needed = [path for path in needed if path != "model/monoped.xml"]
     listed = all(

@@ -23,7 +23,7 @@ from pareto_monoped.design import (
     RuleSet,
     columns,
 )
-from pareto_monoped.errors import DesignError, complaint
+from pareto_monoped.errors import DesignError, SimulationError, complaint
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
 if TYPE_CHECKING:
@@ -70,7 +70,10 @@ def simulate(
     force: bool,
     audited: bool,
 ) -> None:
-    """Simulate one jump and print its measures."""
+    """Simulate one jump and print its measures.
+
+    A jump that diverges has none, and ends with exit code 1.
+    """
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.calibration_defaults import rules_for
     from pareto_monoped.jump.single import simulate as jump
@@ -104,6 +107,11 @@ def simulate(
         echo(json.dumps(report, indent=2))
     else:
         _print(report)
+    if result.status == "diverged":
+        raise SimulationError(
+            f"jump: diverged, {result.reason}; choose softer contact and stops or a smaller time step in the "
+            "calibration, or smaller gains"
+        )
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:

@@ -25,6 +25,7 @@ from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.compiled import c_function
 from pareto_monoped.jump.controller import RECORD, RECORD_NUMBERS, control
+from pareto_monoped.jump.quiet import quiet
 
 _POSITION = types.CPointer(types.float64)
 _STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
@@ -61,7 +62,8 @@ def controlled() -> Iterator[None]:
             mujoco.set_mjcb_control(callback)
         _users += 1
     try:
-        yield
+        with quiet():
+            yield
     finally:
         with _lock:
             _users -= 1

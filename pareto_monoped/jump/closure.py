@@ -15,6 +15,7 @@ from pareto_monoped.jump.balance import HIP, back_s, energy_balance
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.rows import take
 from pareto_monoped.robot.population import RobotArrays
 
@@ -53,6 +54,7 @@ def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibratio
     return balanced(robots, control, calibration, workers).error
 
 
+@quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
     """The jumps of n robots that can stand, with their balances; not for the integrator RK4.
 

@@ -13,6 +13,7 @@ from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.pose import StartPose, start_pose
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
 from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
@@ -24,6 +25,17 @@ Records = NDArray[np.void]
 _STEPS_PER_CALL = 16
 # Force evaluations per step, and so calls of the controller; integrators not listed use one.
 _STAGES = {"RK4": 4}
+_FULL = "it has more contacts than there is room for"
+_WARNINGS = {
+    "mjWARN_BADQACC": "its accelerations grew beyond all bounds",
+    "mjWARN_BADQVEL": "its speeds grew beyond all bounds",
+    "mjWARN_BADQPOS": "its positions grew beyond all bounds",
+    "mjWARN_BADCTRL": "a motor's torque grew beyond all bounds",
+    "mjWARN_INERTIA": "its mass matrix became singular",
+    "mjWARN_CONTACTFULL": _FULL,
+    "mjWARN_CNSTRFULL": _FULL,
+}
+"""MuJoCo's warnings in our words, those that say most first."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -68,15 +80,20 @@ class Population:
                     )
 
     def complaints(self) -> list[str]:
-        """The error or warning of MuJoCo in each jump; empty where there was none."""
+        """What MuJoCo found wrong in each jump, in our words; empty where nothing was."""
         import mujoco
 
-        texts = [self.errors.get(i, "") for i in range(len(self.records))]
-        for i, kind in np.argwhere(self.batch.warning[:, :, 1] > 0):
-            texts[i] = texts[i] or f"MuJoCo warned: {mujoco.mjtWarning(int(kind)).name.removeprefix('mjWARN_')}"
+        texts = [" ".join(self.errors.get(i, "").split()) for i in range(len(self.records))]
+        found = self.batch.warning[:, :, 1] > 0
+        for name, words in _WARNINGS.items():
+            for i in np.flatnonzero(found[:, int(mujoco.mjtWarning.__members__[name])]):
+                texts[i] = texts[i] or words
+        for i in np.flatnonzero(found.any(axis=1)):
+            texts[i] = texts[i] or "something is wrong with its state"
         return texts
 
 
+@quiet()
 def prepare(
     robots: RobotArrays,
     control: Floats,

@@ -16,6 +16,7 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
@@ -127,28 +128,29 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
     scratch = mujoco.MjData(model)
     # This loop calls the controller once per step, whatever the integrator.
     record["stages"] = 1.0
-    while True:
-        qpos, qvel = data.qpos.copy(), data.qvel.copy()
-        act(qpos, qvel, data.ctrl, record)
-        running = record["status"] <= FLYING
-        if derived is not data:
-            derived.qpos[:], derived.qvel[:], derived.ctrl[:] = qpos, qvel, data.ctrl
-        if not running or derived is not data:
-            mujoco.mj_forward(model, derived)
-        if running:
-            mujoco.mj_step(model, data)
-        yield Moment(
-            model=model,
-            data=derived,
-            after=data,
-            qpos=qpos,
-            qvel=qvel,
-            record=record,
-            scratch=scratch,
-            last=not running,
-        )
-        if not running:
-            return
+    with quiet():
+        while True:
+            qpos, qvel = data.qpos.copy(), data.qvel.copy()
+            act(qpos, qvel, data.ctrl, record)
+            running = record["status"] <= FLYING
+            if derived is not data:
+                derived.qpos[:], derived.qvel[:], derived.ctrl[:] = qpos, qvel, data.ctrl
+            if not running or derived is not data:
+                mujoco.mj_forward(model, derived)
+            if running:
+                mujoco.mj_step(model, data)
+            yield Moment(
+                model=model,
+                data=derived,
+                after=data,
+                qpos=qpos,
+                qvel=qvel,
+                record=record,
+                scratch=scratch,
+                last=not running,
+            )
+            if not running:
+                return
 
 
 def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:

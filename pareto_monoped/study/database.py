@@ -107,7 +107,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
         header = stream.read(16)
     if header != b"SQLite format 3\x00":
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
-    _roll_back(path)
+    roll_back(path)
     with translated(path), undamaged(path):
         connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S)
         try:
@@ -121,7 +121,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
             connection.close()
 
 
-def _roll_back(path: Path) -> None:
+def roll_back(path: Path) -> None:
     """Roll back what a killed process had not committed, if it left a rollback journal.
 
     A run changes the journal mode at its start and end, which SQLite does under such a journal. A read-only connection

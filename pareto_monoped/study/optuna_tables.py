@@ -104,19 +104,21 @@ def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> No
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     try:
         storage = _optuna_storage(path)
-        study_id = storage.create_new_study(
-            [
-                optuna.study.StudyDirection.MAXIMIZE if sign < 0.0 else optuna.study.StudyDirection.MINIMIZE
-                for sign in study.objectives.signs
-            ],
-            study.name,
-        )
-        # This is what optuna.study.Study.set_metric_names writes; calling it would warn that it is experimental.
-        storage.set_study_system_attr(study_id, "study:metric_names", list(study.objectives.names))
-        for key, value in attributes.items():
-            storage.set_study_user_attr(study_id, key, value)
-        storage.remove_session()
-        storage.engine.dispose()
+        try:
+            study_id = storage.create_new_study(
+                [
+                    optuna.study.StudyDirection.MAXIMIZE if sign < 0.0 else optuna.study.StudyDirection.MINIMIZE
+                    for sign in study.objectives.signs
+                ],
+                study.name,
+            )
+            # This is what optuna.study.Study.set_metric_names writes; calling it would warn that it is experimental.
+            storage.set_study_system_attr(study_id, "study:metric_names", list(study.objectives.names))
+            for key, value in attributes.items():
+                storage.set_study_user_attr(study_id, key, value)
+        finally:
+            storage.remove_session()
+            storage.engine.dispose()
     finally:
         optuna.logging.set_verbosity(verbosity)
 

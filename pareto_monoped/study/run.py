@@ -11,6 +11,7 @@ from pareto_monoped.errors import LostTrialsError, StudyError
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study import provenance
 from pareto_monoped.study.algorithms import make_algorithm
+from pareto_monoped.study.arrival import is_vacant
 from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.foreign import foreign_note
@@ -99,7 +100,7 @@ def run(
         study = replace(study, seed=seed)
     with locked(db) as lock:
         threads = workers or default_workers()
-        if not db.exists():
+        if is_vacant(db):
             lock.acknowledge(0)
             simulator = load_simulator(study, workers=threads)
             algorithm = make_algorithm(study, simulator.coordinates(study))

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.files import replacing
+from pareto_monoped.files import temporary_beside
+from pareto_monoped.study.arrival import settle
 from pareto_monoped.study.columns import LATER, columns_of, listed
 from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
@@ -54,7 +55,7 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
     A killed creation leaves the hidden file ``.NAME-new`` and perhaps its journal, which the next creation deletes.
 
     Args:
-        path: where to; must not exist. The caller holds its lock.
+        path: where to; must be vacant, see ``arrival``. The caller holds its lock.
         study: the definition.
         meta: everything else that is known about the study.
         state: state of the algorithm before its first ``ask``.
@@ -66,11 +67,11 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
     new = path.with_name(f".{path.name}-new")
     # Before the file itself: a journal without its file would be rolled back into the next file of that name.
     Path(f"{new}-journal").unlink(missing_ok=True)
-    with replacing(path, temporary=new) as temporary:
+    with temporary_beside(path, new) as temporary:
         temporary.unlink()
         attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
-        create_tables(temporary, study, attributes)
         with translated(path):
+            create_tables(temporary, study, attributes)
             connection = sqlite3.connect(temporary, isolation_level=None)
             try:
                 columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
@@ -86,6 +87,7 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
                 connection.execute("COMMIT")
             finally:
                 connection.close()
+        settle(temporary, path)
 
 
 class Store:

@@ -114,8 +114,9 @@ def test_an_interrupt_waits_until_an_export_has_taken_its_place(tmp_path, monkey
     old, new = tmp_path / "old", tmp_path / "new"
     for folder in (old, new):
         folder.mkdir()
-        for name in ("a", "b", "design.json"):
+        for name in ("README.md", "bom.csv", "design.json"):
             (folder / name).write_text(folder.name)
+    (old / "design.json").write_text('{"files": ["README.md", "bom.csv", "design.json"]}')
     replace, moved = Path.replace, []
 
     def interrupted(self, target):
@@ -132,7 +133,9 @@ def test_an_interrupt_waits_until_an_export_has_taken_its_place(tmp_path, monkey
             move_in(new, old)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert {path.name: path.read_text() for path in old.iterdir()} == dict.fromkeys(["a", "b", "design.json"], "new")
+    assert {path.name: path.read_text() for path in old.iterdir()} == dict.fromkeys(
+        ["README.md", "bom.csv", "design.json"], "new"
+    )
 
 
 def test_a_folder_to_which_a_thread_still_writes_is_deleted_and_stays_away(tmp_path):

@@ -1,6 +1,8 @@
 import csv
 import json
 import math
+import re
+from importlib import resources
 
 import mujoco
 import numpy as np
@@ -245,3 +247,20 @@ def test_the_printed_table1_has_heights_above_energies_and_says_which_copies_jum
     assert heights == ["A", "0.887", "0.816 (0.711 to 0.922)", "1.077"]
     assert energies == ["", "31.44", "31.46 (30.11 to 32.22)", "54.31"]
     assert out.splitlines()[-1] == "A: 95% of its perturbed copies jump under `paper`"
+
+
+@pytest.mark.parametrize("more", [(), ("--json",), ("--audit",), ("--trace", "t.csv", "--model", "m.xml")])
+def test_a_jump_that_diverges_says_so_and_ends_with_code_1(capsys, tmp_path, monkeypatch, more):
+    monkeypatch.chdir(tmp_path)
+    text = (resources.files("pareto_monoped") / "data" / "calibrations" / "reference.toml").read_text()
+    for key, value in {"stiffness_n_per_m": "1e15", "damping_n_s_per_m": "1e9", "timestep_s": "0.02"}.items():
+        text = re.sub(f"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
+    (tmp_path / "wild.toml").write_text(re.sub("^control_period_s.*$", "", text, flags=re.MULTILINE))
+    code, out, err = run(capsys, "simulate", "--calibration", "wild.toml", *more)
+    assert (code, err) == (
+        1,
+        "error: jump: diverged, its accelerations grew beyond all bounds; choose softer contact and stops or a "
+        "smaller time step in the calibration, or smaller gains\n",
+    )
+    assert "diverged" in out
+    assert {path.name for path in tmp_path.iterdir()} == {"wild.toml", *more[1::2]}

@@ -1,8 +1,11 @@
 """Plausible robots, made without actuator search and part models."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, LOWER, UPPER
+from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.leg.stops import Bumper, JointStop
 from pareto_monoped.materials import MATERIALS
 from pareto_monoped.robot.population import JointStops, RobotArrays
@@ -17,6 +20,16 @@ _STOPS = JointStops(
         lower_rad=np.radians(15.0), upper_rad=np.radians(133.0), lever_mm=51.0, half_face_mm=13.0, bumper=_KNEE
     ),
 )
+
+
+def wild_calibration():
+    """A floor so stiff that a jump of large steps blows up on it."""
+    reference = load_calibration()
+    return replace(
+        reference,
+        contact=replace(reference.contact, stiffness_n_per_m=1e15, damping_n_s_per_m=1e9),
+        simulation=replace(reference.simulation, timestep_s=0.02, control_period_s=None),
+    )
 
 
 def random_designs(n, seed=0):

@@ -1,18 +1,20 @@
-"""The folder of an export: it is complete or absent, nothing is written outside it, and foreign files stay."""
+"""The folder of an export: it is complete or absent, nothing is written outside it, and foreign files stay.
 
-import json
+A file is foreign unless the record of an earlier export lists it, under a name that an export writes.
+"""
+
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pareto_monoped.cad.write.formats import ALWAYS, FILES, RECORD
 from pareto_monoped.cad.write.unbroken import noted, unbroken
+from pareto_monoped.config import read_json
 from pareto_monoped.errors import OutputError
 from pareto_monoped.files import current_umask, unwritable
 
-RECORD = "design.json"
-"""Name of the file that lists all files of an export; it is written last."""
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
 
 
@@ -20,14 +22,21 @@ def require_free(out_dir: Path, *, force: bool) -> None:
     """Refuse a place that must not be written to.
 
     Raises:
-        OutputError: a file, or a folder that is not empty without ``force``.
+        OutputError: a file, a folder that is not empty without ``force``, or one with foreign files in the way.
+        DiskError: the disk fails.
     """
-    if out_dir.exists() and not out_dir.is_dir():
-        raise OutputError(f"output {str(out_dir)!r}: is a file; give the name of a folder")
-    if out_dir.is_dir() and any(out_dir.iterdir()) and not force:
+    try:
+        if out_dir.exists() and not out_dir.is_dir():
+            raise OutputError(f"output {str(out_dir)!r}: is a file; give the name of a folder")
+        filled = out_dir.is_dir() and any(out_dir.iterdir())
+    except OSError as error:
+        raise unwritable(out_dir, error, "give a folder that can be read and written") from error
+    if filled and not force:
         raise OutputError(
             f"output {str(out_dir)!r}: is not empty; give another folder, or --force to replace an export"
         )
+    if filled:  # before the work of an export, not only after it
+        _require_own(out_dir, ALWAYS, _earlier_files(out_dir))
 
 
 def safe(name: str) -> str:
@@ -76,6 +85,9 @@ def move_in(folder: Path, out_dir: Path) -> None:
     """Put a finished folder in its place, instead of the files of an earlier export; other files stay.
 
     An interrupt waits until this is done.
+
+    Raises:
+        OutputError: a foreign file has the name of one of the new files; nothing has changed then.
     """
     with unbroken():
         _move(folder, out_dir)
@@ -85,7 +97,9 @@ def _move(folder: Path, out_dir: Path) -> None:
     if not out_dir.exists() or not any(out_dir.iterdir()):
         folder.replace(out_dir)
         return
-    for path in _earlier_files(out_dir):
+    earlier = _earlier_files(out_dir)
+    _require_own(out_dir, files_in(folder), earlier)
+    for path in earlier:
         path.unlink(missing_ok=True)
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.name != RECORD:
@@ -102,12 +116,39 @@ def _path(folder: Path, name: str) -> Path:
     return path
 
 
+def _require_own(out_dir: Path, names: Iterable[str], earlier: Collection[Path]) -> None:
+    """Refuse to replace what no earlier export made: a foreign file, or anything else that has a file's name."""
+    own = set(earlier)
+    for name in names:
+        path = out_dir / name
+        taken = [parent for parent in path.parents[: name.count("/")] if parent.exists() and not parent.is_dir()]
+        if not taken and path not in own and (path.is_symlink() or path.exists()):
+            taken = [path]
+        if taken:
+            raise OutputError(
+                f"output {str(out_dir)!r}: {str(taken[0].relative_to(out_dir))!r} is not of an earlier export and "
+                "would be lost; move it away, or give another folder"
+            )
+
+
 def _earlier_files(out_dir: Path) -> list[Path]:
     """Files that an earlier export wrote here, its record first."""
     try:
-        names = json.loads((out_dir / RECORD).read_text(encoding="utf-8"))["files"]
-        paths = [(out_dir / RECORD).resolve(), *((out_dir / str(name)).resolve() for name in names)]
+        names = [str(name) for name in read_json(out_dir / RECORD)["files"]]
     except (OSError, ValueError, KeyError, TypeError):
-        return []
-    # The record is a file like any other: it may not point outside.
-    return [path for path in paths if path.is_relative_to(out_dir.resolve()) and path.is_file()]
+        return []  # nothing here is known to be ours
+    # The record is a file like any other: it may neither point outside, nor at what no export writes.
+    paths = [out_dir / name for name in (RECORD, *filter(_written_by_exports, names))]
+    return [
+        path
+        for path in paths
+        if path.is_file() and not path.is_symlink() and path.parent.resolve().is_relative_to(out_dir.resolve())
+    ]
+
+
+def _written_by_exports(name: str) -> bool:
+    """Whether an export writes a file of this name, or into its folder at least, of which not all files are listed."""
+    made = (*ALWAYS, *(path for files in FILES.values() for path, _ in files))
+    first, *rest = Path(name).parts or ("",)
+    folders = {path.partition("/")[0] for path in made if "/" in path}
+    return ".." not in rest and (first in folders if rest else name in made)
