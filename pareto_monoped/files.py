@@ -5,6 +5,7 @@ No output replaces a study, and none replaces a file of another kind unless it i
 
 import errno
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -82,11 +83,17 @@ def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path
 
 
 def refuse_database(path: Path) -> None:
-    """Refuse to write over a study, any other database, or a file that belongs to one.
+    """Refuse to write over a study, any other database, a file that belongs to one, or a device.
 
     Raises:
         OutputError: it is one.
     """
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        mode = 0
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):  # whoever may write to its folder would replace the device
+        raise OutputError(f"output {str(path)!r}: is a device; give the name of a file")
     beside = next((end for end in _BESIDE_A_DATABASE if path.name.endswith(end)), None)
     database = path if beside is None else path.with_name(path.name.removesuffix(beside))
     if _beginning(database).startswith(_DATABASE):

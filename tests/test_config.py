@@ -1,11 +1,15 @@
+import errno
+import json
+import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import pytest
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.config import checked, read_toml
-from pareto_monoped.errors import InputError, MotorError
+from pareto_monoped.config import MAX_JSON_DEPTH, MAX_TOML_BYTES, checked, parsed_json, read_json, read_toml
+from pareto_monoped.errors import DiskError, InputError, MotorError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,3 +98,65 @@ def test_a_complaint_of_a_records_own_ends_with_one_cure():
     with pytest.raises(InputError) as caught:
         checked(Pair, {"ring": {"inner_mm": 5.0, "outer_mm": 5.0}}, source="file")
     assert str(caught.value) == "file: ring: inner_mm = 5.0: must be less than outer_mm = 5.0; correct one of them"
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"a = " + b"[" * 3000, "nested beyond reason"),
+        (b"a = " + b"9" * 5000, "not valid TOML"),
+        (b"\xff\xfe", "not valid TOML"),
+        (b"a = 'x", "not valid TOML"),
+        (b"#" * (MAX_TOML_BYTES + 1), f"has more than {MAX_TOML_BYTES} bytes"),
+    ],
+)
+def test_toml_that_is_none_or_beyond_reason_is_one_line(tmp_path, content, words):
+    (tmp_path / "a.toml").write_bytes(content)
+    with pytest.raises(InputError, match=words) as caught:
+        read_toml(tmp_path / "a.toml", what="motor file")
+    assert str(caught.value).startswith(f"motor file '{tmp_path}/a.toml'")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "a\0b", "/"])
+def test_what_is_no_file_is_one_line(path):
+    with pytest.raises(InputError, match=r"give a|check the path"):
+        read_toml(Path(path), what="motor file")
+
+
+def test_a_failing_disk_is_not_the_files_fault(monkeypatch, tmp_path):
+    def fails(*_, **__):
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(Path, "open", fails)
+    with pytest.raises(DiskError, match=r"Input/output error.*check the disk's health"):
+        read_toml(tmp_path / "a.toml", what="motor file")
+
+
+@pytest.mark.parametrize("levels", [4, MAX_JSON_DEPTH])
+def test_json_of_ordinary_depth_is_read(levels):
+    text = "[" * levels + "]" * levels
+    assert parsed_json(text) == json.loads(text)
+    wide = json.dumps([{"a": [1, "[{" * 50]}] * 300)
+    assert parsed_json(wide) == json.loads(wide)
+
+
+@pytest.mark.parametrize("levels", [MAX_JSON_DEPTH + 1, 3000, 200_000])
+@pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"]": ', "}")])
+def test_json_that_is_too_deep_is_refused(levels, opening, closing):
+    with pytest.raises(ValueError, match="more than 64 levels deep"):
+        parsed_json(opening * levels + "1" + closing * levels)
+
+
+@pytest.mark.parametrize("text", [None, 3, b"[]", "", "{", "9" * 5000])
+def test_what_is_no_json_is_a_value_error(text):
+    with pytest.raises(ValueError):  # noqa: PT011
+        parsed_json(text)
+
+
+def test_a_long_json_text_is_refused_before_it_is_parsed(monkeypatch, tmp_path):
+    monkeypatch.setattr("pareto_monoped.config.MAX_JSON_CHARACTERS", 10)
+    monkeypatch.setattr(json, "loads", lambda _: pytest.fail("parsed"))
+    for read in (lambda: parsed_json("[1, 2, 3, 4]"), lambda: read_json(Path("/dev/zero"))):
+        with pytest.raises(ValueError, match="must be 10 at most"):
+            read()

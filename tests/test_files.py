@@ -1,4 +1,5 @@
 import os
+from pathlib import Path
 
 import pytest
 
@@ -102,3 +103,10 @@ def test_a_pipe_is_not_read(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     write_text(tmp_path / "pipe", "x\n")
     assert (tmp_path / "pipe").read_text() == "x\n"
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_a_device_is_not_replaced(tmp_path, monkeypatch, force):
+    monkeypatch.setattr("pareto_monoped.files.tempfile.mkstemp", lambda **_: pytest.fail("a file beside a device"))
+    with pytest.raises(OutputError, match="'/dev/null': is a device; give the name of a file"):
+        write_text(Path("/dev/null"), "x", force=force)

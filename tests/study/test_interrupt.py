@@ -30,3 +30,18 @@ def test_outside_the_main_thread_it_does_nothing():
     thread.start()
     thread.join()
     assert asked == [False]
+
+
+def test_a_hang_up_that_was_ignored_stays_ignored():
+    """What nohup starts shall outlive its terminal."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Interrupt(lambda line: None) as interrupt:
+            signal.raise_signal(signal.SIGHUP)
+            assert not interrupt.asked
+            signal.raise_signal(signal.SIGTERM)
+            assert interrupt.asked
+            assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)

@@ -1,0 +1,91 @@
+"""The process of a command: its signals and its end."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from tests.cli.support import ROOT
+
+WAITS = """
+import sys
+from pareto_monoped import cli
+from pareto_monoped.files import replacing
+from pathlib import Path
+
+def wait(arguments):
+    with replacing(Path("out.txt")) as temporary:
+        print("waiting", flush=True)
+        sys.stdin.read()
+
+cli.cli.main = lambda **_: wait(None)
+sys.argv = ["pareto-monoped"]
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_any_command_without_a_trace(tmp_path, number):
+    process = subprocess.Popen(
+        [sys.executable, "-c", WAITS],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "waiting\n"
+    assert len(list(tmp_path.iterdir())) == 1
+    process.send_signal(number)
+    _, said = process.communicate(timeout=100)
+    assert (process.returncode, said) == (130, "interrupted\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+ENDS = """
+import atexit, sys
+from pareto_monoped import cli
+
+class Slow:
+    def __del__(self):
+        print("taken apart", flush=True)
+
+slow = Slow()
+atexit.register(print, "handler of before", flush=True)
+
+def command(**_):
+    atexit.register(print, "handler of during", flush=True)
+    print("the last words", end="\\n")
+    return 7
+
+cli.cli.main = command
+sys.argv = ["pareto-monoped"]
+cli.main()
+"""
+
+
+def test_the_end_runs_handlers_and_takes_nothing_apart():
+    done = subprocess.run(
+        [sys.executable, "-c", ENDS],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 7
+    assert done.stdout == "the last words\nhandler of during\n"
+    assert done.stderr == ""
+
+
+def test_words_given_leave_the_process_alone(capsys):
+    """A test or another program that calls the command line keeps its signals, its warnings and its end."""
+    from pareto_monoped import cli
+
+    before = [signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)]
+    with pytest.raises(SystemExit):
+        cli.main(["--version"])
+    assert [signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)] == before
+    assert capsys.readouterr().out.startswith("pareto-monoped")

@@ -1,0 +1,416 @@
+"""Call the command line thousands of times with damaged files, odd words and a hostile environment.
+
+Each call has a folder of its own with studies and files, of which some are damaged first. Most calls run in a fork of
+one process that has imported everything, some in a fresh interpreter. A call must end with exit code 0, 1, 2 or 130,
+without a traceback or warning, and with one line that says why; it must neither hang, nor leave temporary or
+half-written files, nor change a file that it was not told to write, nor any study that it does not continue.
+
+    python tools/fuzz.py --calls 10000 --seed 1 [--jobs 2] [--mount] [--only N] [--keep DIR]
+"""
+
+import argparse
+import atexit
+import collections
+import contextlib
+import ctypes
+import hashlib
+import json
+import os
+import random
+import re
+import resource
+import selectors
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # no thread may run when a call is forked
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from fuzz_calls import STUDIES, Call, call_of
+
+ROOT = Path(__file__).parents[1]
+STORED = ROOT / "tests" / "study" / "data"
+PATIENCE_S = 180.0
+"""After which a call counts as one that hangs."""
+DISK_BYTES = 6_000_000
+WRITERS = {"run", "resume", "robust", "repair", "pareto"}
+"""Commands that continue a study."""
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u2028\u2029]")
+_STYLE = re.compile("\x1b\\[[0-9;]*m")
+_FAULTS = (
+    "Traceback (most recent",
+    "error: unexpected ",
+    "Exception ignored",
+    "Warning:",
+    "Segmentation",
+    "Fatal Python",
+)
+_BESIDE = ("-wal", "-shm", "-journal", "-lock")
+
+Snapshot = dict[str, tuple[str, str]]
+"""Path of each file -> kind and digest of its content."""
+Result = tuple[int | None, str, str]
+"""Exit code, None for a call that hangs; output; messages."""
+
+STUDY = """\
+name = "s"
+description = "to be damaged"
+motor = "VT8020"
+calibration = "reference"
+evaluations = 30
+seed = 1
+audit = false
+objectives = ["height_m", "energy_j"]
+
+[variables]
+thigh_length_m = 0.4
+knee_ratio = { lower = 5.0, upper = 7.0 }
+rest_length_m = { lower = 1.0, upper = 10.0 }
+
+[constraints]
+mass_kg = { max = 6.0 }
+min_height_m = 0.55
+
+[reference_point]
+height_m = 0.5
+energy_j = 100.0
+
+[stop]
+wall_time_s = 20.0
+
+[algorithm]
+name = "random"
+population = 10
+"""
+
+
+def basis(folder: Path) -> None:
+    """Files that every call finds; made by the package itself, so that all of it is imported when calls are forked."""
+    from pareto_monoped import cli
+
+    folder.mkdir()
+    (folder / "study.toml").write_text(STUDY)
+    for name, source in {"old.db": "plain.db", "own.db": "own_files.db", "m.toml": "my_motor.toml"}.items():
+        shutil.copy(STORED / source, folder / name)
+    shutil.copy(STORED / "my_calibration.toml", folder / "cal.toml")
+    shutil.copy(ROOT / "pareto_monoped" / "data" / "uncertainty.toml", folder / "unc.toml")
+    (folder / "notes.txt").write_text("my notes\n")
+    for name in ("folder", "busy"):
+        (folder / name).mkdir()
+        (folder / name / "keep.txt").write_text("keep\n")
+    (folder / "loop").symlink_to("loop")
+    (folder / "loop.toml").symlink_to("loop.toml")
+    (folder / "design.json").write_text(json.dumps(_record(folder), indent=2) + "\n")
+    study, db = folder / "study.toml", folder / "s.db"
+    warm = folder.parent / "warm"
+    warm.mkdir()
+    for words in (
+        ["run", study, "--db", db, "--workers", "1"], ["report", db, "-o", warm / "r.html", "--figures", warm],
+        ["table1"], ["actuators", "--figure", warm / "a.svg"], ["actuators", "--rules", "paper"], ["verify", db],
+        ["pick", db, "--knee", "--alternatives", "2"], ["robust", db, "--trial", "0", "--samples", "64"],
+        ["status", db],
+        ["robust", folder / "own.db", "--trial", "0", "--samples", "64"], ["front", folder / "own.db"],
+    ):  # fmt: skip
+        with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
+            cli._run([str(word) for word in words])
+    from pareto_monoped.cli import exports, pareto  # noqa: F401
+
+
+def _record(folder: Path) -> dict[str, Any]:
+    """A record of an export that was never made."""
+    from pareto_monoped.cad.export import simulated_jumps
+    from pareto_monoped.cad.jobs import case_job
+    from pareto_monoped.cad.made import expected_record
+    from pareto_monoped.cad.records import record_job  # noqa: F401
+
+    job = case_job("C", folder=folder / "export", formats=["urdf"])
+    record = expected_record(job)
+    jumps = simulated_jumps({"searched": job.design, "as_built": job.design}, job.maps(), job.calibration)
+    return {**record, "jumps": jumps, "formats": ["urdf"], "files": []}
+
+
+def child(call: Call, folder: Path, streams: tuple[int, int]) -> None:
+    """In the forked process: take on the limits and surroundings of a call, make it, and end."""
+    os.setsid()
+    options, environment = call.options, dict(os.environ)
+    for name, text in call.environment.items():
+        environment.pop(name, None)
+        if text is not None:
+            environment[name] = text
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        os.dup2(streams[number - 1], number)
+        _redirect(number, options.get(name))
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.closerange(3, 200)
+    if "stdin" in options:
+        os.close(0)
+    os.chdir(folder)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    for name, limit in (("file_size", resource.RLIMIT_FSIZE), ("files", resource.RLIMIT_NOFILE)):
+        if isinstance(value := options.get(name), int):
+            resource.setrlimit(limit, (value, value))
+    if "umask" in options:
+        os.umask(int(str(options["umask"])))
+    if "read_only" in options and os.getuid() == 0:
+        _obey_permissions()
+    words = ["pareto-monoped", *call.words]
+    if "fresh" in options:
+        environment["PYTHONPATH"] = str(ROOT)
+        os.execve(sys.executable, [sys.executable, "-m", "pareto_monoped", *words[1:]], environment)
+    os.environ.clear()
+    os.environ.update(environment)
+    for number, stream in ((1, "stdout"), (2, "stderr")):
+        try:
+            os.fstat(number)
+            encoding = environment.get("PYTHONIOENCODING") or "utf-8"
+            setattr(sys, stream, open(number, "w", encoding=encoding, closefd=False))  # noqa: SIM115
+        except OSError:
+            setattr(sys, stream, None)
+    from pareto_monoped import cli
+
+    sys.argv = words
+    try:
+        cli.main()
+    except SystemExit:
+        atexit._run_exitfuncs()
+    os._exit(99)  # never reached: the last handler ends the process
+
+
+def _obey_permissions() -> None:
+    """Give up what lets root write to files and folders that are read-only (capset(2), CAP_DAC_*)."""
+    library, header, sets = ctypes.CDLL(None, use_errno=True), struct.pack("Ii", 0x20080522, 0), bytearray(24)
+    buffer = (ctypes.c_char * len(sets)).from_buffer(sets)
+    failed = library.capget(header, buffer)
+    effective, permitted, *rest = struct.unpack("6I", sets)
+    struct.pack_into("6I", sets, 0, effective & ~0b110, permitted & ~0b110, *rest)
+    if failed or library.capset(header, buffer):
+        raise OSError(ctypes.get_errno(), "capset")
+
+
+def _redirect(number: int, how: object) -> None:
+    if how == "closed":
+        os.close(number)
+    elif how == "full":
+        os.dup2(os.open("/dev/full", os.O_WRONLY), number)
+    elif how == "broken":
+        reader, writer = os.pipe()
+        os.dup2(writer, number)
+        os.close(reader)
+        os.close(writer)
+
+
+def made(call: Call, folder: Path) -> Result:
+    """Make a call: exit code (None if it hangs), output, messages."""
+    pipes = os.pipe(), os.pipe()
+    process = os.fork()
+    if process == 0:
+        try:
+            child(call, folder, (pipes[0][1], pipes[1][1]))
+        except BaseException as error:
+            os.write(2, "".join(traceback.format_exception(error)).encode())
+        os._exit(98)
+    chooser, texts = selectors.DefaultSelector(), (bytearray(), bytearray())
+    for k, (reader, writer) in enumerate(pipes):
+        os.close(writer)
+        chooser.register(reader, selectors.EVENT_READ, (reader, texts[k]))
+    began = time.monotonic()
+    strike = call.options.get("signal")
+    while chooser.get_map():
+        now = time.monotonic() - began
+        if isinstance(strike, tuple) and now >= strike[1]:
+            os.kill(process, signal.Signals[strike[0]])
+            strike = None
+        if now > PATIENCE_S:
+            os.killpg(process, signal.SIGKILL)
+            break
+        for key, _ in chooser.select(0.01 if strike else 1.0):
+            reader, text = key.data
+            if part := os.read(reader, 65536):
+                text += part
+            else:
+                chooser.unregister(reader)
+    for reader, _ in pipes:
+        os.close(reader)
+    _, status = os.waitpid(process, 0)
+    code = None if time.monotonic() - began > PATIENCE_S else os.waitstatus_to_exitcode(status)
+    encoding = call.environment.get("PYTHONIOENCODING") or "utf-8"
+    return code, texts[0].decode(encoding, "replace"), texts[1].decode(encoding, "replace")
+
+
+def snapshot(folder: Path) -> Snapshot:
+    """Every file of a folder: kind and digest of its content."""
+    found = {}
+    for path in folder.rglob("*"):
+        if path.is_symlink():
+            found[str(path.relative_to(folder))] = ("link", os.readlink(path))
+        elif path.is_file():
+            content = path.read_bytes()
+            kind = "database" if content.startswith(b"SQLite format 3") else "text"
+            found[str(path.relative_to(folder))] = (kind, hashlib.blake2b(content).hexdigest())
+    return found
+
+
+def findings(call: Call, folder: Path, before: Snapshot, result: Result) -> Iterator[str]:
+    """What is wrong with how a call ended."""
+    code, out, err = result
+    options = call.options
+    # A signal may come before the command has taken over its process.
+    killed = {-signal.Signals[strike[0]]} if isinstance(strike := options.get("signal"), tuple) else set()
+    if code not in {0, 1, 2, 130} | killed:
+        yield "hangs" if code is None else f"exit code {code}"
+    text = out + err
+    if call.environment.get("FORCE_COLOR"):
+        text = _STYLE.sub("", text)
+    for fault in _FAULTS:
+        if fault in text:
+            yield fault
+    if _CONTROL.search(text):
+        yield f"control character {_CONTROL.search(text)!r}"
+    heard = "stderr" not in options and call.environment.get("PYTHONIOENCODING") != "utf-16"
+    if code in (1, 2) and heard and (not err or not err.splitlines()[-1].startswith("error: ")):
+        yield "no line says why"
+    if code == 0 and "--json" in call.words and "--help" not in call.words and not {"stdout", "signal"} & set(options):
+        with contextlib.suppress(IndexError):
+            try:
+                json.loads(out, parse_constant=lambda name: 1 / 0)
+            except (ValueError, ZeroDivisionError):
+                if call.environment.get("PYTHONIOENCODING") != "utf-16":
+                    yield "JSON that is none"
+    yield from _file_findings(call, folder, before, code)
+
+
+def _file_findings(call: Call, folder: Path, before: Snapshot, code: int | None) -> Iterator[str]:
+    after = snapshot(folder)
+    command, limited = call.words[0], {"file_size", "tiny_disk", "signal", "files"} & set(call.options)
+    writes = command in WRITERS
+    for name, content in before.items():
+        now = after.get(name)
+        if now == content or name.endswith(_BESIDE):
+            continue
+        if content[0] == "database":
+            if not writes and not any(f"{name}{end}" in before for end in _BESIDE):
+                yield f"{name} was changed by {command}"
+            elif now is None or now[0] != "database":
+                yield f"{name} is no database any more"
+        elif now is None or name not in call.words or ("--force" not in call.words and name in ("notes.txt",)):
+            yield f"{name} was changed"
+    for name in sorted(set(after) - set(before)):
+        path = folder / name
+        if name.endswith(_BESIDE) and writes and limited:
+            continue
+        if name.endswith(_BESIDE) and any(f"{db}{end}" in before for db in STUDIES for end in _BESIDE):
+            continue
+        if path.name.startswith(".") or path.name == "MUJOCO_LOG.TXT" or name.endswith(_BESIDE):
+            yield f"{name} was left behind"
+        elif path.is_file() and not _whole(path):
+            yield f"{name} is half-written"
+
+
+def _whole(path: Path) -> bool:
+    content = path.read_bytes()
+    if content.startswith(b"SQLite format 3"):
+        return True
+    if content.startswith(b"\x89PNG"):
+        return content.rstrip().endswith(b"IEND\xaeB`\x82")
+    if content.startswith((b"<!doctype html", b"<!DOCTYPE html")):
+        return content.rstrip().endswith(b"</html>")
+    if content.startswith(b"<"):
+        try:
+            ElementTree.fromstring(content)
+        except ElementTree.ParseError:
+            return False
+        return True
+    return content.endswith(b"\n")
+
+
+def one(seed: int, number: int, source: Path, place: Path, keep: Path | None) -> tuple[Call, Result, list[str]]:
+    """Make call ``number`` of a seed in a new folder; returns it, how it ended, and what is wrong with that."""
+    from pareto_monoped.cli import cli
+
+    dice = random.Random(f"{seed}:{number}")
+    call = call_of(dice, cli)
+    disk = place.parent / "disk"
+    if "tiny_disk" in call.options:
+        if disk.is_mount():
+            place = disk / "call"
+        else:
+            del call.options["tiny_disk"]
+    shutil.copytree(source, place, symlinks=True)
+    for harm in call.harm:
+        with contextlib.suppress(OSError):
+            harm(place)
+    if place.parent == disk:
+        free = shutil.disk_usage(disk).free - int(str(call.options["tiny_disk"]))
+        (disk / "filler").write_bytes(bytes(max(free, 0)))
+    before = snapshot(place)
+    if "read_only" in call.options:
+        place.chmod(0o555)
+    result = made(call, place)
+    place.chmod(0o755)
+    wrong = list(findings(call, place, before, result))
+    if wrong and keep:
+        shutil.rmtree(keep / str(number), ignore_errors=True)
+        shutil.copytree(place, keep / str(number), symlinks=True)
+    shutil.rmtree(place)
+    (disk / "filler").unlink(missing_ok=True)
+    return call, result, wrong
+
+
+def main() -> int:
+    """Parse, prepare, make the calls, report."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--calls", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(10**6))
+    parser.add_argument("--first", type=int, default=0, help="number of the first call")
+    parser.add_argument("--only", type=int, help="make this call alone")
+    parser.add_argument("--keep", type=Path, help="keep the folders of calls that went wrong")
+    parser.add_argument("--mount", action="store_true", help="also calls on a full disk; needs root")
+    given = parser.parse_args()
+    print(f"seed {given.seed}", flush=True)
+    numbers = range(given.first, given.first + given.calls) if given.only is None else [given.only]
+    codes: collections.Counter[tuple[str, int | None]] = collections.Counter()
+    failed = 0
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as temporary, _disk(Path(temporary) / "disk", given.mount):
+        root = Path(temporary)
+        root.chmod(0o755)
+        basis(root / "basis")
+        for number in numbers:
+            call, (code, _, err), wrong = one(given.seed, number, root / "basis", root / "call", given.keep)
+            codes[call.words[0], code] += 1
+            if wrong:
+                failed += 1
+                print(f"call {number}: {'; '.join(wrong)}\n  {call.words}\n  {call.environment} {call.options}")
+                print("  " + "\n  ".join(err.splitlines()[-3:]), flush=True)
+    for command in sorted({command for command, _ in codes}):
+        row = {code: count for (name, code), count in sorted(codes.items(), key=str) if name == command}
+        print(f"{command:12} {sum(row.values()):6}  {row}")
+    print(f"{sum(codes.values())} calls, {failed} with findings, seed {given.seed}")
+    return 1 if failed else 0
+
+
+@contextlib.contextmanager
+def _disk(path: Path, wanted: bool) -> Iterator[None]:
+    """A small file system of its own, for calls on a full disk."""
+    path.mkdir()
+    if wanted:
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK_BYTES},mode=755", "tmpfs", path], check=True)
+    try:
+        yield
+    finally:
+        if wanted:
+            subprocess.run(["umount", "-l", path], check=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
