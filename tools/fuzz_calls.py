@@ -237,7 +237,7 @@ def _harm(dice: random.Random) -> Callable[[Path], None]:
 
 
 def _change_text(path: Path, dice: random.Random) -> None:
-    lines = path.read_text().splitlines()
+    lines = path.read_text(errors="replace").splitlines() or [""]
     k = dice.randrange(len(lines))
     kind = dice.randrange(8)
     if kind <= 2 and ("=" in lines[k] or ":" in lines[k]):
@@ -251,11 +251,11 @@ def _change_text(path: Path, dice: random.Random) -> None:
         )
     text = "\n".join(lines).encode()
     if kind == 5:
-        text = text[: dice.randrange(len(text))]
+        text = text[: dice.randrange(len(text) + 1)]
     elif kind == 6:
         text = dice.choice((b"", b"\xff\xfe", b"\xef\xbb\xbf" + text, dice.randbytes(300), text + b"#" * 2_000_000))
     elif kind == 7:
-        damaged = bytearray(text)
+        damaged = bytearray(text or b" ")
         for _ in range(dice.randrange(1, 8)):
             damaged[dice.randrange(len(damaged))] = dice.randrange(256)
         text = bytes(damaged)

@@ -1,12 +1,12 @@
 """Tables that a study has only where something was stored in them; their rows have their place in the running hash."""
 
-import json
 import sqlite3
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.seals import damaged, has_seals, read_seals
@@ -67,7 +67,7 @@ def read_rows(db: Path, table: ExtraTable, make: Callable[[Any, Any, str], T]) -
         raise damaged(db, findings)
     source = f"study database {str(db)!r}, its {table.what}"
     try:
-        return {key: (dict(json.loads(text)), make(key, json.loads(result), source)) for key, text, result in rows}
+        return {key: (dict(parsed_json(text)), make(key, parsed_json(result), source)) for key, text, result in rows}
     except (TypeError, ValueError, RecursionError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: its {table.what} is damaged ({type(error).__name__}: {error}); restore a copy"

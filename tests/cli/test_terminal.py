@@ -1,5 +1,6 @@
 """Names of files, studies and motors reach a terminal escaped."""
 
+import ast
 import json
 import shutil
 import sqlite3
@@ -8,8 +9,9 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.terminal import name, new_console, plain
-from tests.cli.support import STORED
+from tests.cli.support import ROOT, STORED
 
+COMMAND_LINE = ROOT / "pareto_monoped" / "cli"
 EVIL = "\x1b[2J\x9b31m\u202egnp\u2028\udcff\x07[bold]x[/]:smile:"
 SHOWN = "\\u001b[2J\\u009b31m\\u202egnp\\u2028\\udcff\\u0007[bold]x[/]:smile:"
 
@@ -84,3 +86,12 @@ def test_a_line_break_in_a_name_makes_no_line(tmp_path, capsys):
     assert [line for line in out.splitlines() if line.startswith("state")] == [
         "state                  finished (the budget is used up)"
     ]
+
+
+@pytest.mark.parametrize("path", sorted(COMMAND_LINE.glob("*.py")), ids=lambda path: path.name)
+def test_nothing_is_printed_past_the_escapes(path):
+    """Text is printed by ``terminal.echo`` and by the consoles of ``terminal.new_console``."""
+    if path.name in ("terminal.py", "net.py"):
+        return
+    calls = [ast.unparse(node.func) for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
+    assert not {"click.echo", "click.secho", "print", "Console", "sys.stdout.write", "sys.stderr.write"} & set(calls)
