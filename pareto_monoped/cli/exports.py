@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="With --front: only every N-th design."
 )
 @click.option(
-    "--workers", type=click.IntRange(min=1), metavar="N", help="With --front: processes.  [default: all cores]"
+    "--workers", type=click.IntRange(1, 1024), metavar="N", help="With --front: processes.  [default: all cores]"
 )
 @click.option(
     "--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,\nassembly,png.  [default: all]"

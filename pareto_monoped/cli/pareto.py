@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 )
 @click.option("--db", type=click.Path(path_type=Path), help="Study database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold.")
 def pareto(
     study_file: Path | None,

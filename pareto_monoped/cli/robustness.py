@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="TOML file of ranges, instead of the study's or ours.",
 )
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def robust(
     db: Path,

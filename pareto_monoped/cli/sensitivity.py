@@ -45,7 +45,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
     metavar="FILE",
     help="TOML file of ranges, instead of the study's or ours.",
 )
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option(
     "--plot", type=click.Path(path_type=Path), metavar="FILE.html", help="Write a chart that needs no network."
 )

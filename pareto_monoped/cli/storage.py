@@ -12,7 +12,7 @@ from pareto_monoped.cli.terminal import echo
 @click.option(
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 def verify(db: Path, simulate: int, workers: int | None) -> None:
     """Check that nothing in a study has been lost or changed.
 

@@ -21,7 +21,7 @@ _evaluations = click.option(
     "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, instead of the study's."
 )
 _workers = click.option(
-    "--workers", type=click.IntRange(min=1), metavar="N", help="Number of threads.  [default: all cores]"
+    "--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]"
 )
 _as_json = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON: a line per stored generation, and one at the end."

@@ -36,8 +36,12 @@ def name(text: object) -> str:
 
 
 def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
-    """Print text, escaped as by ``plain``."""
-    click.echo(plain(text), err=err, nl=nl)
+    """Print text, escaped as by ``plain``. A message that nobody can read any more ends no command."""
+    try:
+        click.echo(plain(text), err=err, nl=nl)
+    except OSError:
+        if not err:
+            raise
 
 
 def new_console(**options: Any) -> "Console":

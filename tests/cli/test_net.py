@@ -1,8 +1,11 @@
 """Whatever a command raises ends in one line and an exit code."""
 
 import errno
+import json
 import os
 import sqlite3
+import subprocess
+import sys
 
 import click
 import pytest
@@ -10,7 +13,7 @@ import pytest
 from pareto_monoped import cli
 from pareto_monoped.cli.net import told
 from pareto_monoped.errors import DatabaseError, DiskError
-from tests.cli.support import own_process
+from tests.cli.support import ROOT, STORED, own_process
 
 
 def of_system(number, *files):
@@ -80,3 +83,22 @@ def test_an_encoding_that_lacks_letters_gets_escapes(tmp_path):
     assert code == 2
     assert "'\\u03b6.toml'" in err
     assert out == ""
+
+
+def test_a_broken_pipe_behind_the_messages_ends_no_command(tmp_path):
+    """Found by the fuzzer: a note that nobody read any more ended the command without its result."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    line = [sys.executable, "-m", "pareto_monoped", "front", str(STORED), "--json"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(line, env=environment, cwd=tmp_path, stdout=subprocess.PIPE, stderr=writer, check=False)
+    os.close(writer)
+    assert done.returncode == 0
+    assert json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("command", ["run", "resume", "verify", "robust", "export", "pareto"])
+def test_more_threads_than_any_machine_has_are_refused(capsys, command):
+    """Found by the fuzzer: a number of 400 digits reached the simulation."""
+    assert cli._run([command, "x", "--workers", "9" * 400]) == 2
+    assert "1024" in capsys.readouterr().err
