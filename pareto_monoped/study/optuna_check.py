@@ -7,30 +7,40 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.optuna_tables import stored_digest, study_digests
+from pareto_monoped.study.optuna_tables import OURS, stored_digest, study_digests
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.seals import OPTUNA_STUDY, Seals
+from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, Seals
 
 
-def optuna_numbers(count: int, seals: Seals | None) -> list[int]:
-    """Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials."""
+def optuna_numbers(connection: sqlite3.Connection, count: int, seals: Seals | None) -> list[int]:
+    """Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials.
+
+    Trials that were written directly are numbered on from the first of their generation, which the running hash has
+    where it is another one. Those that Optuna has written for us carry our number.
+    """
     numbers = np.arange(count)
     if seals is not None:
         changed = sorted((int(ours), int(number)) for ours, number in seals.written.get("optuna_first", {}).items())
         for ours, number in changed:
             numbers[ours:] = number + np.arange(count - ours)
+    rows = connection.execute(
+        "SELECT value_json, number FROM trial_system_attributes JOIN trials USING (trial_id) WHERE key = ?", (OURS,)
+    )
+    for text, number in rows:
+        if text.isdigit() and int(text) < count:
+            numbers[int(text)] = number
     return [int(number) for number in numbers]
 
 
 def foreign_trials(connection: sqlite3.Connection, count: int, seals: Seals | None) -> tuple[int, ...]:
     """Optuna's numbers of the trials that are not among the study's ``count``."""
-    ours = set(optuna_numbers(count, seals))
+    ours = set(optuna_numbers(connection, count, seals))
     return tuple(n for (n,) in connection.execute("SELECT number FROM trials ORDER BY number") if n not in ours)
 
 
 def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seals | None) -> list[str]:
     """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
-    numbers = optuna_numbers(len(data.trials), seals)
+    numbers = optuna_numbers(connection, len(data.trials), seals)
     findings = list(_study_findings(connection, data.study))
     if not findings and seals is not None:
         findings += _attribute_findings(connection, seals.written.get(OPTUNA_STUDY, {}))
@@ -105,9 +115,11 @@ def _different(
 
 
 def sealed_generations(seals: Seals) -> dict[int, int]:
-    """First trial -> number of trials of all links whose rows in Optuna's tables have a digest."""
-    firsts = sorted(int(first) for first in seals.written.get("optuna", {}))
-    return {first: end - first for first, end in zip(firsts, [*firsts[1:], seals.trials], strict=True)}
+    """First trial -> number of trials of all generations whose rows in Optuna's tables have a digest."""
+    digests = {int(first): digest for first, digest in seals.written.get("optuna", {}).items()}
+    firsts = sorted(digests)
+    ends = zip(firsts, [*firsts[1:], seals.trials], strict=True)
+    return {first: end - first for first, end in ends if digests[first] != BY_OPTUNA}
 
 
 def _digest_findings(connection: sqlite3.Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:

@@ -26,7 +26,7 @@ _WRITTEN = {
 }
 """Optuna's tables that trials are written into, and the columns that are; the others are numbered by SQLite."""
 
-_OURS = "monoped:trial"
+OURS = "monoped:trial"
 """Key of our number in a trial that Optuna writes for us, which tells it from trials of an Optuna user."""
 _OF_TRIALS = ("trial_params", "trial_values", "trial_system_attributes", "trial_user_attributes")
 _OF_OTHERS = ("trial_intermediate_values", "trial_heartbeats")
@@ -226,7 +226,7 @@ class OptunaTables:
         try:
             there: set[Any] = set()
             if storage.get_n_trials(self._study_id) > generation.first_trial:
-                there = {trial.system_attrs.get(_OURS) for trial in storage.get_all_trials(self._study_id)}
+                there = {trial.system_attrs.get(OURS) for trial in storage.get_all_trials(self._study_id)}
             for k in range(len(generation.designs)):
                 if generation.first_trial + k in there:
                     continue
@@ -243,7 +243,7 @@ class OptunaTables:
                         values=None if bad else values_of(generation.evaluations, self._objectives)[k].tolist(),
                         system_attrs={
                             "constraints": generation.judgement.constraints[k].tolist(),
-                            _OURS: generation.first_trial + k,
+                            OURS: generation.first_trial + k,
                         },
                         user_attrs=_attributes(generation, k),
                     ),

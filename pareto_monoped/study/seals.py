@@ -44,6 +44,9 @@ ROWS = {
 Besides, ``optuna`` has the digest of all rows of a link's trials in Optuna's tables, by the number of the first trial,
 and ``optuna_first`` Optuna's own number of that trial where it is another one."""
 
+BY_OPTUNA = ""
+"""In place of the digest of a generation that Optuna has written for us, in a form that only Optuna knows."""
+
 OPTUNA_STUDY = "optuna_study"
 """What is sealed of Optuna's tables on the study itself when it is created, see ``optuna_tables.study_digests``."""
 

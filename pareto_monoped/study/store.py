@@ -33,7 +33,7 @@ from pareto_monoped.study.optuna_tables import (
     stored_digest,
     study_digests,
 )
-from pareto_monoped.study.seals import OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
+from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
 
 _OUR_TABLES = """
 CREATE TABLE monoped_meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -292,7 +292,8 @@ class Store:
             with translated(self.path):
                 self._optuna.add_by_optuna(generation)
         with self._writing():
-            written = self._optuna.insert(self._connection, generation) if self._direct else {}
+            by_optuna = {"optuna": {str(generation.first_trial): BY_OPTUNA}}
+            written = self._optuna.insert(self._connection, generation) if self._direct else by_optuna
             self._add_to_our_tables(generation, written)
 
     def _add_to_our_tables(self, generation: Generation, written: dict[str, dict[str, str]]) -> None:

@@ -100,6 +100,40 @@ def test_when_optuna_writes_for_us(tmp_path):
     assert len(read_study(path).trials) == 8
 
 
+def optunas(findings):
+    return [line for line in findings if "Optuna" in line]
+
+
+def test_a_study_that_changes_to_optunas_own_calls_is_verified_and_repaired(tmp_path):
+    """A later Optuna may bring another schema: generations before are written directly, those after by Optuna.
+
+    Foreign trials stand before, between and after ours; every trial of ours is still found in Optuna's tables.
+    """
+    path, study = tmp_path / "s.db", made_study()
+    made_database(path)
+    foreign = [ask_and_tell(path, [9.0, 0.1])]
+    two = made_evaluations([0.75, 0.76], [8.5, 8.6])
+    with Store(path, study, known_schemas=()) as store:
+        store.add(made_generation(study, 2, 6, two, state={}))
+        foreign.append(ask_and_tell(path))
+        store.add(made_generation(study, 3, 8, two, state={}))
+    with Store(path, study) as store:
+        store.add(made_generation(study, 4, 10, two, state={}))
+    foreign.append(ask_and_tell(path))
+    result = verify(path)
+    assert result.foreign == tuple(foreign) == (6, 9, 14)
+    assert optunas(result.findings) == []
+    before = read_study(path)
+    assert repair(path) == (6, 9, 14)
+    after = verify(path)
+    assert after.foreign == ()
+    assert optunas(after.findings) == []
+    assert read_study(path).trials.equals(before.trials)
+    assert [trial.number for trial in load(path).trials] == list(range(12))
+    change(path, "UPDATE trial_values SET value = 8.7 WHERE value = 8.6")
+    assert optunas(verify(path).findings) != []
+
+
 def test_a_run_goes_on_as_without_them(tmp_path):
     study = study_from_dict(
         {"name": "f", "evaluations": 40, "audit": False, "algorithm": {"name": "nsga2", "population": 20}},
