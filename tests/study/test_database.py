@@ -138,3 +138,11 @@ def test_a_database_that_another_program_holds(tmp_path, monkeypatch):
     monkeypatch.setattr("pareto_monoped.study.database.READ_TIMEOUT_S", 0.1)
     refused(path, ["is locked by another program"])
     connection.close()
+
+
+def test_an_error_of_sqlite_over_several_lines_is_told_in_one(tmp_path):
+    """A bit that flips in the definition of a table; SQLite repeats the rest of it, with its line ends."""
+    made_database(tmp_path / "s.db")
+    bent = (tmp_path / "s.db").read_bytes().replace(b"seconds REAL NOT NULL\n)", b"seconds `REAL NOT NUL\n)")
+    (tmp_path / "s.db").write_bytes(bent)
+    refused(tmp_path / "s.db", ["malformed database schema (monoped_history)"])

@@ -13,8 +13,10 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.run import run
 from pareto_monoped.study.status import status
 from pareto_monoped.study.store import Store
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
@@ -42,6 +44,16 @@ study = made_study()
 with Store(Path(sys.argv[1]), study) as store:
     store.add(made_generation(study, 2, 6, made_evaluations([0.75], [8.5]), state={"after": 2}))
     print("added", flush=True)
+"""
+
+CLOSING = """
+import os, signal, sys
+from pathlib import Path
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.store import Store
+path = Path(sys.argv[1])
+Store(path, read_study(path).study).set_meta({"finished": True})
+os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
@@ -112,3 +124,24 @@ def test_where_nothing_can_be_written_the_journal_is_named(tmp_path, killer, mon
         read_study(path)
     monkeypatch.undo()
     assert len(read_study(path).trials) == 7
+
+
+def test_what_a_killed_creation_left_is_deleted(tmp_path):
+    """Its journal, too: SQLite would roll it back into the next file of that name."""
+    made_database(tmp_path / "other.db")
+    shutil.copy(tmp_path / "other.db", tmp_path / ".s.db-new")
+    (tmp_path / ".s.db-new-journal").write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(504))
+    made_database(tmp_path / "s.db")
+    assert len(read_study(tmp_path / "s.db").trials) == 6
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["other.db", "s.db"]
+
+
+def test_a_finished_study_that_was_killed_while_closing_becomes_a_single_file(tmp_path):
+    """Nothing is left to run, but the log is still merged."""
+    settings = {"name": "c", "evaluations": 8, "audit": False, "algorithm": {"name": "random", "population": 8}}
+    study, path = study_from_dict(settings, source="test"), tmp_path / "s.db"
+    run(study, path, workers=1)
+    assert subprocess.run([sys.executable, "-c", CLOSING, str(path)], cwd=ROOT).returncode == -9
+    assert Path(f"{path}-wal").exists()
+    assert run(study, path, workers=1).new_evaluations == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["s.db"]
