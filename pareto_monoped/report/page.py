@@ -16,6 +16,7 @@ from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.context import context_section
+from pareto_monoped.report.designs_table import designs_table
 from pareto_monoped.report.exports import read_models
 from pareto_monoped.report.goals import ask_fields, kind, order
 from pareto_monoped.report.payload import build
@@ -30,7 +31,7 @@ from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 SCRIPTS = (
     "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
-    "robust", "ask", "robot", "lines", "detail", "parallel", "search", "viewer", "main",
+    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
 
@@ -123,6 +124,7 @@ def page(payload: Payload) -> str:
         fields=ask_fields(payload),
         order=safe(order(payload)),
         comparison=comparison_tables(payload),
+        designs=designs_table(payload),
         published_link=published_link(payload),
         cases=cases_table(payload),
         context=context_section(payload),

@@ -70,7 +70,7 @@ def _number(value: Number, decimals: int) -> str:
     return "-" if value is None or not isfinite(value) else f"{value:.{decimals}f}"
 
 
-def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
+def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
     """An HTML table; the first cell of each row is its heading."""
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
@@ -94,7 +94,7 @@ def cases_table(payload: Payload) -> str:
     designs = [
         [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
     ]
-    parts = [_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
+    parts = [html_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
     # Studies with the same motor and calibration share a column: their cases are the same.
     cards = list({(card.case_motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
@@ -116,7 +116,7 @@ def cases_table(payload: Payload) -> str:
                 value = getattr(made, key)
                 row.append(_number(value, decimals) if value is not None else made.status)
             rows.append(row)
-        parts.append(_table([f"{quantity}, {unit}", *names[1:]], rows))
+        parts.append(html_table([f"{quantity}, {unit}", *names[1:]], rows))
     words = (
         "The figures simulated here can be compared with the front; the published ones cannot, because the paper "
         "leaves losses and contact open."
@@ -166,7 +166,7 @@ def comparison_tables(payload: Payload) -> str:
         f"{other.unit} at a height: {other.label}, the best on the front for at least that height."
     )
     chart = '<div id="attainment" class="chart"></div>' if comparison.surfaces else ""
-    return f"<h3>Studies compared</h3>{_table(columns, rows, caption=caption)}{chart}{_choices_table(comparison)}"
+    return f"<h3>Studies compared</h3>{html_table(columns, rows, caption=caption)}{chart}{_choices_table(comparison)}"
 
 
 def _choices_table(comparison: Comparison) -> str:

@@ -71,7 +71,7 @@ function gearDrawing(gearbox, widest) {
 
 function table(head, rows) {
   const node = make("table");
-  if (head) node.append(make("thead", {}, make("tr", {}, ...head.map((cell, i) => make("th", { class: i ? "n" : null, scope: "col" }, cell)))));
+  if (head) node.append(make("thead", {}, make("tr", {}, ...head.map((cell, i) => make(cell ? "th" : "td", cell ? { class: i ? "n" : null, scope: "col" } : {}, cell)))));
   node.append(make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((cell, i) => (i ? make("td", { class: "n" }, cell) : make("th", { scope: "row" }, cell)))))));
   return node;
 }

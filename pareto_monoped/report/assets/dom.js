@@ -44,7 +44,10 @@ function shown(name, value, withUnit = true) {
 }
 
 // A measure with its unit, as the title of an axis.
-function titled(name) { return `${quantity[name].label}, ${quantity[name].unit}`; }
+function titled(name) {
+  const { label, unit } = quantity[name];
+  return unit === "1" || unit === ": 1" ? label : `${label}, ${unit}`;
+}
 
 // The named measures of a design in words: "0.800 m on 15.36 J", or each with its label.
 function told(names, valueOf) {

@@ -33,7 +33,17 @@ function mostOf(study, name) {
   return sorted.length ? [quantile(sorted, 0.01), quantile(sorted, 0.99)] : [];
 }
 
+const homes = new Map();
+
+// The range of an axis that shows the whole; no condition changes it.
 function homeRange(side) {
+  const { x, y, ...own } = state.axes;
+  const key = `${side} ${x} ${y} ${own.logX} ${own.logY}`;
+  if (!homes.has(key)) homes.set(key, foundRange(side));
+  return homes.get(key);
+}
+
+function foundRange(side) {
   const name = state.axes[side], kind = kindOf(side);
   const values = page.studies.flatMap((study, i) => {
     const rows = study.front.length ? study.front : study.trials.trial.map((_, row) => row);

@@ -18,6 +18,7 @@ function start() {
   startFront();
   describeFront();
   startParallel();
+  startTable();
   startSearch();
   for (const medium of ["(prefers-color-scheme: dark)", "print"]) matchMedia(medium).addEventListener("change", redrawAll);
 }

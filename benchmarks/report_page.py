@@ -1,0 +1,146 @@
+"""How quick the report's page is in headless Chromium: first view, arrow keys, switches, longest task, size.
+
+Pages are made of studies given by name, and of one of them grown to more trials. Each figure is the median of several
+tries, measured in the page by PerformanceObserver and by the clock of the browser; processor time of the page's
+process by the DevTools protocol stands beside it, because other work on the machine stretches only the wall clock.
+Before anything is timed, the page must show what the study has: the number of designs drawn and the design that an
+arrow key selects are compared with the data.
+
+    python benchmarks/report_page.py study.db --trials 20000
+"""
+
+import argparse
+import json
+import shutil
+import statistics
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.page import page
+from pareto_monoped.report.payload import build
+from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.study.reader import StudyData, read_study
+
+TRIES = 5
+WATCH = """
+window.tasks = [];
+new PerformanceObserver((list) => { for (const e of list.getEntries()) window.tasks.push([e.startTime, e.duration]); })
+    .observe({ type: "longtask", buffered: true });
+"""
+FIRST_VIEW = """() => new Promise((done) => {
+    const look = () => {
+        const chart = document.getElementById("front-chart");
+        if (!chart?.data?.length) setTimeout(look, 5);
+        else requestAnimationFrame(() => setTimeout(() => done(performance.now())));
+    };
+    look();
+})"""
+KEY = """async (key) => {
+    const chart = document.getElementById("front-chart");
+    chart.focus();
+    const start = performance.now();
+    chart.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+    return performance.now() - start;
+}"""
+TOGGLE = """async (selector) => {
+    const start = performance.now();
+    document.querySelector(selector).click();
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+    return performance.now() - start;
+}"""
+
+
+def grown(data: StudyData, count: int) -> StudyData:
+    """A study of ``count`` trials: the real ones, then copies of them that cost a little more."""
+    rng = np.random.default_rng(1)
+    more = data.trials.iloc[rng.integers(0, len(data.trials), max(count - len(data.trials), 0))].copy()
+    more["energy_j"] *= 1.0 + rng.exponential(0.1, len(more))
+    for i, name in enumerate(NAMES):
+        moved = more[name] * rng.normal(1.0, 0.01, len(more))
+        more[name] = np.clip(moved, data.study.lower[i], data.study.upper[i])
+    trials = pd.concat((data.trials, more), ignore_index=True).iloc[:count].copy()
+    trials["trial"] = np.arange(len(trials))
+    return replace(data, trials=trials)
+
+
+def measured(browser: Any, file: Path, data: StudyData) -> dict[str, float]:
+    """One opening of the page: milliseconds of each step."""
+    context = browser.new_context(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
+    tab = context.new_page()
+    tab.add_init_script(WATCH)
+    session = context.new_cdp_session(tab)
+    session.send("Performance.enable")
+    tab.goto(file.as_uri(), wait_until="commit")
+    result = {"first view": float(tab.evaluate(FIRST_VIEW))}
+    tab.wait_for_timeout(800)
+    result["processor, first view"] = _busy_ms(session)
+    equal(tab, data)
+    for name, key in (("arrow key", "ArrowRight"), ("end key", "End")):
+        before = _busy_ms(session)
+        result[name] = statistics.median(tab.evaluate(KEY, key) for _ in range(9))
+        result[f"processor, {name}"] = (_busy_ms(session) - before) / 9
+    for name, selector in (("toggle dominated", "[data-show=cloud]"), ("toggle infeasible", "[data-show=infeasible]")):
+        before = _busy_ms(session)
+        result[name] = statistics.median(tab.evaluate(TOGGLE, selector) for _ in range(6))
+        result[f"processor, {name}"] = (_busy_ms(session) - before) / 6
+    tasks = tab.evaluate("window.tasks.map(([, duration]) => duration)")
+    result["longest task"] = max(tasks, default=0.0)
+    context.close()
+    return result
+
+
+def _busy_ms(session: Any) -> float:
+    metrics = {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
+    return 1000.0 * float(metrics["TaskDuration"])
+
+
+def equal(tab: Any, data: StudyData) -> None:
+    """Check that the page shows what the study has.
+
+    Raises:
+        AssertionError: it does not.
+    """
+    drawn = tab.evaluate("document.getElementById('front-chart').data.map((t) => [t.name, t.x.length])")
+    front = data.front()
+    feasible = int((data.trials["state"] == "feasible").sum())
+    counts = dict(drawn)
+    assert counts["front"] == len(front), counts
+    assert counts["dominated"] == feasible - len(front), counts
+    tab.evaluate(KEY, "Home")
+    trial = int(front["trial"].iloc[0])
+    assert f"Trial {trial}" in tab.inner_text("#subject")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("db", type=Path)
+    parser.add_argument("--trials", type=int, default=20_000, help="trials of the grown study")
+    parser.add_argument("--tries", type=int, default=TRIES)
+    given = parser.parse_args()
+    from playwright.sync_api import sync_playwright
+
+    data = read_study(given.db)
+    again = resimulate(data)
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
+        for study in (data, grown(data, given.trials)):
+            file = Path(folder) / f"{len(study.trials)}.html"
+            file.write_text(page(build([Source(data=study, resimulation=again, models={})])), encoding="utf-8")
+            tries = [measured(browser, file, study) for _ in range(given.tries)]
+            figures = {name: round(statistics.median(one[name] for one in tries), 1) for name in tries[0]}
+            size = {"trials": len(study.trials), "front": len(study.front()), "megabytes": file.stat().st_size / 1e6}
+            print(json.dumps(size | {f"{name}, ms": value for name, value in figures.items()}, indent=1))
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,171 @@
+"""The table of designs in the browser: sorted, searched, with chosen columns, downloaded, under the conditions."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.page import page
+from pareto_monoped.report.payload import build
+from tests.report.conftest import Tab, grown
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture(scope="module")
+def file(folder, payload):
+    made = folder / "table.html"
+    made.write_text(page(payload), encoding="utf-8")
+    return made
+
+
+@pytest.fixture(scope="module")
+def shared(file, browser):
+    tab = Tab(browser, file)
+    yield tab
+    tab.context.close()
+
+
+@pytest.fixture
+def tab(shared):
+    shared.reset()
+    shared.page.locator("#rows").scroll_into_view_if_needed()
+    shared.page.wait_for_selector("#rows-body tr[data-row]")
+    return shared
+
+
+@pytest.fixture(scope="module")
+def card(payload):
+    return payload.studies[0]
+
+
+def rows(tab):
+    """Cells of the rows in sight."""
+    return tab.page.eval_on_selector_all(
+        "#rows-body tr[data-row]", "(rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent))"
+    )
+
+
+def downloaded(tab) -> list[dict[str, str]]:
+    with tab.page.expect_download() as found:
+        tab.page.click("#rows-csv")
+    return list(csv.DictReader(io.StringIO(found.value.path().read_bytes().decode("utf-8"))))
+
+
+def test_a_click_on_a_heading_sorts_and_another_turns_it_round(tab, card):
+    columns = card.trials.columns
+    order = sorted(card.front, key=lambda row: columns["mass_kg"][row])
+    tab.page.click("[data-sort=mass_kg]")
+    lightest = [float(cells[5]) for cells in rows(tab)]
+    assert lightest == sorted(lightest)
+    assert float(rows(tab)[0][5]) == pytest.approx(columns["mass_kg"][order[0]], abs=5e-4)
+    assert tab.page.get_attribute("th:has([data-sort=mass_kg])", "aria-sort") == "ascending"
+    tab.page.click("[data-sort=mass_kg]")
+    assert float(rows(tab)[0][5]) == pytest.approx(columns["mass_kg"][order[-1]], abs=5e-4)
+    assert tab.page.evaluate("document.activeElement.dataset.sort") == "mass_kg"
+
+
+def test_the_download_has_all_rows_that_obey_the_conditions_and_what_was_stored(tab, card, data):
+    columns = card.trials.columns
+    limit = float(np.median([columns["mass_kg"][row] for row in card.front]))
+    tab.page.fill("#ask-mass_kg", repr(limit))
+    kept = [row for row in card.front if columns["mass_kg"][row] <= limit]
+    assert 0 < len(kept) < len(card.front)
+    tab.page.locator("#rows").scroll_into_view_if_needed()
+    tab.expects("#rows-note", f"{len(kept)} of {len(card.front)} designs of the front obey the conditions.")
+    found = downloaded(tab)
+    assert {int(row["trial"]) for row in found} == {card.trials.trial[row] for row in kept}
+    stored = data.trials.set_index("trial")
+    for row in found:
+        assert (row["state"], row["motor"]) == ("feasible", "VT8020")
+        for name in ("height_m", "energy_j", "electrical_energy_j", "thigh_length_m"):
+            assert float(row[name]) == pytest.approx(stored.loc[int(row["trial"]), name], rel=6e-5)
+
+
+def test_all_trials_and_any_column_can_be_had(tab, card, data):
+    tab.page.select_option("#rows-choice", "all")
+    tab.page.evaluate("document.querySelector('#table details').open = true")
+    tab.page.check("[data-column=peak_chain_tension_n]")
+    tab.page.uncheck("[data-column=mass_kg]")
+    found = downloaded(tab)
+    assert len(found) == len(data.trials)
+    assert "mass_kg" not in found[0]
+    pulls = data.trials.set_index("trial")["peak_chain_tension_n"]
+    for row in found:
+        expected = pulls[int(row["trial"])]
+        assert (
+            row["peak_chain_tension_n"] == ""
+            if np.isnan(expected)
+            else float(row["peak_chain_tension_n"]) == pytest.approx(expected, rel=3e-5)
+        )
+    heads = tab.page.locator("#rows-head th").all_text_contents()
+    assert "peak chain tension, N" in heads
+
+
+def test_the_search_finds_a_trial(tab, card):
+    trial = card.trials.trial[card.front[3]]
+    tab.page.fill("#rows-find", f"trial {trial} ")
+    tab.page.wait_for_function("() => document.querySelectorAll('#rows-body tr[data-row]').length < 20")
+    assert trial in {int(cells[1]) for cells in rows(tab)}
+    tab.page.click(f"#rows-body button[aria-label='Select trial {trial}']")
+    assert f"Trial {trial}" in tab.text("#subject")
+    assert tab.page.locator("#rows-body tr.chosen").count() == 1
+
+
+def test_a_condition_on_any_measure_is_the_whole_pages(tab, card, data):
+    tab.page.select_option("#rows-measure", "peak_foot_force_n")
+    forces = data.front()["peak_foot_force_n"]
+    limit = round(float(forces.median()), 2)
+    tab.page.fill("#rows-to", str(limit))
+    tab.page.keyboard.press("Tab")
+    kept = int((forces <= limit).sum())
+    tab.expects("#rows-note", f"{kept} of {len(forces)} designs of the front obey the conditions.")
+    assert f"{kept} of {len(forces)} designs on the front" in tab.text("#brush-note")
+    assert "peak foot force" in tab.text("#conditions")
+
+
+def test_a_tick_keeps_a_design_and_six_are_the_most(tab, card):
+    boxes = tab.page.locator("#rows-body input[type=checkbox]")
+    for i in range(6):
+        boxes.nth(i).check()
+    boxes.nth(6).click()
+    assert not boxes.nth(6).is_checked()
+    assert "room for 6" in tab.text("#rows-note")
+    tab.page.wait_for_function("() => location.hash.split('keep=').length === 7")
+    tab.page.click("#undo")
+    assert [boxes.nth(i).is_checked() for i in range(7)] == [True] * 5 + [False] * 2
+
+
+def test_a_table_of_twenty_thousand_has_few_rows_in_the_document(data, resimulation, folder, open_tab):
+    big = grown(data, 20_000)
+    made = folder / "big_table.html"
+    made.write_text(page(build([Source(data=big, resimulation=resimulation, models={})])), encoding="utf-8")
+    tab = open_tab(made, fragment="#view=1&rows=all&sort=-energy_j")
+    tab.page.locator("#rows").scroll_into_view_if_needed()
+    tab.page.wait_for_selector("#rows-body tr[data-row]")
+    assert tab.page.locator("#rows-body tr").count() < 60
+    assert tab.page.get_attribute("#rows-table", "aria-rowcount") == str(len(big.trials) + 1)
+    tab.page.evaluate("() => { const rows = document.getElementById('rows'); rows.scrollTop = rows.scrollHeight; }")
+    tab.page.wait_for_function(
+        "(n) => document.querySelector('#rows-body tr[data-row]:last-of-type')?.ariaRowIndex === String(n)",
+        arg=len(big.trials) + 1,
+    )
+    assert tab.page.locator("#rows-body tr").count() < 60
+    tab.quiet(made)
+
+
+def test_without_scripts_and_in_print_the_plain_table_is_there(file, payload, browser, tab):
+    context = browser.new_context(java_script_enabled=False)
+    bare = context.new_page()
+    bare.goto(file.as_uri())
+    first = payload.studies[0]
+    assert bare.locator("#table .plain tbody tr").count() == len(first.front)
+    assert bare.is_visible("#table .plain")
+    assert not bare.is_visible("#rows")
+    context.close()
+    tab.page.emulate_media(media="print")
+    assert tab.page.is_visible("#table .plain")
+    assert not tab.page.is_visible("#rows")
+    tab.page.emulate_media(media="screen")
