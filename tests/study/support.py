@@ -14,6 +14,7 @@ from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.meta import StudyMeta
+from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.scoring import judge
 from pareto_monoped.study.store import Store, create_database
 
@@ -137,3 +138,24 @@ UNSEALED = (
     "UPDATE monoped_meta SET value = '1' WHERE key = 'format'",
 )
 """Statements that make a study one of format 1, which has no running hash: what else refuses it is then seen."""
+
+
+def search_among_motors(study, coordinates, best, generations=6, algorithm=None):
+    """Coordinates that an algorithm asks for, and their scores: ``best`` motors gain, and a plane decides the rest."""
+    algorithm = algorithm or make_algorithm(study, coordinates)
+    history = []
+    for _ in range(generations):
+        proposal = algorithm.ask()
+        if proposal is None:
+            break
+        values, motors = proposal.values, len(best)
+        height = 1.0 + values[:, 0] + (values[:, -motors:] == best).sum(axis=1)
+        scores = Scores(
+            objectives=study.objectives,
+            values=np.column_stack((height, 1.0 + values[:, 1:-motors].sum(axis=1))),
+            violation=np.zeros(len(values)),
+            constraints=np.zeros((len(values), 0)),
+        )
+        algorithm.tell(scores)
+        history.append((values, scores))
+    return algorithm, history

@@ -21,7 +21,6 @@ from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.categories import exchanged, mutated
 from pareto_monoped.study.definition import load_study, study_from_dict
 from pareto_monoped.study.motor_choice import searched_coordinates
-from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.response_surface import features_of
 from pareto_monoped.study.run import resume, run
@@ -33,6 +32,7 @@ from tests.study.support import (
     made_generation,
     made_meta,
     made_study,
+    search_among_motors,
     study_of,
 )
 
@@ -162,27 +162,8 @@ def test_a_mutation_takes_any_other_motor_alike():
     assert np.abs(np.delete(counts, 2) - 6000).max() < 6 * np.sqrt(6000)
 
 
-def search(study, generations=6, algorithm=None, space=None):
-    """Coordinates that an algorithm asks for, and their scores: one motor is best, and a plane decides the rest."""
-    space = space or coordinates_for(study).space
-    algorithm = algorithm or make_algorithm(study, coordinates_for(study))
-    history = []
-    for _ in range(generations):
-        proposal = algorithm.ask()
-        if proposal is None:
-            break
-        values = proposal.values
-        height = 1.0 + values[:, 0] + (values[:, -1] == 1.0)
-        objectives = np.column_stack((height, 1.0 + values[:, 1:-1].sum(axis=1)))
-        scores = Scores(
-            objectives=study.objectives,
-            values=objectives,
-            violation=np.zeros(len(values)),
-            constraints=np.zeros((len(values), 0)),
-        )
-        algorithm.tell(scores)
-        history.append((values, scores))
-    return algorithm, history
+def search(study, generations=6, algorithm=None):
+    return search_among_motors(study, coordinates_for(study), (1.0,), generations, algorithm)
 
 
 @pytest.mark.parametrize("name", ALGORITHMS)

@@ -18,13 +18,12 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.definition import load_study, study_from_dict
 from pareto_monoped.study.motor_choice import kit_maps, searched_coordinates
-from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.response_surface import features_of
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
 from pareto_monoped.study.verify import verify
-from tests.study.support import assert_refused, change, made_study, study_of
+from tests.study.support import assert_refused, change, made_study, search_among_motors, study_of
 
 HIP, KNEE = ("U8", "VT8020"), ("VT8020", "MN8014", "U8")
 ALGORITHMS = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
@@ -146,25 +145,7 @@ def test_the_surrogate_sees_each_joint_s_own_actuator(where):
 
 
 def search(study, generations=6, algorithm=None):
-    """Coordinates that an algorithm asks for, and their scores: one pair is best, and a plane decides the rest."""
-    algorithm = algorithm or make_algorithm(study, coordinates_for(study))
-    history = []
-    for _ in range(generations):
-        proposal = algorithm.ask()
-        if proposal is None:
-            break
-        values = proposal.values
-        height = 1.0 + values[:, 0] + (values[:, -2] == 1.0) + (values[:, -1] == 2.0)
-        objectives = np.column_stack((height, 1.0 + values[:, 1:-2].sum(axis=1)))
-        scores = Scores(
-            objectives=study.objectives,
-            values=objectives,
-            violation=np.zeros(len(values)),
-            constraints=np.zeros((len(values), 0)),
-        )
-        algorithm.tell(scores)
-        history.append((values, scores))
-    return algorithm, history
+    return search_among_motors(study, coordinates_for(study), (1.0, 2.0), generations, algorithm)
 
 
 @pytest.mark.parametrize("name", ALGORITHMS)
