@@ -117,14 +117,19 @@ def _kind(path: Path) -> tuple[bytes, ...]:
     Of pictures their magic number, of tables the name of the first column, of other text the beginnings of its lines.
     """
     content = _beginning(path)
-    if content.startswith(b"\x89PNG"):
-        return (content[:8],)
+    if content[4:8] == b"ftyp":  # MP4 begins with the length of its first box
+        return (content[4:8],)
+    for magic in _MAGIC:
+        if content.startswith(magic):
+            return (magic,)
     lines = content.splitlines()
     if lines and not content.startswith(b"<"):
         return (lines[0].split(b",")[0],)
     return tuple(line.strip()[:_TOLD] for line in lines[:_LINES])
 
 
+_MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")
+"""How PNG, GIF, WebM and Parquet files begin."""
 _LINES, _TOLD = 5, 24
 """Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
 

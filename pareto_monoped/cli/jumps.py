@@ -11,6 +11,7 @@ import click
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.terminal import echo, new_console
+from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
     CONTROL,
     DEFAULT_RULES,
@@ -35,7 +36,17 @@ if TYPE_CHECKING:
 _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 
 
-@click.command()
+_VARIABLES = "\n".join(
+    ["\b", "Design variables of --set, with their units and usual bounds:"]
+    + [
+        f"  {one.name:<32} {'' if one.unit == '1' else one.unit:<8} {one.lower:g} to {one.upper:g}"
+        + ("" if one.default is None else f", optional, default {one.default:g}")
+        for one in VARIABLES
+    ]
+)
+
+
+@click.command(epilog=_VARIABLES)
 @click.option(
     "--case",
     type=click.Choice(list(PAPER_CASES)),
@@ -54,6 +65,17 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
+@click.option("--gif", metavar="FILE.gif", type=_OUTPUT, help="Write the jump as an animated picture.")
+@click.option("--video", metavar="FILE.mp4", type=_OUTPUT, help="Write the jump as a video, .mp4 or .webm.")
+@click.option("--view", is_flag=True, help="Show the jump in MuJoCo's viewer.")
+@click.option(
+    "--slower",
+    type=click.FloatRange(1.0, 100.0),
+    default=6.0,
+    show_default=True,
+    metavar="N",
+    help="Films and viewer: N times slower than the jump.",
+)
 @force_option
 @click.option("--audit", "audited", is_flag=True, help="Numerical audit: energy balance, finer steps, perturbations.")
 def simulate(
@@ -67,6 +89,10 @@ def simulate(
     as_json: bool,
     trace: Path | None,
     model: Path | None,
+    gif: Path | None,
+    video: Path | None,
+    view: bool,
+    slower: float,
     force: bool,
     audited: bool,
 ) -> None:
@@ -80,6 +106,8 @@ def simulate(
     from pareto_monoped.leg.motor_fit import maps_for
     from pareto_monoped.robot.frames import JOINTS
 
+    shown = gif is not None or video is not None or view
+    require_what_shows(gif, video, view)
     design = _design(case, changes)
     calibration = load_calibration(calibration_name)
     hip, knee = chosen_motors(motor, hip_motor, knee_motor)
@@ -87,12 +115,12 @@ def simulate(
     served = {(maps.of(joint), getattr(design, f"{joint}_ratio")) for joint in JOINTS}
     for note in filter(None, (one.stand_in(ratio) for one, ratio in sorted(served, key=lambda pair: pair[1]))):
         echo(f"note: {note}", err=True)
-    result = jump(design, maps, calibration, trace=trace is not None)
+    result = jump(design, maps, calibration, trace=trace is not None or shown)
     if result.status == "bad_input":
         raise DesignError(result.reason)
     if result.status == "no_gearbox":
         raise DesignError(f"{result.reason}; choose another ratio")
-    if result.status == "cannot_stand" and (trace or model):
+    if result.status == "cannot_stand" and (trace or model or shown):
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
     motors = _motors(hip, knee)
     report = _report(result, motors, maps)
@@ -103,10 +131,14 @@ def simulate(
         _write_trace(trace, result, force=force)
     if model:
         _write_model(model, design, motors, maps, calibration, force=force)
+    if gif is not None or video is not None:
+        write_films(design, maps, result.trace, gif=gif, video=video, slower=slower, force=force)
     if as_json:
         echo(json.dumps(report, indent=2))
     else:
         _print(report)
+    if view:
+        view_jump(design, maps, calibration, result.trace, slower=slower)
     if result.status == "diverged":
         raise SimulationError(
             f"jump: diverged, {result.reason}; choose softer contact and stops or a smaller time step in the "

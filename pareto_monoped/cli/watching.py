@@ -1,0 +1,113 @@
+"""What ``simulate`` shows of a jump besides numbers: a film as a file, or MuJoCo's viewer."""
+
+import os
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cli.terminal import echo
+from pareto_monoped.errors import InputError
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.joint_maps import JointMaps
+    from pareto_monoped.design import Design
+    from pareto_monoped.jump.calibration import Calibration
+
+Trace = Mapping[str, NDArray[np.float64]]
+
+_QPOS = {"slide_x": "base_x_m", "slide_z": "base_z_m", "hip": "hip_rad", "knee": "knee_rad"}
+"""Joint of the model -> column of the trace."""
+_REST_S = 1.0  # at the apex, before the viewer begins again
+
+
+def require_what_shows(gif: Path | None, video: Path | None, view: bool) -> None:
+    """Refuse a film or a viewer that cannot be had here, before anything is simulated.
+
+    Raises:
+        InputError: no CAD extra, no encoder, or no display.
+    """
+    if gif is None and video is None and not view:
+        return
+    from pareto_monoped.cad.installed import require_cad
+
+    require_cad()
+    if video is not None:
+        from pareto_monoped.cad.write.film_files import require_video
+
+        require_video(video)
+    if view and sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise InputError(
+            "--view: there is no display (DISPLAY and WAYLAND_DISPLAY are not set); use --gif FILE or --video FILE"
+        )
+
+
+def write_films(
+    design: "Design",
+    maps: "JointMaps",
+    trace: Trace,
+    *,
+    gif: Path | None,
+    video: Path | None,
+    slower: float,
+    force: bool,
+) -> None:
+    """Draw the jump once, and write it to the files that are asked for."""
+    from pareto_monoped.cad.film import film
+    from pareto_monoped.cad.write.film_files import write_gif, write_video
+    from pareto_monoped.robot.build import build_robot
+
+    pictures = list(film(build_robot(design, maps), trace, slower=slower))
+    for path, write in ((gif, write_gif), (video, write_video)):
+        if path is not None:
+            count = write(path, pictures, force=force)
+            echo(f"wrote {path} ({count} pictures, {path.stat().st_size / 1e6:.1f} MB)", err=True)
+
+
+def view_jump(design: "Design", maps: "JointMaps", calibration: "Calibration", trace: Trace, *, slower: float) -> None:
+    """Show the recorded jump in MuJoCo's viewer, with the parts' own meshes, until its window is closed.
+
+    Raises:
+        InputError: the viewer cannot be opened.
+    """
+    import mujoco
+
+    from pareto_monoped.cad.export import export_design
+
+    with TemporaryDirectory() as folder:
+        target = Path(folder) / "robot"
+        export_design(design, maps, calibration, target, formats=("mjcf",), source={}, strength=False)
+        model = mujoco.MjModel.from_xml_path(str(next(target.rglob("monoped.xml"))))
+    data = mujoco.MjData(model)
+    columns = [(int(model.joint(k).qposadr[0]), _QPOS[model.joint(k).name]) for k in range(model.njnt)]
+    try:
+        from mujoco import viewer
+
+        with viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as window:
+            echo("close the window to go on", err=True)
+            _play(window, model, data, columns, trace, slower)
+    except RuntimeError as error:
+        raise InputError(f"--view: the viewer cannot be opened ({error}); use --gif FILE or --video FILE") from error
+
+
+def _play(window: Any, model: Any, data: Any, columns: list[tuple[int, str]], trace: Trace, slower: float) -> None:
+    import mujoco
+
+    times = trace["time_s"]
+    began = time.monotonic()
+    while window.is_running():
+        at = (time.monotonic() - began) / slower
+        if at > times[-1] + _REST_S / slower:
+            began = time.monotonic()
+            continue
+        row = min(int(np.searchsorted(times, at)), len(times) - 1)
+        for place, column in columns:
+            data.qpos[place] = trace[column][row]
+        mujoco.mj_forward(model, data)
+        window.sync()
+        time.sleep(1.0 / 60.0)
