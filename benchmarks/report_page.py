@@ -26,7 +26,9 @@ from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import page
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.study.definition import study_from_dict
 from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.study.run import run
 
 TRIES = 5
 WATCH = """
@@ -119,17 +121,25 @@ def equal(tab: Any, data: StudyData) -> None:
     assert f"Trial {trial}" in tab.inner_text("#subject")
 
 
+def made(folder: Path) -> Path:
+    """A small study to show."""
+    settings = {"name": "case_c", "description": "for the page", "case": "C", "evaluations": 1000, "seed": 1}
+    db = folder / "case_c.db"
+    run(study_from_dict(settings, source="benchmark"), db, workers=2)
+    return db
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("db", type=Path)
+    parser.add_argument("db", type=Path, nargs="?", help="a study; without one, 1,000 trials of Case C are made")
     parser.add_argument("--trials", type=int, default=20_000, help="trials of the grown study")
     parser.add_argument("--tries", type=int, default=TRIES)
     given = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
-    data = read_study(given.db)
-    again = resimulate(data)
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        data = read_study(given.db or made(Path(folder)))
+        again = resimulate(data)
         path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
         browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
         for study in (data, grown(data, given.trials)):

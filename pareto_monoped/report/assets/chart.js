@@ -127,7 +127,7 @@ class Chart {
       const at = this.py(value);
       parts.push(draw("line", { x1: left, x2: right, y1: at, y2: at, class: "gridline" }), text(left - 6, at + 4, tickText(value), "end"));
     }
-    for (const value of this.x.ticks(Math.max(Math.round(width / 85), 2))) {
+    for (const value of this.x.ticks(Math.max(Math.round(width / 70), 3))) {
       if (!inside(this.x.share(value))) continue;
       const at = this.px(value);
       parts.push(draw("line", { x1: at, x2: at, y1: top, y2: bottom, class: "gridline" }), text(at, bottom + 16, tickText(value), "middle"));
