@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."
 )
 @click.option(
+    "--alternatives", "count", type=click.IntRange(0, 50), default=0, metavar="N", help="Also N alternatives to each."
+)
+@click.option(
     "--samples", type=int, metavar="N", help="Per design.  [default: 256, or the study's if it asks for more]"
 )
 @click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]")
@@ -41,6 +44,7 @@ def robust(
     db: Path,
     trials: tuple[int, ...],
     every: int,
+    count: int,
     samples: int | None,
     seed: int | None,
     uncertainty: Path | None,
@@ -59,11 +63,17 @@ def robust(
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
     kept = read_front(db)
     ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
-    chosen = list(trials) or kept.rows["trial"].tolist()[::every] or None
+    chosen = list(trials) or kept.rows["trial"].tolist()[::every]
+    if count and chosen:
+        from pareto_monoped.study.alternatives import alternatives
+        from pareto_monoped.study.reader import read_study
+
+        data = read_study(db)
+        chosen += [other.trial for trial in chosen for other in alternatives(data, trial, count=count)]
     results = run_robust(
         db,
         ranges,
-        trials=chosen,
+        trials=chosen or None,
         samples=samples,
         seed=seed,
         workers=workers,

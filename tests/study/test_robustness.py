@@ -162,6 +162,20 @@ def test_robust_on_the_command_line(made, db, capsys):
     assert lines[-1].split()[-2:] == [f"{100 * stored.failed:.1f}", f"{100 * stored.overloaded:.1f}"]
 
 
+def test_alternatives_are_simulated_with_the_designs(made, db, monkeypatch, capsys):
+    """Which ones is what ``pick`` says; the jumps themselves play no part here."""
+    from pareto_monoped.study.alternatives import alternatives
+
+    monkeypatch.setitem(alternatives.__kwdefaults__, "tolerance", 10.0)
+    data = read_study(db)
+    others = [one.trial for one in alternatives(data, made[1][0], count=2)]
+    assert len(others) == 2
+    asked = []
+    monkeypatch.setattr(module, "robust", lambda *given, **named: asked.append(named["trials"]) or {})
+    assert cli(["robust", str(db), "--trial", str(made[1][0]), "--alternatives", "2", "--json"]) == 0
+    assert asked == [[made[1][0], *others]]
+
+
 def test_pick_robust(made, db, capsys):
     data = read_study(db)
     front = robust_front(data, robust_trials(data, read_robustness(db)))
