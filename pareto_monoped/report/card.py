@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -18,7 +19,7 @@ from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.jump_packing import packed as packed_jumps
 from pareto_monoped.report.motors import gearbox_numbers
 from pareto_monoped.report.provenance import command, provenance
-from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation
+from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import notes, sentences
@@ -39,6 +40,9 @@ from pareto_monoped.study.robust_rows import Stored
 from pareto_monoped.study.sensitivity_rows import StoredSensitivity
 from pareto_monoped.study.weighted_cost import weighted_cost
 from pareto_monoped.uncertainty.influences import About
+
+if TYPE_CHECKING:
+    from pareto_monoped.jump.frames import Recording
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 """Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
@@ -107,6 +111,7 @@ def study_card(
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
+    picks = _picks(data, front, row_of)
     return StudyCard(
         label=label,
         name=study.name,
@@ -147,10 +152,10 @@ def study_card(
         ),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
-        picks=_picks(data, front, row_of),
+        picks=picks,
         more=front_columns(_body_masses_kg(data, front)),
         audits=audit_records(data.audits),
-        jumps=packed_jumps(again.jumps, again.frames),
+        jumps=packed_jumps(_with_alternatives(data, again, picks, trials), again.frames),
         case_jumps=packed_jumps(again.case_jumps, MOST_FRAMES),
         stops_rad={str(places.kits[kit.label]): _stops_rad(data, kit) for kit in data.kits},
         models={str(trial): model for trial, model in source.models.items()},
@@ -192,6 +197,23 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
         values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
         masses[rows] = robot_arrays(values, kit, data.calibration.mass).body_mass_kg
     return masses
+
+
+def _with_alternatives(
+    data: StudyData, again: Resimulation, picks: Sequence[Picked], trials: pd.DataFrame
+) -> "dict[int, Recording]":
+    """The jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
+    jumps = dict(again.jumps)
+    if not jumps:
+        return jumps
+    rows = trials.iloc[sorted({other.row for one in picks for other in one.alternatives})]
+    rows = rows[~rows["trial"].isin(list(jumps))]
+    for kit, places in data.kit_rows(rows):
+        members = rows.iloc[places]
+        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, again.frames)
+        numbers = members["trial"].astype(int).tolist()
+        jumps |= {trial: jump for trial, jump in zip(numbers, made, strict=True) if jump is not None}
+    return jumps
 
 
 def _stops_rad(data: StudyData, kit: JointMaps) -> list[list[float | None]]:

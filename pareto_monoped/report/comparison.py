@@ -30,6 +30,14 @@ def group_of(data: StudyData) -> str:
     return json.dumps([values, contents], sort_keys=True, default=str)
 
 
+def seed_groups(studies: Sequence[StudyData]) -> list[list[int]]:
+    """Places of the studies that are runs of one study with several seeds, and of the same length; each seed once."""
+    groups: dict[tuple[str, int], dict[int, int]] = {}
+    for index, data in enumerate(studies):
+        groups.setdefault((group_of(data), len(data.trials)), {}).setdefault(data.study.seed, index)
+    return [list(members.values()) for members in groups.values()]
+
+
 def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequence[float]) -> Comparison:
     """Compare studies under the objectives of the first; all hypervolumes are measured from its reference point."""
     reference = studies[0].reference_point
@@ -52,10 +60,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
                 "at_height": [None if best is None or best.value is None else number(best.value) for best in found],
             }
         )
-    groups: dict[str, list[int]] = {}
-    for index, data in enumerate(studies):
-        groups.setdefault(group_of(data), []).append(index)
-    several = [members for members in groups.values() if len(members) > 1]
+    several = [members for members in seed_groups(studies) if len(members) > 1]
     return Comparison(
         reference=reference.text(),
         hypervolume_unit=objectives.volume_unit,
@@ -109,8 +114,8 @@ def _surface(
     """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half and all of the runs reached.
 
     For two objectives, a surface is an order statistic of the runs' best second objectives at each level of the first,
-    such as their least energies at each height. The median of an even number of runs is the worse one of the middle
-    two, so that at least half of the runs reach it.
+    such as their least energies at each height. The median is what half of the runs reach: of an even number, the
+    better one of the middle two. Two runs have none.
     """
     everything = np.concatenate(fronts)
     if len(everything) == 0:
@@ -122,7 +127,7 @@ def _surface(
         "labels": list(labels),
         "first": [round(level, 4) for level in levels.tolist()],
         "best": [number(v) for v in ranked[0]],
-        "median": [number(v) for v in ranked[len(fronts) // 2]],
+        "median": [number(v) for v in ranked[(len(fronts) - 1) // 2]] if len(fronts) > 2 else [],
         "worst": [number(v) for v in ranked[-1]],
     }
 
@@ -132,7 +137,7 @@ def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, An
     histories = [data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64) for data in studies]
     histories = [history for history in histories if len(history)]
     if not histories:
-        return {"labels": list(labels), "evaluations": [], "low": [], "median": [], "high": []}
+        return {"labels": list(labels), "evaluations": [], "low": [], "median": [], "high": [], "middle": ""}
     last = min(float(history[-1, 0]) for history in histories)
     first = max(float(history[0, 0]) for history in histories)
     at = np.unique(np.linspace(min(first, last), last, _POINTS).round())
@@ -142,6 +147,7 @@ def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, An
         "evaluations": at.tolist(),
         "low": [number(v) for v in volumes.min(axis=0)],
         "median": [number(v) for v in np.median(volumes, axis=0)],
+        "middle": "mean of 2 seeds" if len(volumes) == 2 else f"median of {len(volumes)} seeds",
         "high": [number(v) for v in volumes.max(axis=0)],
     }
 

@@ -13,7 +13,7 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.errors import OutputError, complaint
 from pareto_monoped.files import replacing
 from pareto_monoped.measures import measure
-from pareto_monoped.report.front_figure import JOINTS, STYLES, axis_title, front_figure, values
+from pareto_monoped.report.front_figure import ABOVE, JOINTS, STYLES, axis_title, front_figure, values
 from pareto_monoped.report.jump_packing import lift_off_s, unpacked
 from pareto_monoped.report.quantities import QUANTITIES
 from pareto_monoped.report.schema import Payload, StudyCard
@@ -100,12 +100,13 @@ def _convergence(payload: Payload, figure: Any) -> bool:
         )
     for growth in payload.comparison.growth if payload.comparison else ():
         x = values(growth["evaluations"])
-        axes.fill_between(x, values(growth["low"]), values(growth["high"]), color="#999999", alpha=0.3, lw=0)
-        axes.plot(x, values(growth["median"]), color="black", label=f"median of {len(growth['labels'])} seeds")
+        low, high = values(growth["low"]), values(growth["high"])
+        axes.fill_between(x, low, high, color="#999999", alpha=0.3, lw=0, step="post")
+        axes.plot(x, values(growth["median"]), drawstyle="steps-post", color="black", label=growth["middle"])
     unit = payload.studies[0].hypervolume_unit if alike else "% of the last"
     axes.set(xlabel="evaluations", ylabel=f"hypervolume ({unit})")
     if len(payload.studies) > 1:
-        axes.legend(loc="lower right")
+        axes.legend(**ABOVE)
     return any(len(card.history["evaluations"]) for card in payload.studies)
 
 
@@ -120,11 +121,15 @@ def _along(payload: Payload, figure: Any) -> bool:
             columns = card.trials.columns
             tint, symbol = STYLES[i % len(STYLES)]
             y = values(columns[variable["name"]], card.front) * quantity.scale
-            axes.plot(values(columns[along], card.front) * measure(along).scale, y, symbol, ms=2, color=tint, ls="")
+            x = values(columns[along], card.front) * measure(along).scale
+            axes.plot(x, y, symbol, ms=2, color=tint, ls="", label=card.label)
         unit = "" if quantity.unit == ": 1" else f" ({quantity.unit})"
         axes.set_title(f"{quantity.label}{unit}", fontsize=7)
         axes.tick_params(labelsize=6)
         axes.set_xlabel(axis_title(along), fontsize=7)
+    if payload.variables:
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
     return any(card.front for card in payload.studies)
 
 
@@ -151,7 +156,7 @@ def _family_points(axes: Any, family: str, x: ArrayLike, y: ArrayLike, of: str, 
 
 def _map_axes(axes: Any) -> None:
     axes.set(xlabel="gear ratio", ylabel="actuator mass (kg)")
-    axes.legend(loc="upper left")
+    axes.legend(**ABOVE)
 
 
 def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path, *, force: bool = False) -> None:
@@ -193,7 +198,7 @@ def _links(payload: Payload, figure: Any) -> bool:
         axes.plot(length, values(leg.thigh_kg), color=JOINTS["hip"], label=f"thigh{motor}", **more)
         axes.plot(length, values(leg.shank_kg), "--", color=JOINTS["knee"], label=f"shank{motor}", **more)
     axes.set(xlabel="link length (mm)", ylabel="mass (kg)", ylim=(0.0, None))
-    axes.legend(loc="lower right")
+    axes.legend(**ABOVE)
     return True
 
 
@@ -221,15 +226,13 @@ def _states(payload: Payload, figure: Any) -> bool:
             axes.plot([], [], ":", color="black", lw=0.7, label="limits of the gearboxes")
         axes.axvline(data["lift_off_s"], color="#888888", lw=0.6)
         axes.set_ylabel(label)
-        axes.legend(**_ABOVE)
+        axes.legend(**ABOVE)
     axes.set_xlabel("time (s); the vertical line is the lift-off")
     figure.suptitle(title, fontsize=8)
     return True
 
 
 _TINTS = {**JOINTS, "base": "black", "foot": "#777777"}
-_ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 3, "borderaxespad": 0.1}
-"""Where a legend covers no data: in a row above its axes."""
 
 
 def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:

@@ -17,6 +17,8 @@ from pareto_monoped.report.schema import Column, Payload, StudyCard
 STYLES = (("#0072b2", "o"), ("#008060", "s"), ("#a3487f", "D"), ("#59636e", "^"), ("#9a6700", "v"), ("#2f9bd8", "p"))
 JOINTS = {"hip": "#a3487f", "knee": "#0072b2"}
 """The page's colours of the joints (--hip, --knee)."""
+ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2, "borderaxespad": 0.1}
+"""Where a legend covers no data: in rows above its axes."""
 Mark = tuple[float, float, str]
 """Where a design stands, to the right and upward, in the units shown, and its name."""
 Axes2 = tuple[str, str]
@@ -54,7 +56,7 @@ def front_figure(payload: Payload, figure: Any) -> bool:
     axes.set(xlabel=axis_title(across), ylabel=axis_title(up))
     if third and axes.collections:
         figure.colorbar(axes.collections[-1], ax=axes, label=axis_title(third[0]))
-    axes.legend(loc="best" if third else "lower right")
+    axes.legend(**ABOVE)
     return True
 
 

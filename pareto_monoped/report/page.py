@@ -31,7 +31,8 @@ from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 SCRIPTS = (
     "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
-    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer", "main",
+    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
+    "shortlist", "compare", "print", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
 

@@ -348,8 +348,8 @@ class Comparison:
         rows: one per study: label, hypervolume, best value of ``other`` at each of ``heights_m`` (``at_height``, None
             where the front does not reach it), and more.
         surfaces: of each group with several seeds, for two objectives: values of the first (``first``), and the best,
-            median and worst of the second there.
-        growth: least, median and greatest hypervolume over evaluations.
+            median and worst of the second there; the median is empty for two seeds.
+        growth: least, median and greatest hypervolume over evaluations, and what the median is called (``middle``).
         choices: for two fronts by the two energies, the designs that both offer at some heights, and what choosing by
             the mechanical one costs at the battery.
     """

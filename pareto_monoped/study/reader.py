@@ -214,6 +214,8 @@ def _read_study(db: Path) -> StudyData:
             for trial, good, measures in rows["audits"]
         ]
         history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
+        if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
+            raise ValueError("a hypervolume or time of its history is not finite")
     except (IndexError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"

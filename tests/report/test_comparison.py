@@ -7,10 +7,11 @@ from hypothesis import strategies as st
 
 from pareto_monoped.pareto.indicators import hypervolume, reference_point
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.comparison import _held, _surface, compare, group_of, least_second
+from pareto_monoped.report.comparison import _held, _surface, compare, group_of, least_second, seed_groups
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.reader import read_study
+from tests.report.conftest import cut
 
 numbers = st.floats(0.5, 2.0)
 
@@ -38,18 +39,22 @@ def test_hypervolumes_come_from_one_corner(both):
 
 
 def test_seeds_of_one_study_are_a_group_with_ordered_surfaces(both):
-    (surface,) = compare(both, ["a", "b"], (0.8,)).surfaces
+    # Runs of different lengths are no group; as long as the shorter one, they are.
+    assert compare(both, ["a", "b"], (0.8,)).surfaces == []
+    alike = [cut(both[0], np.arange(len(both[0].trials)) < len(both[1].trials)), both[1]]
+    (surface,) = compare(alike, ["a", "b"], (0.8,)).surfaces
     assert surface["labels"] == ["a", "b"]
     for best, worst in zip(surface["best"], surface["worst"], strict=True):
         assert worst is None or best <= worst
     # The best surface is the front of both runs together.
-    together = np.concatenate([d.front()[["height_m", "energy_j"]].to_numpy() for d in both])
+    together = np.concatenate([d.front()[["height_m", "energy_j"]].to_numpy() for d in alike])
     expected = least_second(together, np.array(surface["first"]))
     near = np.array([np.nan if v is None else v for v in surface["best"]])
     # Heights are rounded in the payload, so a step of the front may fall on the other side of one.
     assert np.nanmedian(np.abs(near - expected)[np.isfinite(expected)]) < 1e-3
-    (growth,) = compare(both, ["a", "b"], (0.8,)).growth
-    assert growth["evaluations"][-1] == min(len(d.trials) for d in both)
+    (growth,) = compare(alike, ["a", "b"], (0.8,)).growth
+    assert growth["evaluations"][-1] == min(len(d.trials) for d in alike)
+    assert growth["middle"] == "mean of 2 seeds"
     assert all(low <= high for low, high in zip(growth["low"], growth["high"], strict=True))
 
 
@@ -58,10 +63,23 @@ def fronts_of(energies):
     return [np.array([[1.0, energy]]) for energy in energies]
 
 
-@pytest.mark.parametrize(("energies", "median"), [((30.0, 10.0, 20.0), 20.0), ((30.0, 10.0, 20.0, 40.0), 30.0)])
-def test_the_median_of_an_even_number_of_runs_is_the_upper_middle_one(energies, median):
+@pytest.mark.parametrize(("energies", "median"), [((30.0, 10.0, 20.0), 20.0), ((30.0, 10.0, 20.0, 40.0), 20.0)])
+def test_the_median_is_what_half_of_the_runs_reach(energies, median):
     surface = _surface(fronts_of(energies), [str(e) for e in energies])
     assert (surface["best"][0], surface["median"][0], surface["worst"][0]) == (10.0, median, max(energies))
+
+
+def test_two_runs_have_no_median():
+    assert _surface(fronts_of((30.0, 10.0)), ["a", "b"])["median"] == []
+
+
+def test_only_runs_of_equal_length_are_pooled_and_each_seed_once(data):
+    def run_of(seed, count):
+        study = replace(data.study, seed=seed)
+        return replace(data, study=study, trials=data.trials.head(count))
+
+    runs = [run_of(1, 200), run_of(2, 200), run_of(1, 200), run_of(3, 120), run_of(4, 200), run_of(5, 120)]
+    assert seed_groups(runs) == [[0, 1, 4], [3, 5]]
 
 
 def test_growth_holds_the_last_value_until_the_next_generation():

@@ -5,13 +5,23 @@ from importlib import resources
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
-from pareto_monoped.report.figures import _along, _links, _states, _states_data, write_figures, write_map_figure
+from pareto_monoped.report.figures import (
+    _along,
+    _convergence,
+    _links,
+    _map,
+    _states,
+    _states_data,
+    write_figures,
+    write_map_figure,
+)
 from pareto_monoped.report.front_figure import JOINTS, STYLES, front_figure
 from pareto_monoped.report.jump_packing import unpacked
 from pareto_monoped.report.payload import build
@@ -115,6 +125,23 @@ def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_co
         same = [one for one in torques.lines if one.get_color() == line.get_color() and one.get_linestyle() == ":"]
         assert sorted(one.get_ydata()[0] for one in same) == [-gearbox.peak_torque_n_m, gearbox.peak_torque_n_m]
         assert np.abs(line.get_ydata()).max() <= gearbox.peak_torque_n_m * 1.01
+
+
+def test_no_legend_covers_data(payload, source_u12, source):
+    several = build([source, source_u12])
+    for make in (front_figure, _links, _states, _map, _convergence, _along):
+        figure = Figure(figsize=(3.5, 2.6), layout="constrained")
+        assert make(several, figure)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        legends = [legend for legend in (*figure.legends, *(axes.get_legend() for axes in figure.axes)) if legend]
+        assert legends, make.__name__
+        for legend in legends:
+            box = legend.get_window_extent(renderer)
+            for axes in figure.axes:
+                inside = axes.get_window_extent(renderer)
+                assert box.y0 >= inside.y1 - 1.0 or not box.overlaps(inside), make.__name__
 
 
 def test_colours_are_the_pages():

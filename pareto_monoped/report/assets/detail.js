@@ -188,14 +188,17 @@ function showCommands(chosen) {
   const box = byId("commands");
   box.replaceChildren();
   if (!chosen) return;
-  for (const line of commandsOf(chosen)) {
-    const button = make("button", { type: "button", "aria-label": `Copy: ${line}` }, "Copy");
-    button.addEventListener("click", async () => {
-      button.textContent = await copied(line) ? "Copied" : "Select it";
-      setTimeout(() => { button.textContent = "Copy"; }, 1500);
-    });
-    box.append(make("div", { class: "command" }, make("code", {}, line), button));
-  }
+  box.append(...commandsOf(chosen).map(commandLine));
+}
+
+// A command with a button that copies it.
+function commandLine(line) {
+  const button = make("button", { type: "button", "aria-label": `Copy: ${line}` }, "Copy");
+  button.addEventListener("click", async () => {
+    button.textContent = await copied(line) ? "Copied" : "Select it";
+    setTimeout(() => { button.textContent = "Copy"; }, 1500);
+  });
+  return make("div", { class: "command" }, make("code", {}, line), button);
 }
 
 async function copied(line) {

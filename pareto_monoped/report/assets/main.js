@@ -14,6 +14,9 @@ function start() {
   on("selection", showAll);
   startLines();
   startViewer();
+  startShortlist();
+  startComparison();
+  startPrint();
   tell("selection", { byUser: false, other: false });
   startFront();
   describeFront();

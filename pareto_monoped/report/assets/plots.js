@@ -5,7 +5,7 @@ function lazily(id, render) {
   const node = byId(id);
   let near = false, stale = true;
   const now = () => { stale = false; render(node); };
-  const again = () => { stale = true; if (near) now(); };
+  const again = () => { stale = true; if (near || paperScale()) now(); };
   charts.push(again);
   new IntersectionObserver((entries) => {
     near = entries.at(-1).isIntersecting;

@@ -41,7 +41,7 @@ function drawConvergence(node) {
   }));
   (comparison?.growth ?? []).forEach((growth, k) => {
     const first = page.studies.findIndex((study) => study.label === growth.labels[0]);
-    list.push(...band(growth.evaluations, growth.low, growth.median, growth.high, studyColour(first), `median of ${growth.labels.length} seeds`));
+    list.push(...band(growth.evaluations, growth.low, growth.median, growth.high, studyColour(first), growth.middle));
   });
   plot(node, list, "evaluations", `hypervolume, ${unit}`, { fromZero: [true, false], names: list.length > 1 });
   const last = page.studies[0].history;
@@ -57,7 +57,7 @@ function drawAttainment(node) {
       mode: "lines", name, x: inUnit(SECOND, y), y: inUnit(FIRST, surface.first), line: { color: tint, dash, width },
       text: (i) => `${name}<br>${plain(quantity[FIRST].label)} ${shown(FIRST, surface.first[i])}, ${plain(quantity[SECOND].label)} ${shown(SECOND, y[i])}`,
     });
-    return [line("best seed", surface.best, "dot", 1.2), line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5), line("worst seed", surface.worst, "dash", 1.2)];
+    return [line("best seed", surface.best, "dot", 1.2), ...(surface.median.length ? [line(`median of ${surface.labels.length} seeds`, surface.median, "solid", 2.5)] : []), line("worst seed", surface.worst, "dash", 1.2)];
   });
   plot(node, list, titled(SECOND), `${quantity[FIRST].label} reached, ${quantity[FIRST].unit}`, { fromZero: [true, false] });
   describe(node, `Attainment surfaces: the ${quantity[FIRST].label} that the best, the median and the worst seed reached at each ${quantity[SECOND].label}`);

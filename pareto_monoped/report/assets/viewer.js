@@ -26,8 +26,8 @@ const solid = { turn: -0.7, tilt: 0.35, zoom: 1, draw: () => {} };
 
 function showModel(box, model, name) {
   const canvas = make("canvas", { tabindex: 0, role: "img", "aria-label": `${name} in three dimensions; turn it with the arrow keys, plus and minus to zoom` });
-  box.append(canvas, make("p", { class: "small" }, `${model.note} Drag or use the arrow keys to turn it, the wheel or + and - to zoom.`));
-  const gl = canvas.getContext("webgl2", { antialias: true });
+  box.append(canvas, make("p", { class: "small" }, `${model.note} Drag or use the arrow keys to turn it; + and -, or the wheel after a click on it, zoom.`));
+  const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   const made = gl && program(gl);
   if (!made) {
     box.replaceChildren(make("p", { class: "small" }, "This browser shows no WebGL 2: open the exported GLB or STEP file in a CAD viewer."));
@@ -76,7 +76,12 @@ function showModel(box, model, name) {
     turnModel((event.clientX - held[0]) / 120, (event.clientY - held[1]) / 120);
     held = [event.clientX, event.clientY];
   });
-  canvas.addEventListener("wheel", (event) => { event.preventDefault(); zoomModel(event.deltaY < 0 ? 1.1 : 1 / 1.1); }, { passive: false });
+  canvas.addEventListener("wheel", (event) => {
+    // The page scrolls over it, unless it has the focus.
+    if (document.activeElement !== canvas) return;
+    event.preventDefault();
+    zoomModel(event.deltaY < 0 ? 1.1 : 1 / 1.1);
+  }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
     const turns = { ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15] }[event.key];
     const zoom = { "+": 1.15, "-": 1 / 1.15 }[event.key];

@@ -1,0 +1,139 @@
+// Kept designs side by side: one table of what differs, their jumps over each other, and their robots playing together.
+
+const race = { time: 0, playing: false, last: 0, request: 0, entries: [] };
+
+// Measures of the comparison beside the objectives, in this order, as far as some design has them.
+const COMPARED = [
+  "height_m", "energy_j", "electrical_energy_j", "mass_kg", "agility_m_per_s", "sustained_jumps_per_minute", "peak_gear_torque_hip_n_m", "peak_gear_torque_knee_n_m",
+  "peak_chain_tension_n", "peak_stop_torque_hip_n_m", "peak_stop_torque_knee_n_m", "stop_compression_knee", "peak_foot_force_n", "peak_knee_force_n",
+  "gear_safety", "chain_safety", "stop_safety", "joint_safety", "link_safety",
+];
+
+function comparedRows(designs) {
+  const value = (name) => (chosen) => chosen.values[name] ?? valueAt(chosen.index, name, chosen.row);
+  const measured = [...new Set([...page.goals, ...COMPARED])].filter((name) => quantity[name] && designs.some((one) => value(name)(one) !== null));
+  const line = (name) => ({ label: quantity[name].label, cells: designs.map((one) => shown(name, value(name)(one), false)), unit: quantity[name].unit, numbers: designs.map((one) => value(name)(one)), better: page.directions[name] });
+  const gears = (side, label, of) => ({ label: `${side} ${label}`, unit: "", cells: designs.map((one) => (one[side] ? of(one[side]) : "–")) });
+  const bodies = ["base_kg", "thigh_kg", "shank_kg"].filter((name) => designs.some((one) => one.more[name] !== undefined))
+    .map((name) => ({ label: `mass of the ${name.replace("_kg", "")}`, unit: "kg", cells: designs.map((one) => (one.more[name] === undefined ? "–" : round(one.more[name]))) }));
+  return [
+    ["Variables", page.variables.map((variable) => line(variable.name))],
+    ["Gearboxes", ["hip", "knee"].flatMap((side) => [
+      gears(side, "gearbox", (g) => `${g.family} ${g.sun_teeth}/${g.planet_teeth}/${g.ring_teeth} m ${g.module_mm}`),
+      gears(side, "ratio", (g) => `${round(g.ratio, 2)} : 1`),
+      ...(KITS.length ? [gears(side, "motor", (g) => g.motor)] : []),
+    ])],
+    ["Masses", [...bodies, ...["hip", "knee"].map((side) => gears(side, "actuator, kg", (g) => round(g.mass_kg)))]],
+    ["Energies and loads", measured.map(line)],
+  ];
+}
+
+function comparisonTable(designs) {
+  const groups = comparedRows(designs);
+  const names = designs.map((one, i) => make("th", { scope: "col", class: "n" }, make("span", { class: "swatch", style: `background: var(--c${i % 6})` }), nameOf(one.index, one.row)));
+  const table = make("table", { class: "compare" }, make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "quantity"), ...names, make("th", { scope: "col" }, "unit"))));
+  for (const [title, rows] of groups) {
+    const body = make("tbody", {}, make("tr", { class: "group" }, make("th", { scope: "rowgroup", colspan: designs.length + 2 }, title)));
+    for (const row of rows) {
+      const differs = new Set(row.cells).size > 1;
+      const found = (row.numbers ?? []).filter((number) => number !== null);
+      const best = differs && row.better && found.length ? Math[row.better === "maximise" ? "max" : "min"](...found) : null;
+      const cells = row.cells.map((cell, i) => make("td", { class: "n" }, best !== null && row.numbers[i] === best ? make("b", { title: "best of these" }, cell) : cell));
+      body.append(make("tr", { class: differs ? null : "same" }, make("th", { scope: "row" }, row.label), ...cells, make("td", {}, row.unit)));
+    }
+    table.append(body);
+  }
+  return make("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Kept designs compared" }, table);
+}
+
+// Heights of the bases over time, and the moments of lift-off.
+function jumpsChart(entries) {
+  const series = entries.map(({ jump, tint }) => ({ x: jump.time_s, y: jump.base_z_m, colour: tint, thick: 2 }));
+  const x = [0, Math.max(...entries.map(({ jump }) => jump.time_s.at(-1)))];
+  const title = "height of the base, m; circles: lift-off";
+  const chart = smallChart({ width: 460, height: 220, x, y: padded(extent(series.flatMap((one) => one.y))), title, xTitle: "time, s", series, label: `Jumps of ${entries.length} kept designs over each other` });
+  for (const { jump, tint } of entries) {
+    const at = mixed(jump, "base_z_m", frameAt(jump, jump.lift_off_s));
+    chart.svg.append(draw("circle", { cx: chart.toX(jump.lift_off_s), cy: chart.toY(at), r: 4, fill: "var(--card)", stroke: tint, "stroke-width": 2 }));
+  }
+  race.cursor = draw("line", { y1: chart.top, y2: chart.top + chart.h, stroke: "var(--select)", "stroke-width": 1.5 });
+  race.toX = chart.toX;
+  chart.svg.append(race.cursor);
+  return chart.svg;
+}
+
+const LANE_M = 0.52; // from one robot to the next
+
+function raceStage(designs) {
+  const wide = LANE_M * (designs.length - 1) + 1.1;
+  const svg = drawStage(`The robots of ${designs.length} kept designs at one scale`, wide);
+  race.entries = designs.map((chosen, i) => {
+    const jump = jumpOf(chosen), tint = `var(--c${i % 6})`;
+    const lane = draw("g", { transform: `translate(${(i - (designs.length - 1) / 2) * LANE_M - 0.15} 0)` });
+    if (jump) lane.append(coursePath(jump, { stroke: tint }));
+    const robotHere = drawRobot(chosen, { marks: false });
+    lane.append(robotHere.node, draw("rect", { x: -0.12, y: 0.016, width: 0.24, height: 0.026, fill: tint }));
+    svg.append(lane);
+    return { jump, tint, pose: robotHere.pose };
+  });
+  return svg;
+}
+
+function raceEnd() { return race.entries.reduce((most, { jump }) => Math.max(most, jump ? jump.time_s.at(-1) : 0), 0); }
+
+function setRaceTime(time) {
+  race.time = Math.min(Math.max(time, 0), raceEnd());
+  for (const { jump, pose } of race.entries) pose(jump, jump ? Math.min(race.time, jump.time_s.at(-1)) : 0);
+  byId("race-scrub").value = raceEnd() ? Math.round(1000 * race.time / raceEnd()) : 0;
+  byId("race-scrub").setAttribute("aria-valuetext", `${round(race.time)} s of ${round(raceEnd())} s`);
+  race.cursor?.setAttribute("x1", race.toX(race.time));
+  race.cursor?.setAttribute("x2", race.toX(race.time));
+}
+
+function playRace(playing) {
+  race.playing = playing && raceEnd() > 0;
+  byId("race-play").textContent = race.playing ? "Pause" : "Play all";
+  cancelAnimationFrame(race.request);
+  if (!race.playing) return;
+  if (race.time >= raceEnd()) race.time = 0;
+  race.last = performance.now();
+  const step = (now) => {
+    if (!race.playing) return;
+    setRaceTime(race.time + (now - race.last) / 1000 * Number(byId("race-speed").value));
+    race.last = now;
+    if (race.time >= raceEnd()) playRace(false);
+    else race.request = requestAnimationFrame(step);
+  };
+  race.request = requestAnimationFrame(step);
+}
+
+let compared = "";
+
+function showComparison() {
+  const key = state.shortlist.map(({ study, row }) => `${study}:${row}`).join(" ");
+  if (key === compared) return;
+  compared = key;
+  playRace(false);
+  const enough = state.shortlist.length > 1;
+  byId("comparison").hidden = !enough;
+  race.entries = [];
+  race.cursor = null;
+  if (!enough) return;
+  const designs = state.shortlist.map(({ study, row }) => trialSubject(study, row));
+  byId("compare-table").replaceChildren(comparisonTable(designs));
+  byId("race-stage").replaceChildren(raceStage(designs));
+  const jumping = race.entries.filter(({ jump }) => jump);
+  byId("race-chart").replaceChildren(jumping.length ? jumpsChart(jumping) : make("p", { class: "small" }, "This page has no jumps of these designs."));
+  const missing = race.entries.length - jumping.length;
+  if (missing && jumping.length) byId("race-chart").append(make("p", { class: "small" }, `${missing} of them ${missing > 1 ? "are" : "is"} not on a front, so this page has no jump of ${missing > 1 ? "them" : "it"}.`));
+  for (const id of ["race-play", "race-scrub", "race-speed"]) byId(id).disabled = !jumping.length;
+  byId("export-all").replaceChildren(commandLine(exportCommand()));
+  setRaceTime(jumping.length ? Math.min(...jumping.map(({ jump }) => jump.lift_off_s)) : 0);
+}
+
+function startComparison() {
+  byId("race-play").addEventListener("click", () => playRace(!race.playing));
+  byId("race-scrub").addEventListener("input", () => { playRace(false); setRaceTime(byId("race-scrub").value / 1000 * raceEnd()); });
+  on("shortlist", showComparison);
+  showComparison();
+}
