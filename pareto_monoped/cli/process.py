@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from typing import NoReturn
 
 _STANDARD = (0, 1, 2)
+_INTERRUPTED = 130
+"""128 and the number of SIGINT, as shells have it."""
 
 
 @contextmanager
@@ -33,6 +35,8 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
     if not sys.warnoptions:
         # Warnings are for developers, who switch them on with -W; tests turn them into errors.
         warnings.simplefilter("ignore")
+    # No command draws with MuJoCo, whose import fails at a value that it does not know.
+    os.environ.pop("MUJOCO_GL", None)
     code = 0
 
     def leave() -> None:
@@ -46,7 +50,11 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
 
     # Handlers run in the reverse order in which they were registered: this one, the first, runs last.
     atexit.register(leave)
-    yield ended
+    try:
+        yield ended
+    except KeyboardInterrupt:
+        # A signal at the last moment, while the command's end is being told.
+        ended(_INTERRUPTED)
 
 
 def _open_streams() -> None:

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.cli.support import ROOT
+from tests.cli.support import ROOT, own_process
 
 WAITS = """
 import sys
@@ -89,3 +89,34 @@ def test_words_given_leave_the_process_alone(capsys):
         cli.main(["--version"])
     assert [signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)] == before
     assert capsys.readouterr().out.startswith("pareto-monoped")
+
+
+def test_a_drawing_library_that_does_not_exist_ends_no_command(tmp_path):
+    """Found by the fuzzer: MuJoCo's import failed, although nothing is drawn with it."""
+    code, _, err = own_process(tmp_path, ["simulate"], environment={"MUJOCO_GL": "nonsense"})
+    assert (code, "error" in err) == (0, False)
+
+
+LATE = """
+import os, signal
+from pareto_monoped import cli
+from pareto_monoped.cli import net
+
+def report(error):
+    os.kill(os.getpid(), signal.SIGTERM)
+    return 2
+
+def command(**_):
+    raise ValueError
+
+net.report = report
+cli.cli.main = command
+cli.main()
+"""
+
+
+def test_a_signal_while_the_end_is_told_leaves_no_traceback():
+    """Found by the fuzzer."""
+    line = [sys.executable, "-c", LATE]
+    done = subprocess.run(line, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")

@@ -6,7 +6,7 @@ import sys
 
 from tests.tools.conftest import TOOLS
 
-CALLS, SEED = 150, 1
+CALLS, SEED = 100, 1
 
 
 def fuzzed(*words):
