@@ -40,6 +40,7 @@ ROOT = Path(__file__).parents[1]
 STORED = ROOT / "tests" / "study" / "data"
 PATIENCE_S = 180.0
 """After which a call counts as one that hangs."""
+_STRIKES = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 DISK_BYTES = 6_000_000
 
 
@@ -148,6 +149,7 @@ def child(call: Call, folder: Path, streams: tuple[int, int]) -> None:
     words = ["pareto-monoped", *call.words]
     if "fresh" in options:
         environment["PYTHONPATH"] = str(ROOT)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _STRIKES)
         os.execve(sys.executable, [sys.executable, "-m", "pareto_monoped", *words[1:]], environment)
     os.environ.clear()
     os.environ.update(environment)
@@ -161,6 +163,10 @@ def child(call: Call, folder: Path, streams: tuple[int, int]) -> None:
     from pareto_monoped import cli
 
     sys.argv = words
+    try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _STRIKES)
+    except KeyboardInterrupt:
+        os._exit(130)
     try:
         cli.main()
     except SystemExit:
@@ -194,8 +200,12 @@ def _redirect(number: int, how: object) -> None:
 def made(call: Call, folder: Path) -> Result:
     """Make a call: exit code (None if it hangs), output, messages."""
     pipes = os.pipe(), os.pipe()
+    # A signal that comes before the command has begun is none of its business.
+    signal.pthread_sigmask(signal.SIG_BLOCK, _STRIKES)
     process = os.fork()
-    if process == 0:
+    if process:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _STRIKES)
+    else:
         try:
             child(call, folder, (pipes[0][1], pipes[1][1]))
         except BaseException as error:
@@ -229,12 +239,14 @@ def made(call: Call, folder: Path) -> Result:
     return code, texts[0].decode(encoding, "replace"), texts[1].decode(encoding, "replace")
 
 
-def one(seed: int, number: int, source: Path, place: Path, keep: Path | None) -> tuple[Call, Result, list[str]]:
+def one(seed: int, number: int, source: Path, place: Path, given: argparse.Namespace) -> tuple[Call, Result, list[str]]:
     """Make call ``number`` of a seed in a new folder; returns it, how it ended, and what is wrong with that."""
     from pareto_monoped.cli import cli
 
     dice = random.Random(f"{seed}:{number}")
     call = call_of(dice, cli)
+    for name in given.without:
+        call.options.pop(name, None)
     disk = place.parent / "disk"
     if "tiny_disk" in call.options:
         if disk.is_mount():
@@ -254,9 +266,9 @@ def one(seed: int, number: int, source: Path, place: Path, keep: Path | None) ->
     result = made(call, place)
     place.chmod(0o755)
     wrong = list(findings(call, place, before, result))
-    if wrong and keep:
-        shutil.rmtree(keep / str(number), ignore_errors=True)
-        shutil.copytree(place, keep / str(number), symlinks=True)
+    if wrong and given.keep:
+        shutil.rmtree(given.keep / str(number), ignore_errors=True)
+        shutil.copytree(place, given.keep / str(number), symlinks=True)
     shutil.rmtree(place)
     (disk / "filler").unlink(missing_ok=True)
     return call, result, wrong
@@ -270,6 +282,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="number of the first call")
     parser.add_argument("--only", type=int, help="make this call alone")
     parser.add_argument("--keep", type=Path, help="keep the folders of calls that went wrong")
+    parser.add_argument("--without", action="append", default=[], help="an option of calls, such as signal")
     parser.add_argument("--mount", action="store_true", help="also calls on a full disk; needs root")
     given = parser.parse_args()
     print(f"seed {given.seed}", flush=True)
@@ -281,7 +294,7 @@ def main() -> int:
         root.chmod(0o755)
         basis(root / "basis")
         for number in numbers:
-            call, (code, _, err), wrong = one(given.seed, number, root / "basis", root / "call", given.keep)
+            call, (code, _, err), wrong = one(given.seed, number, root / "basis", root / "call", given)
             codes[call.words[0], code] += 1
             if wrong:
                 failed += 1
