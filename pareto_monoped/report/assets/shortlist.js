@@ -8,7 +8,9 @@ function nameOf(study, row) {
 function keepButton(study, row) {
   const kept = shortlisted(study, row) >= 0;
   const full = !kept && state.shortlist.length >= SHORTLIST_MOST;
-  const button = make("button", { type: "button", "aria-pressed": kept, disabled: full ? "" : null, "aria-label": `${kept ? "Remove" : "Keep"} ${nameOf(study, row)}` }, kept ? "Remove from shortlist" : full ? "Shortlist is full" : "Keep for comparison");
+  // What is heard begins with what is seen.
+  const words = kept ? "Remove from shortlist" : full ? "Shortlist is full" : "Keep for comparison";
+  const button = make("button", { type: "button", "aria-pressed": kept, disabled: full ? "" : null, "aria-label": `${words}: ${nameOf(study, row)}` }, words);
   button.addEventListener("click", () => {
     if (kept) drop(study, row);
     else keep(study, row);
