@@ -4,6 +4,7 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 """
 
+import difflib
 import sys
 
 import click
@@ -47,14 +48,54 @@ class _Commands(click.Group):
         command: click.Command = getattr(import_module(f"pareto_monoped.cli.{module_name}"), cmd_name)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command, or an error that names those with a similar name."""
+        if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
+            near = difflib.get_close_matches(args[0], _COMMANDS, n=2)
+            cure = f"did you mean {' or '.join(map(repr, near))}?" if near else f"must be one of {', '.join(_COMMANDS)}"
+            ctx.fail(f"command {args[0]!r}: is unknown; {cure}")
+        return super().resolve_command(ctx, args)
 
-@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
-@click.version_option(__version__, prog_name="pareto-monoped")
-def cli() -> None:
+
+def _show_versions(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the versions that decide a simulation or a search."""
+    if not asked or ctx.resilient_parsing:
+        return
+    import platform
+    from importlib.metadata import version
+
+    from pareto_monoped.cli.terminal import echo
+
+    others = [f"{package} {version(package)}" for package in ("mujoco", "optuna", "pymoo", "numpy")]
+    echo(f"pareto-monoped {__version__}\nPython {platform.python_version()}, {', '.join(others)}")
+    ctx.exit()
+
+
+@click.group(
+    cls=_Commands,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80},
+    invoke_without_command=True,
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_versions,
+    help="Show the versions that decide the results, and exit.",
+)
+@click.pass_context
+def cli(ctx: click.Context) -> None:
     """Design a jumping one-legged robot: gearboxes, links and controller at once.
 
     A study finds the front of jump height against energy; every design on it can be exported to CAD.
     """
+    if ctx.invoked_subcommand is None:
+        from pareto_monoped.cli.terminal import echo
+
+        echo(ctx.get_help())
 
 
 def main(arguments: list[str] | None = None) -> None:

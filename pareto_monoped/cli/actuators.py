@@ -26,11 +26,21 @@ _OUTPUT = click.Path(dir_okay=False, path_type=Path)
 _STANDARD_OUTPUT = Path("-")
 
 
-@click.command()
+class _WithRules(click.Command):
+    """Its help ends with the names that ``--without`` takes; they are read only then."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        from pareto_monoped.actuator.settings import CONSTRAINT_NAMES
+
+        formatter.write_paragraph()
+        formatter.write_text(f"Constraints of --without: {', '.join(CONSTRAINT_NAMES)}.")
+
+
+@click.command(cls=_WithRules)
 @click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
-@click.option("--ratio", type=float, help="Show the gearbox for this ratio, part by part.")
+@click.option("--ratio", metavar="X", type=float, help="Show the gearbox for this ratio, part by part.")
 @click.option("--rules", type=click.Choice(RULE_SETS), default=DEFAULT_RULES, show_default=True, help="Set of rules.")
-@click.option("--without", metavar="CONSTRAINT", multiple=True, help="Switch a constraint off; may be repeated.")
+@click.option("--without", metavar="NAME", multiple=True, help="Switch a constraint off; may be repeated.")
 @click.option(
     "--bearings",
     type=click.Choice(["catalogue", "regression"]),

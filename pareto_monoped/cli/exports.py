@@ -70,7 +70,7 @@ def export(
     force: bool,
     no_strength: bool,
 ) -> None:
-    """Write CAD, drawings, models, pictures and parts list of a design.
+    """Write CAD, drawings, models and parts list of a design.
 
     The design is built with lengths rounded to 0.1 mm and the real ratios of its gearboxes, then simulated again and
     checked. Nothing is written if a check fails. The design.json of an export also contains its motor and jump model,

@@ -56,7 +56,9 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 def front(
     db: Path, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
 ) -> None:
-    """List the non-dominated designs by their first objective, from the least value to the greatest.
+    """List the front: the designs that no other design dominates.
+
+    They stand by their first objective, from the least value to the greatest.
 
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.

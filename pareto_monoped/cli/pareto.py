@@ -20,11 +20,16 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("study_file", metavar="[STUDY.toml]", required=False, type=click.Path(path_type=Path))
 @click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results.  [default: reports/STUDY]"
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Folder for the results.  [default: reports/STUDY]",
 )
-@click.option("--db", type=click.Path(path_type=Path), help="Study database.  [default: beside STUDY.toml]")
+@click.option("--db", metavar="FILE", type=click.Path(path_type=Path), help="Database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold.")
 def pareto(
     study_file: Path | None,
@@ -32,9 +37,10 @@ def pareto(
     db: Path | None,
     evaluations: int | None,
     workers: int | None,
+    seed: int | None,
     no_strength: bool,
 ) -> None:
-    """Do the main job: actuator map, two fronts, knee design, its CAD, report.
+    """Do the main job: gearboxes, fronts, CAD of a knee, report.
 
     The first front is that of the study. The second has the other energy in place of the study's: that at the battery
     for mechanical energy. A study of other objectives has one front only. Without
@@ -68,6 +74,7 @@ def pareto(
         steps.do("actuators", "--motor", motor, "--csv", path)
     options = [f"--evaluations={evaluations}"] if evaluations else []
     options += [f"--workers={workers}"] if workers else []
+    options += [] if seed is None else [f"--seed={seed}"]
     options += ["--no-strength"] if no_strength else []
     steps.do("run", study_file, "--db", db, *options)
     dbs = [db]

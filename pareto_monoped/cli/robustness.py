@@ -51,7 +51,9 @@ def robust(
     workers: int | None,
     as_json: bool,
 ) -> None:
-    """Simulate designs again with what is uncertain in a built robot.
+    """Simulate designs again as robots are built.
+
+    What is uncertain in a built robot is drawn within its range.
 
     Masses, motors, friction, springs, lengths, gains, delay and battery vary together; all designs get the same
     samples. The results are stored in DB; what is there is not simulated again.

@@ -63,7 +63,7 @@ def sensitivity(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Say which variable and which assumption moves a design's height and energy most.
+    """Say which variable and which assumption moves a design most.
 
     The free variables move a little around the design; then everything that is uncertain in a built robot moves
     within its range. Results are stored in DB; what is there is not simulated again.

@@ -87,7 +87,7 @@ def run(
 @_workers
 @_as_json
 def resume(db: Path, evaluations: int | None, workers: int | None, as_json: bool) -> int:
-    """Continue a study from its database alone, without its TOML file."""
+    """Continue a study from its database alone."""
     from pareto_monoped.study.run import resume as resume_study
 
     with progress_reports(as_json) as progress:

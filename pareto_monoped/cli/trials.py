@@ -23,7 +23,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 )
 @force_option
 def trials(db: Path, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
-    """Give all trials of a study: variables, state and every measure.
+    """Give all trials of a study with every measure, as a table.
 
     Columns have their stored names and SI units. Without a file the table goes to stdout, as CSV.
     """

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from importlib import metadata
 
 import click
 import pytest
@@ -48,11 +49,52 @@ def test_an_unknown_command_is_one_line():
     assert "jmup" in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [("simulat", "simulate"), ("exprot", "export"), ("reports", "report"), ("jmup", "must be one of")],
+)
+def test_a_misspelt_command_is_told_the_right_one(typed, meant, capsys):
+    assert cli._run([typed]) == 2
+    said = capsys.readouterr().err
+    assert f"{typed!r}: is unknown" in said
+    assert meant in said
+
+
+def test_a_call_without_a_command_prints_the_help(capsys):
+    """It ended with an error whose one line was the whole help."""
+    assert cli._run([]) == 0
+    bare = capsys.readouterr()
+    assert cli._run(["--help"]) == 0
+    assert bare.out == capsys.readouterr().out
+    assert bare.err == ""
+
+
+def test_no_summary_of_a_command_is_cut_off(capsys):
+    assert cli._run([]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert [line for line in lines[1:] if line.endswith("...")] == []
+
+
+@pytest.mark.parametrize("command", list(cli._COMMANDS))
+def test_the_help_of_a_command_fits_and_names_what_it_takes(command, capsys):
+    """Every option with a value says what value, in capitals or as a choice."""
+    assert cli._run([command, "--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    for word in ("PATH", "TEXT", "FLOAT", "INTEGER RANGE", "FILENAME"):
+        assert not any(f" {word} " in f"{line} " for line in lines if line.lstrip().startswith("-")), word
+
+
 def test_version():
     result = subprocess.run(
         [sys.executable, "-m", "pareto_monoped", "--version"], capture_output=True, text=True, check=True
     )
-    assert __version__ in result.stdout
+    first, second = result.stdout.splitlines()
+    assert first == f"pareto-monoped {__version__}"
+    for package in ("mujoco", "optuna", "numpy"):
+        assert f"{package} {metadata.version(package)}" in second
+    assert max(len(first), len(second)) <= 80
 
 
 def test_a_closed_pipe_is_no_error():
