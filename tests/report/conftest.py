@@ -47,6 +47,12 @@ def other_seed(folder) -> Path:
 
 
 @pytest.fixture(scope="session")
+def more_seeds(folder) -> list[Path]:
+    """The same study with two other seeds and its own budget: three runs have a median."""
+    return [made(folder, seed=seed) for seed in (4, 6)]
+
+
+@pytest.fixture(scope="session")
 def weighted(folder) -> Path:
     """Two runs of the paper's weighted search."""
     algorithm = {"name": "weighted_cmaes", "height_weights": [0.2, 0.6], "iterations": 4}

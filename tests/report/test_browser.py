@@ -325,9 +325,9 @@ def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, resimulatio
     tab.quiet(file)
 
 
-def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed, weighted, folder, open_tab):
-    file = folder / "three.html"
-    write_report([db, other_seed, weighted], file)
+def test_several_studies_lie_over_each_other_and_can_be_switched(db, more_seeds, weighted, folder, open_tab):
+    file = folder / "several.html"
+    write_report([db, *more_seeds, weighted], file)
     tab = open_tab(file)
     tab.scroll_through()
 
@@ -338,7 +338,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     labels = [card["label"] for card in made["studies"]]
     first = made["studies"][0]
     assert f"Trial {first['trials']['trial'][first['picks'][0]['row']]}, {labels[0]}" in tab.text("#subject")
-    assert fronts() == 3
+    assert fronts() == 4
     lines = "(id) => document.getElementById(id).data.map(({ name, x, y, line }) => ({ name, x, y, line }))"
     growth = {line["name"]: line for line in tab.page.evaluate(lines, "convergence")}
     for card in made["studies"]:
@@ -347,7 +347,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
     tints = tab.page.evaluate(
         "document.getElementById('front-chart').data.filter((t) => t.name === 'front').map((t) => t.marker.color)"
     )
-    assert len(set(tints)) == 3
+    assert len(set(tints)) == 4
     assert [growth[label]["line"]["color"] for label in labels] == tints
     (surface,) = made["comparison"]["surfaces"]
     reached = tab.page.evaluate(lines, "attainment")
@@ -355,12 +355,15 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, other_seed,
         assert line["name"].startswith(key)
         assert (line["x"], line["y"]) == (surface[key], surface["first"])
     assert [text.split("<br>")[0] for text in tab.texts("weighted")] == [
-        f"weighted search, height weight {weight}" for weight, _ in made["studies"][2]["weighted"]
+        f"weighted search, height weight {weight}" for weight, _ in made["studies"][3]["weighted"]
     ]
     assert tab.page.locator("#attainment canvas").count() == 2
-    assert tab.page.locator("#search tbody tr").count() == 3
+    assert tab.page.locator("#search tbody tr").count() == 4
+    # Two studies of one name were told apart everywhere but here.
+    lines_at_bounds = tab.page.locator("#at-bounds li").all_inner_texts()
+    assert {line.split(": ")[0] for line in lines_at_bounds} == set(labels)
     tab.page.uncheck("[data-study='1']")
-    assert fronts() == 2
+    assert fronts() == 3
     tab.click_point("weighted", 0)
     tab.expects("#subject", "weighted")
     tab.quiet(file)

@@ -59,7 +59,7 @@ def shown(mixed):
 
     def text(name, value):
         q = quantities[name]
-        return f"{value * q.scale:.{q.decimals}f} {q.unit}"
+        return f"{value * q.scale:.{q.decimals}f} {q.unit}".removesuffix(" 1" if q.unit == "1" else "")
 
     return text
 

@@ -40,7 +40,7 @@ function shown(name, value, withUnit = true) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const q = quantity[name];
   const text = (value * q.scale).toFixed(q.decimals);
-  return withUnit ? `${text} ${q.unit}` : text;
+  return withUnit && q.unit !== "1" ? `${text} ${q.unit}` : text;
 }
 
 // A measure with its unit, as the title of an axis.

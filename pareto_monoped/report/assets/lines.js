@@ -156,7 +156,7 @@ function drawAlong() {
   }
   moveDots();
   byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
-  const whose = (study) => (page.studies.length > 1 ? `${study.name}: ` : "");
+  const whose = (study) => (page.studies.length > 1 ? `${study.label}: ` : "");
   byId("at-bounds").replaceChildren(...page.studies.flatMap((study) => study.at_bounds.map((line) => make("li", {}, whose(study) + line))));
 }
 
