@@ -8,7 +8,7 @@ import sqlite3
 import pytest
 
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.terminal import name, new_console, plain
+from pareto_monoped.cli.terminal import echo, name, new_console, plain
 from tests.cli.support import ROOT, STORED
 
 COMMAND_LINE = ROOT / "pareto_monoped" / "cli"
@@ -21,6 +21,14 @@ def test_what_a_terminal_obeys_or_hides_is_escaped_and_the_rest_is_not():
     assert plain("ζ ─ ö\u00a0\n\t") == "ζ ─ ö\u00a0\n\t"
     assert name("a\nb\tc") == "a\\nb\\tc"
     assert json.loads(f'"{plain(EVIL)}"') == EVIL
+
+
+@pytest.mark.parametrize("err", [False, True])
+def test_whatever_is_printed_is_escaped_even_where_a_command_forgot_to(err, capsys):
+    """Click drops colours by itself where no terminal reads; it does not drop these."""
+    echo("\x9b31m \u202egnp", err=err)
+    said = capsys.readouterr()
+    assert (said.err if err else said.out) == "\\u009b31m \\u202egnp\n"
 
 
 def test_tables_show_names_as_they_are(capsys):
