@@ -8,7 +8,7 @@ from pareto_monoped.jump.audit import Audits
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.jump.screen import Screened
 from pareto_monoped.measures import AUDIT_MEASURES, MEASURE_NAMES, MEASURES, SCREEN_MEASURES, measure
-from pareto_monoped.report.quantities import QUANTITIES
+from pareto_monoped.report.quantities import QUANTITIES, label_of
 
 UNITS = {
     "_m": "m",
@@ -70,11 +70,16 @@ def test_the_report_calls_measures_by_their_labels():
     for entry in MEASURES:
         quantity = shown[entry.name]
         assert (quantity.label, quantity.unit, quantity.decimals, quantity.scale) == (
-            entry.label,
+            label_of(entry.name),
             entry.shown_unit,
             entry.decimals,
             entry.scale,
         )
+    # On the page, the energy and the efficiency say that they are the mechanical ones.
+    assert {name for name in shown if name in MEASURE_NAMES and label_of(name) != measure(name).label} == {
+        "energy_j",
+        "efficiency",
+    }
     for entry in (*AUDIT_MEASURES, *SCREEN_MEASURES):
         if entry.name in shown:
             assert (shown[entry.name].label, shown[entry.name].unit) == (entry.label, entry.shown_unit)

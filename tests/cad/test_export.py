@@ -13,7 +13,7 @@ from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.made import is_made
 from pareto_monoped.cad.write.folder import safe
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.errors import CheckError, DesignError, InputError, OutputError
+from pareto_monoped.errors import CheckError, DesignError, DiskError, InputError, OutputError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 
@@ -102,7 +102,7 @@ def test_a_failure_while_writing_leaves_nothing(quick, monkeypatch, actuator_map
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(export, "parts_list", full)
-    with pytest.raises(OutputError, match="No space left on device"):
+    with pytest.raises(DiskError, match="No space left on device"):
         export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
     assert list(tmp_path.iterdir()) == []
 

@@ -82,7 +82,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
     assert f"{card.trials.columns['mass_kg'][row]:.3f} kg" in tab.text("#mass")
     assert f"--trial {card.trials.trial[row]}" in tab.text("#commands")
     assert tab.page.get_attribute("#front-chart", "aria-valuenow") == str(at + 1)
-    assert tab.page.locator("#time-charts svg").count() == 3
+    assert tab.page.locator("#time-charts svg").count() == 5
     tab.quiet(report)
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
 from pareto_monoped.study.verify import require_sound, verify
 from tests.study.support import UNSEALED, change
@@ -95,7 +96,7 @@ FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
         ("UPDATE monoped_trials SET violation = 0.5", "has an impossible violation"),
         ("UPDATE monoped_checkpoint SET told = 100000", "its checkpoint stands before generation 2 with 100000"),
         ("UPDATE monoped_checkpoint SET generation = -3", "its checkpoint stands before generation -3"),
-        ("UPDATE monoped_history SET hypervolume = 9e999 WHERE generation = 1", "a hypervolume that is negative or"),
+        ("UPDATE monoped_history SET hypervolume = -1 WHERE generation = 1", "a hypervolume that is negative or"),
         ("UPDATE monoped_history SET seconds = 0 WHERE generation = 1", "seconds that go back"),
         ("DELETE FROM monoped_history WHERE generation = 2", "does not lead to 50 trials"),
         ("UPDATE monoped_history SET generation = 9 WHERE generation = 2", "does not count generations from 0 on"),
@@ -106,6 +107,14 @@ def test_impossible_values_are_found_without_a_hash(path, statement, words):
     change(path, *UNSEALED, statement)
     result = verify(path)
     assert any(words in line for line in result.findings), result.findings
+
+
+@pytest.mark.parametrize("column", ["hypervolume", "seconds"])
+def test_an_infinite_number_of_the_history_is_refused_when_read(path, column):
+    change(path, *UNSEALED, f"UPDATE monoped_history SET {column} = 9e999 WHERE generation = 1")
+    for read in (verify, read_study):
+        with pytest.raises(DatabaseError, match="history is not finite"):
+            read(path)
 
 
 def test_a_jump_that_differs_is_found(path):
