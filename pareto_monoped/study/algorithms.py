@@ -25,6 +25,10 @@ def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None) -> A
     space = coordinates.space
     match study.algorithm:
         case EvolutionSettings() as settings:
+            if settings.name == "nsga2":
+                from pareto_monoped.study.nsga2 import Nsga2
+
+                return Nsga2(space, settings, study.seed)
             from pareto_monoped.study.evolution import Evolution
 
             return Evolution(space, settings, study.seed)

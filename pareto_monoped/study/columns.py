@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from numpy.typing import NDArray
+
 from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
 from pareto_monoped.measures import MEASURES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
@@ -29,7 +31,7 @@ class Column:
     sql: str
     dtype: Literal["int64", "str", "float64"]
     meaning: str
-    values: "Callable[[Generation], Sequence[Any]]"
+    values: "Callable[[Generation], Sequence[Any] | NDArray[Any]]"
 
 
 def _variable(index: int) -> Column:
@@ -39,7 +41,7 @@ def _variable(index: int) -> Column:
         sql="REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {DEFAULTS[variable.name]!r}",
         dtype="float64",
         meaning=variable.meaning,
-        values=lambda generation: generation.designs[:, index].tolist(),
+        values=lambda generation: generation.designs[:, index],
     )
 
 
@@ -49,7 +51,7 @@ def _measure(name: str, meaning: str) -> Column:
         sql="REAL",
         dtype="float64",
         meaning=meaning,
-        values=lambda generation: generation.evaluations.of(name).tolist(),
+        values=lambda generation: generation.evaluations.of(name),
     )
 
 
@@ -96,7 +98,7 @@ _JUDGEMENT = (
         sql="REAL NOT NULL",
         dtype="float64",
         meaning="how far the constraints are missed, as a sum of shares of their limits; 0 where all hold",
-        values=lambda generation: generation.judgement.violation.tolist(),
+        values=lambda generation: generation.judgement.violation,
     ),
     Column(
         name="height_weight",

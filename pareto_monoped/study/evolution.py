@@ -22,7 +22,7 @@ from pareto_monoped.study.seen import Seen, drawn
 
 
 class Evolution:
-    """A genetic algorithm of pymoo that asks for no design twice.
+    """A genetic algorithm of pymoo that asks for no design twice. ``nsga2.Nsga2`` is the same as its NSGA-II, faster.
 
     Between generations, all three keep only the population with its ranks and crowding distances, the number of
     generations and the random generator. These are the state. The designs so far are in the history.
@@ -71,7 +71,7 @@ class Evolution:
             for key in ("rank", "crowding"):
                 # Infeasible survivors have neither rank nor crowding distance. The ends of the front have an infinite
                 # crowding distance, which JSON cannot hold as a number.
-                state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
+                state[key] = [None if value is None else jsonable(float(value)) for value in population.get(key)]
         return state
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
@@ -98,7 +98,8 @@ class Evolution:
         algorithm.is_initialized = True
 
 
-def _jsonable(value: float) -> float | str:
+def jsonable(value: float) -> float | str:
+    """A number as JSON can hold it: an infinite one as text."""
     return value if np.isfinite(value) else str(value)
 
 
@@ -125,19 +126,29 @@ class _Unseen(DefaultDuplicateElimination):
         return found if other is not None else found | ~self._seen.new(pop.get("X"))
 
 
+def varying(space: Space, settings: EvolutionSettings) -> tuple[SBX, PM]:
+    """Crossover and mutation of all three.
+
+    pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
+    """
+    crossover = {"prob": settings.crossover_probability, "eta": settings.crossover_eta}
+    mutation = {"eta": settings.mutation_eta}
+    if space.choices:
+        return MotorSBX(space, **crossover), MotorPM(space, **mutation)
+    return SBX(**crossover), PM(**mutation)
+
+
 def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen) -> GeneticAlgorithm:
     from pymoo.algorithms.moo.age2 import AGEMOEA2
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.algorithms.moo.sms import SMSEMOA
 
-    crossover = {"prob": settings.crossover_probability, "eta": settings.crossover_eta}
-    mutation = {"eta": settings.mutation_eta}
+    crossover, mutation = varying(space, settings)
     kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
-    # pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
     return kind(
         pop_size=settings.population,
-        crossover=MotorSBX(space, **crossover) if space.choices else SBX(**crossover),
-        mutation=MotorPM(space, **mutation) if space.choices else PM(**mutation),
+        crossover=crossover,
+        mutation=mutation,
         repair=_Snap(space),
         eliminate_duplicates=_Unseen(seen),
         seed=seed,

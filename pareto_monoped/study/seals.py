@@ -76,7 +76,7 @@ def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
     """
     numbers = [name for name in names if name not in _TEXTS]
     # SQLite keeps neither the sign of zero nor the payload of a NaN.
-    matrix = np.column_stack([np.asarray(values[name], dtype=np.float64) for name in numbers]) + 0.0
+    matrix = np.array([np.asarray(values[name], dtype=np.float64) for name in numbers]).T + 0.0
     matrix[np.isnan(matrix)] = np.nan
     content = np.ascontiguousarray(matrix, dtype="<f8").tobytes()
     width = 8 * len(numbers)

@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import temporary_beside
 from pareto_monoped.study.arrival import settle
@@ -154,6 +156,8 @@ class Store:
         # What was acknowledged must survive a power cut too, not only a killed process.
         connection.execute("PRAGMA synchronous = FULL")
         self._files: dict[Path, tuple[int, int]] = {}
+        self._resolved = self.path.resolve()
+        self._log = Path(f"{self._resolved}-wal")
         self._require_files()
 
     def _add_later_columns(self) -> None:
@@ -220,10 +224,10 @@ class Store:
 
         A file that is deleted or replaced while it is open takes everything with it that is still written to it.
         """
-        path = self.path.resolve()
-        for file in (path, Path(f"{path}-wal")):
+        # The study by the name that it was opened by: a link in this that leads elsewhere now is noticed too.
+        for file, name in ((self._resolved, self.path), (self._log, self._log)):
             try:
-                found = file.stat()
+                found = name.stat()
             except OSError:
                 found = None
             place = None if found is None else (found.st_dev, found.st_ino)
@@ -302,7 +306,7 @@ class Store:
         values = {column.name: column.values(generation) for column in self._columns}
         executemany(
             f"INSERT INTO monoped_trials ({listed(values)}) VALUES ({', '.join('?' * len(values))})",
-            zip(*values.values(), strict=True),
+            zip(*(v.tolist() if isinstance(v, np.ndarray) else v for v in values.values()), strict=True),
         )
         total = generation.first_trial + len(generation.designs)
         passed = (generation.number, total, float(generation.hypervolume), float(generation.seconds))
