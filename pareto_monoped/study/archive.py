@@ -12,6 +12,11 @@ _POSTS = 20
 """Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
 _LEAST_SHARE = 0.01
 """Values that come nearer to 0 have logarithms that rule over all others. Our own choice: two orders of magnitude."""
+_MOST = 12_000
+"""Designs that an archive holds at most. Our own choice: half as many again as the main job has, so that the time per
+design stays what it is there, however long a search goes on."""
+_KEPT = 8_000
+"""Designs that stay when there are more."""
 _CHUNK = 256
 """Points that are compared with a front at once, which keeps the tables in the processor's cache."""
 
@@ -56,7 +61,11 @@ class Standing:
 
 
 class Archive:
-    """All designs that a search has simulated."""
+    """The designs that a search has simulated; of very many, those that tell it most.
+
+    Above ``_MOST`` designs, ``_KEPT`` stay: the front, evenly thinned if it is long, then the designs close behind it,
+    and a share spread over all others.
+    """
 
     def __init__(self, space: Space) -> None:
         self.space = space
@@ -72,6 +81,12 @@ class Archive:
         self.values = np.vstack((self.values, values))
         self._objectives = np.vstack((self._objectives, scores.values))
         self._violation = np.concatenate((self._violation, scores.violation))
+        if len(self.values) > _MOST:
+            self._keep(_told_most(self.standing(), _KEPT))
+
+    def _keep(self, rows: NDArray[np.intp]) -> None:
+        self.values, self.constraints = self.values[rows], self.constraints[rows]
+        self._objectives, self._violation = self._objectives[rows], self._violation[rows]
 
     def standing(self) -> Standing:
         """How the designs stand now."""
@@ -102,6 +117,22 @@ class Archive:
             graded &= feasible.min(axis=0) > _LEAST_SHARE * feasible.max(axis=0)
         logarithms = np.log(np.where(graded, values, 1.0))
         return np.where(graded, logarithms, values) * self.space.objectives.signs
+
+
+def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
+    """Rows of up to ``count`` designs that tell a search most, in the order of the trials.
+
+    Half of them may be the front, from end to end; three quarters of the others are the nearest behind it, the rest are
+    spread evenly over what lies farther.
+    """
+    front = standing.front
+    if len(front) > count // 2:
+        front = front[np.linspace(0, len(front) - 1, count // 2).astype(np.intp)]
+    behind = standing.order[~np.isin(standing.order, standing.front)]
+    nearest, others = np.split(behind, [min(len(behind), (count - len(front)) * 3 // 4)])
+    left = min(count - len(front) - len(nearest), len(others))
+    spread = others[np.linspace(0, len(others) - 1, left).astype(np.intp)] if left else others[:0]
+    return np.sort(np.concatenate((front, nearest, spread)))
 
 
 def shortfall(points: Floats, front: Floats) -> Floats:

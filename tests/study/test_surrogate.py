@@ -358,3 +358,82 @@ def test_without_a_feasible_design_it_looks_for_the_least_violation():
     assert (drawn > 0.0).all()
     assert np.median(violations[3]) < 0.2 * np.median(drawn)
     assert np.median(violations[-1]) < 0.05 * np.median(drawn)
+
+
+@pytest.fixture
+def small_archive(monkeypatch):
+    """Archives that thin at 400 designs down to 240."""
+    monkeypatch.setattr("pareto_monoped.study.archive._MOST", 400)
+    monkeypatch.setattr("pareto_monoped.study.archive._KEPT", 240)
+
+
+def test_an_archive_of_very_many_designs_keeps_those_that_tell_most(small_archive):
+    values = np.unique(spread(SPACE, 500, np.random.default_rng(4)), axis=0)
+    scores = scored(values, limit=5.0)
+    whole = Archive(SPACE)
+    whole.add(values[:400], scores.of(slice(400)))
+    assert len(whole.values) == 400
+    standing = whole.standing()
+    front, ends = whole.values[standing.front], whole.values[standing.front[[0, -1]]]
+    before = whole.values.copy()
+    # One more that is bad in everything, and so changes nothing for the others.
+    bad = Scores(
+        objectives=HEIGHT_AND_ENERGY,
+        values=np.array([[scores.values[:, 0].min(), scores.values[:, 1].max()]]),
+        violation=np.array([9.0]),
+        constraints=np.array([[9.0]]),
+    )
+    whole.add(values[400:401], bad)
+    assert len(whole.values) == 240
+    kept = {tuple(row) for row in whole.values.tolist()}
+    assert {tuple(row) for row in ends.tolist()} <= kept
+    assert len(front) <= 120
+    assert {tuple(row) for row in front.tolist()} <= kept
+    # The order of the trials stays, and scores stay with their designs.
+    rows = [row for row in whole.values.tolist() if row != values[400].tolist()]
+    places = [before.tolist().index(row) for row in rows]
+    assert places == sorted(places)
+    stays = scored(np.array(rows), limit=5.0)
+    np.testing.assert_array_equal(whole.constraints[: len(rows)], stays.constraints)
+    np.testing.assert_array_equal(whole._objectives[: len(rows)], stays.values)
+    # Those that were let go are farther behind the front than the nearest that stayed.
+    lost = [place for place in range(400) if tuple(before[place].tolist()) not in kept]
+    stayed = [place for place in places if place not in set(standing.front.tolist())]
+    nearest = np.sort(standing.behind[stayed])[: (240 - len(front)) * 3 // 4]
+    assert standing.behind[lost].min() >= nearest.max()
+
+
+def test_a_long_front_is_thinned_from_end_to_end(small_archive):
+    archive = Archive(SPACE)
+    values = spread(SPACE, 401, np.random.default_rng(5))
+    energies = np.linspace(10.0, 50.0, 401)
+    missed = np.full(401, -1.0)
+    archive.add(
+        values,
+        Scores(
+            objectives=HEIGHT_AND_ENERGY,
+            values=np.column_stack((0.5 + 0.01 * energies, energies)),
+            violation=np.zeros(401),
+            constraints=missed[:, None],
+        ),
+    )
+    energy = np.sort(archive._objectives[:, 1])
+    assert len(energy) == 120
+    assert (energy[0], energy[-1]) == (10.0, 50.0)
+    assert np.diff(energy).max() < 3.0 * np.diff(energy).min()
+
+
+def test_a_search_that_thins_its_archive_goes_on_alike_after_a_restore(small_archive):
+    search, history = SurrogateSearch(SPACE, SETTINGS, 3), []
+    for _ in range(40):
+        asked = search.ask().values
+        scores = scored(asked)
+        search.tell(scores)
+        history.append((asked, scores))
+    again = SurrogateSearch(SPACE, SETTINGS, 3)
+    again.restore(search.state(), history)
+    for _ in range(3):
+        one, other = search.ask().values, again.ask().values
+        np.testing.assert_array_equal(one, other)
+        search.tell(scored(one))
+        again.tell(scored(other))
