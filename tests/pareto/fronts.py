@@ -12,14 +12,25 @@ THREE = Objectives(names=("height_m", "electrical_energy_j", "mass_kg"))
 _numbers = st.integers(0, 6).map(lambda k: 0.55 + 0.07 * k)
 
 
+SHAPES = ("any", "any", "collinear", "upright", "level", "one point")
+"""Shapes of fronts: points on a line, on one of infinite slope, on one of no slope, and many designs at one point."""
+
+
 @st.composite
 def fronts(draw, objectives=HEIGHT_AND_ENERGY):
     """A data frame of 1 to 12 designs, in any order; they may dominate each other, as a caller may give any."""
-    n = draw(st.integers(1, 12))
+    n, shape = draw(st.integers(1, 12)), draw(st.sampled_from(SHAPES))
     columns = {
         name: draw(st.lists(_numbers, min_size=n, max_size=n))
         for name in {*objectives.names, "mass_kg", "drift_m", "knee_ratio"}
     }
+    first, second = objectives.names[:2]
+    if shape == "collinear":
+        columns[second] = list(columns[first])
+    if shape in ("upright", "one point"):
+        columns[second] = columns[second][:1] * n
+    if shape in ("level", "one point"):
+        columns[first] = columns[first][:1] * n
     trials = draw(st.permutations(range(100, 100 + n)))
     return pd.DataFrame({"trial": trials, **columns})
 
