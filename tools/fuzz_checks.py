@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import xml.etree.ElementTree as ElementTree
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -110,6 +111,14 @@ def _whole(path: Path) -> bool:
         return content.rstrip().endswith(b"IEND\xaeB`\x82")
     if content.startswith((b"<!doctype html", b"<!DOCTYPE html")):
         return content.rstrip().endswith(b"</html>")
+    if content.startswith(b"glTF"):  # its third word is its length
+        return int.from_bytes(content[8:12], "little") == len(content)
+    if content.startswith(b"PK"):  # a 3MF file is a ZIP archive, whose directory comes last
+        return zipfile.is_zipfile(path)
+    if content.startswith(b"%PDF"):
+        return content.rstrip().endswith(b"%%EOF")
+    if path.suffix == ".stl":  # binary: a head of 80 bytes, the number of triangles, 50 bytes for each
+        return len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
     if content.startswith(b"<"):
         try:
             ElementTree.fromstring(content)

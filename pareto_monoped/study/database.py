@@ -38,12 +38,25 @@ def translated(path: Path) -> Iterator[None]:
     except OSError as error:
         raise inaccessible(path, error) from error
     except Exception as error:
-        # SQLAlchemy, through which Optuna writes, wraps SQLite's own; it is not imported only to ask for its name.
-        library = sys.modules.get("sqlalchemy.exc")
-        if library is None or not isinstance(error, library.SQLAlchemyError):
+        wrapped = _of_sqlalchemy(error)
+        if wrapped is None:
             raise
-        inner = getattr(error, "orig", None)
-        raise _clear(path, inner if isinstance(inner, sqlite3.Error) else sqlite3.Error(str(error))) from error
+        inner = getattr(wrapped, "orig", None)
+        raise _clear(path, inner if isinstance(inner, sqlite3.Error) else sqlite3.Error(str(wrapped))) from error
+
+
+def _of_sqlalchemy(error: BaseException | None) -> BaseException | None:
+    """The error of SQLAlchemy that this one is or comes from; None if there is none.
+
+    Optuna writes through SQLAlchemy, which wraps SQLite's own errors, and at times wraps these once more. Neither is
+    imported only to ask for names.
+    """
+    library = sys.modules.get("sqlalchemy.exc")
+    while library is not None and error is not None:
+        if isinstance(error, library.SQLAlchemyError):
+            return error
+        error = error.__cause__
+    return None
 
 
 @contextmanager

@@ -7,7 +7,8 @@ import sqlite3
 
 import pytest
 
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DatabaseError, DiskError
+from pareto_monoped.study.database import translated
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
 from tests.study.support import made_database, made_study
@@ -146,3 +147,16 @@ def test_an_error_of_sqlite_over_several_lines_is_told_in_one(tmp_path):
     bent = (tmp_path / "s.db").read_bytes().replace(b"seconds REAL NOT NULL\n)", b"seconds `REAL NOT NUL\n)")
     (tmp_path / "s.db").write_bytes(bent)
     refused(tmp_path / "s.db", ["malformed database schema (monoped_history)"])
+
+
+def test_an_error_of_sqlite_that_optuna_has_wrapped_twice_is_told_as_what_it_is(tmp_path):
+    """A disk that was full at Optuna's commit became an unexpected error of the program."""
+    from optuna.exceptions import StorageInternalError
+    from sqlalchemy.exc import OperationalError
+
+    full = sqlite3.OperationalError("database or disk is full")
+    full.sqlite_errorcode = sqlite3.SQLITE_FULL
+    with pytest.raises(DiskError, match="the disk is full"), translated(tmp_path / "s.db"):
+        raise StorageInternalError("commit") from OperationalError("COMMIT", {}, full)
+    with pytest.raises(StorageInternalError), translated(tmp_path / "s.db"):
+        raise StorageInternalError("of another kind")

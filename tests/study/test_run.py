@@ -335,6 +335,24 @@ def test_a_bent_checkpoint_is_refused(whole, tmp_path, bent):
     assert read_study(path).trials.equals(whole[2].trials)
 
 
+def test_a_disk_that_is_full_when_a_study_is_made_leaves_nothing(tmp_path):
+    import resource
+
+    toml = tmp_path / "s.toml"
+    toml.write_text('name = "s"\nevaluations = 20\n')
+    done = subprocess.run(
+        [sys.executable, "-m", "pareto_monoped", "run", str(toml)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)),
+    )
+    assert done.returncode == 1, done.stderr
+    assert done.stderr.splitlines()[-1].startswith("error: study database")
+    assert "disk" in done.stderr
+    assert not (tmp_path / "s.db").exists()
+
+
 def test_a_disk_that_fills_up_loses_nothing(tmp_path):
     """The system's own limit on a file's size, in a real process; gone on with after the limit is lifted."""
     import resource
