@@ -1,5 +1,6 @@
 """What ``simulate`` shows of a jump besides numbers: a film as a file, or MuJoCo's viewer."""
 
+import math
 import os
 import sys
 import time
@@ -89,10 +90,20 @@ def view_jump(design: "Design", maps: "JointMaps", calibration: "Calibration", t
         from mujoco import viewer
 
         with viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as window:
+            _look(window.cam, trace)
             echo("close the window to go on", err=True)
             _play(window, model, data, columns, trace, slower)
     except RuntimeError as error:
         raise InputError(f"--view: the viewer cannot be opened ({error}); use --gif FILE or --video FILE") from error
+
+
+def _look(camera: Any, trace: Trace) -> None:
+    """From the robot's right and a little from above, so far away that the whole jump is in the picture."""
+    top = float(trace["base_z_m"].max()) + 0.2
+    camera.lookat[:] = (float(trace["base_x_m"].mean()), 0.0, 0.5 * top)
+    # MuJoCo's viewer sees 45 degrees from top to bottom unless a model says otherwise.
+    camera.distance = 1.15 * 0.5 * top / math.tan(math.radians(22.5))
+    camera.azimuth, camera.elevation = 110.0, -8.0
 
 
 def _play(window: Any, model: Any, data: Any, columns: list[tuple[int, str]], trace: Trace, slower: float) -> None:
