@@ -5,7 +5,7 @@ one process that has imported everything, some in a fresh interpreter. A call mu
 without a traceback or warning, and with one line that says why; it must neither hang, nor leave temporary or
 half-written files, nor change a file that it was not told to write, nor any study that it does not continue.
 
-    python tools/fuzz.py --calls 10000 --seed 1 [--jobs 2] [--mount] [--only N] [--keep DIR]
+    python tools/fuzz.py --calls 10000 --seed 1 [--mount] [--only N] [--keep DIR]
 """
 
 import argparse
@@ -274,6 +274,10 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
     return call, result, wrong
 
 
+_TELL_EVERY = 500
+"""Calls between two lines of progress."""
+
+
 def main() -> int:
     """Parse, prepare, make the calls, report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -293,13 +297,15 @@ def main() -> int:
         root = Path(temporary)
         root.chmod(0o755)
         basis(root / "basis")
-        for number in numbers:
+        for done, number in enumerate(numbers, 1):
             call, (code, _, err), wrong = one(given.seed, number, root / "basis", root / "call", given)
             codes[call.words[0], code] += 1
             if wrong:
                 failed += 1
                 print(f"call {number}: {'; '.join(wrong)}\n  {call.words}\n  {call.environment} {call.options}")
                 print("  " + "\n  ".join(err.splitlines()[-3:]), flush=True)
+            if done % _TELL_EVERY == 0:
+                print(f"{done} calls, {failed} with findings", flush=True)
     for command in sorted({command for command, _ in codes}):
         row = {code: count for (name, code), count in sorted(codes.items(), key=str) if name == command}
         print(f"{command:12} {sum(row.values()):6}  {row}")
