@@ -115,6 +115,8 @@ def _whole(path: Path) -> bool:
         return int.from_bytes(content[8:12], "little") == len(content)
     if content.startswith(b"PK"):  # a 3MF file is a ZIP archive, whose directory comes last
         return zipfile.is_zipfile(path)
+    if content.startswith(b"GIF8"):
+        return content.endswith(b";")
     if content.startswith(b"%PDF"):
         return content.rstrip().endswith(b"%%EOF")
     if path.suffix == ".stl":  # binary: a head of 80 bytes, the number of triangles, 50 bytes for each

@@ -124,7 +124,10 @@ def _change_table(connection: sqlite3.Connection, table: str, dice: random.Rando
 def _change_setting(connection: sqlite3.Connection, dice: random.Random) -> None:
     """Change a value somewhere within a row of JSON."""
     key, text = dice.choice(connection.execute("SELECT key, value FROM monoped_meta").fetchall())
-    value = json.loads(text)
+    try:
+        value = json.loads(text)
+    except ValueError:  # an earlier harm has made it no JSON, or a number of too many digits
+        return
     places = list(_places(value))
     if places:
         holder, place = dice.choice(places)
