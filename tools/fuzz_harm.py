@@ -94,7 +94,8 @@ def _change_rows(path: Path, dice: random.Random) -> None:
             for statement in UNSEALED:
                 connection.execute(statement)
         tables = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
-        for _ in range(dice.choice((1, 1, 2, 5))):
+        # An earlier harm may have left an empty file, which has no tables.
+        for _ in range(dice.choice((1, 1, 2, 5)) if tables else 0):
             table = dice.choice([name for name in tables if name.startswith("monoped")] * 3 + tables)
             with contextlib.suppress(sqlite3.Error):
                 _change_table(connection, table, dice)
