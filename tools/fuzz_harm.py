@@ -89,7 +89,10 @@ VALUES: tuple[object, ...] = (
 
 def _change_rows(path: Path, dice: random.Random) -> None:
     """Change values, rows or tables by SQL; half of the studies lose their running hash, which would find it."""
-    with contextlib.suppress(sqlite3.Error, OSError), contextlib.closing(sqlite3.connect(path)) as connection:
+    with (
+        contextlib.suppress(sqlite3.Error, OSError, UnicodeError),
+        contextlib.closing(sqlite3.connect(path)) as connection,
+    ):
         if dice.random() < 0.5:
             for statement in UNSEALED:
                 connection.execute(statement)
