@@ -7,7 +7,7 @@ STAMP := $(VENV)/.set-up
 # Two processes: what the machine in the documentation has; override with `make test JOBS=8`.
 JOBS ?= 2
 
-.PHONY: pareto test test-long lint format bench setup clean help
+.PHONY: pareto test test-long lint format docs bench setup clean help
 .DEFAULT_GOAL := help
 
 help:
@@ -15,17 +15,20 @@ help:
 	@echo "make test       set up, then the tests (about fifteen minutes)"
 	@echo "make test-long  the tests that take longer, too"
 	@echo "make lint       ruff and mypy"
+	@echo "make docs       the documentation as a site: build/docs/index.html"
 	@echo "make bench      the benchmarks in benchmarks/"
 	@echo "make clean      remove the virtual environment"
 
 setup: $(STAMP)
 
-$(STAMP): pyproject.toml constraints.txt tools/system_libraries.sh
+$(STAMP): pyproject.toml constraints.txt setup.py tools/system_libraries.sh tools/install.sh
 	@test -n "$(PYTHON)" || { echo "error: no Python 3.11 or later found; install one, or name it: make PYTHON=/path/to/python3" >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "error: $(PYTHON) cannot make virtual environments; on Debian or Ubuntu: sudo apt-get install python3-venv" >&2; exit 1; }
-	@echo "setting up $(VENV) (once; about a gigabyte, most of it the CAD kernel)" >&2
+	@echo "setting up $(VENV), once: about 2 GB of disk and some minutes" >&2
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cad,dev]'
+	@sh tools/install.sh $(BIN)/python $(VENV)/install.log "1 of 3: search, simulation, report" -c constraints.txt -e . >&2
+	@sh tools/install.sh $(BIN)/python $(VENV)/install.log "2 of 3: CAD" -c constraints.txt -e '.[cad]' >&2
+	@sh tools/install.sh $(BIN)/python $(VENV)/install.log "3 of 3: tools for tests and documents" -c constraints.txt -e '.[dev,docs]' >&2
 	@sh tools/system_libraries.sh $(BIN)/python
 	@touch $@
 
@@ -46,6 +49,11 @@ lint: setup
 format: setup
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+docs: setup
+	@echo "building the site; notebooks that changed are run, which takes two minutes for all" >&2
+	@$(BIN)/python -m sphinx -b html -c docs -n -W --keep-going -q -d build/doctrees . build/docs
+	@echo "open build/docs/index.html"
 
 bench: setup
 	@for b in benchmarks/*.py; do echo "== $$b"; $(BIN)/python $$b || exit 1; done

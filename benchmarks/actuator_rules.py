@@ -5,6 +5,7 @@ python benchmarks/actuator_rules.py
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,8 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.rating_data import GearSteels
 from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.actuator.rules import ActuatorSettings
 from pareto_monoped.actuator.search import build_map, map_of
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.materials import GEAR_GRADES
 
 MOTOR = "VT8020"
@@ -47,14 +48,14 @@ def _row(name: str, paper: ActuatorMap, iso: ActuatorMap) -> str:
 def _changes(s: ActuatorSettings) -> Iterator[tuple[str, ActuatorSettings]]:
     """Each assumption changed alone."""
 
-    def parts(**changed: object) -> ActuatorSettings:
-        return replace(s, parts=replace(s.parts, **changed))  # type: ignore[arg-type]
+    def parts(**changed: Any) -> ActuatorSettings:
+        return replace(s, parts=replace(s.parts, **changed))
 
-    def rating(**changed: object) -> ActuatorSettings:
-        return parts(rating=replace(s.parts.rating, **changed))  # type: ignore[arg-type]
+    def rating(**changed: Any) -> ActuatorSettings:
+        return parts(rating=replace(s.parts.rating, **changed))
 
-    def duty(**changed: object) -> ActuatorSettings:
-        return parts(duty=replace(s.parts.duty, **changed))  # type: ignore[arg-type]
+    def duty(**changed: Any) -> ActuatorSettings:
+        return parts(duty=replace(s.parts.duty, **changed))
 
     def steel(grade: str) -> ActuatorSettings:
         return replace(s, steels=GearSteels(**dict.fromkeys(("sun", "planet", "ring"), GEAR_GRADES[grade])))

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.screen import screened
 from pareto_monoped.study import run as runs
 from pareto_monoped.study.algorithm_settings import EvolutionSettings
+from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.definition import Study, load_study
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.simulator import Simulator
@@ -42,19 +44,15 @@ FADES_MM = (0.3, 1.0, 10.0)
 @contextmanager
 def timed_audits() -> Iterator[list[float]]:
     """Processor times of the audits of all studies that run meanwhile."""
-    original = runs.audit_front
     spent: list[float] = []
 
     def timed(db: Path, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
         started = time.process_time()
-        original(db, store, simulator, notify)
+        audit_front(db, store, simulator, notify)
         spent.append(time.process_time() - started)
 
-    runs.audit_front = timed
-    try:
+    with patch.object(runs, "audit_front", timed):
         yield spent
-    finally:
-        runs.audit_front = original
 
 
 def times(study: Study, folder: Path) -> tuple[StudyData, float, float]:

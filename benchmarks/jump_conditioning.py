@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,18 +43,19 @@ def main(count: int) -> None:
     print("\n| integrator | step ms | speed | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|---|")
     reference = load_calibration("reference")
-    for integrator, step in (
+    steps: tuple[tuple[Literal["Euler", "implicitfast", "RK4"], float], ...] = (
         ("Euler", 0.5),
         ("Euler", 1.0),
         ("Euler", 2.0),
         ("implicitfast", 1.0),
         ("RK4", 1.0),
         ("RK4", 2.0),
-    ):
+    )
+    for integrator, step in steps:
         # The control period is 1 ms, or a step where that is longer.
         simulation = replace(
             reference.simulation,
-            integrator=integrator,  # type: ignore[arg-type]
+            integrator=integrator,
             timestep_s=step * 1e-3,
             control_period_s=max(step, 1.0) * 1e-3,
             positions_read="state" if integrator == "RK4" else "half_step_back",

@@ -9,6 +9,7 @@ which positions the controller reads, and the audits of a stored study.
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,16 +96,16 @@ def _print_stops(reference: Calibration) -> None:
         print(f"| {joint} | {' | '.join(cells)} |")
 
 
-def _torque_share(part: object, beyond: Floats) -> Floats:
+def _torque_share(part: Any, beyond: Floats) -> Floats:
     """Torque of a stop's part over that at its full travel."""
-    return np.asarray(part.torque_n_m(beyond) / part.torque_n_m(part.travel_rad))  # type: ignore[attr-defined]
+    return np.asarray(part.torque_n_m(beyond) / part.torque_n_m(part.travel_rad))
 
 
 def _print_readings(reference: Calibration, designs: Floats) -> None:
     """Against MuJoCo's RK4 with a fine step and the same held torques."""
 
-    def jumps(**changes: object) -> tuple[Floats, Floats, Floats]:
-        simulation = replace(reference.simulation, **changes)  # type: ignore[arg-type]
+    def jumps(**changes: Any) -> tuple[Floats, Floats, Floats]:
+        simulation = replace(reference.simulation, **changes)
         found = Evaluator(MAP, replace(reference, simulation=simulation))(designs)
         return found.height_m, found.energy_j, found.electrical_energy_j
 

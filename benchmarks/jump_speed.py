@@ -14,6 +14,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import mujoco
@@ -44,6 +45,13 @@ def main(rounds: int) -> None:
     built = ("us per step, robots built", "of raw, robots built")
     print(f"| batch | {' | '.join((*heads, *built))} |")
     print("|---:" * 8 + "|")
+
+    def from_robots(robots: RobotArrays, designs: Floats) -> object:
+        return evaluate_robots(robots, columns(designs, CONTROL), calibration)
+
+    def naively(robots: RobotArrays, designs: Floats, rows: range) -> object:
+        return [_naive(mjcf(robots, calibration, i), designs[i], robots, i, calibration) for i in rows]
+
     for size in (1, 8, 40, 200):
         designs = np.random.default_rng(size).uniform(LOWER, UPPER, (size, len(LOWER)))
         robots = robot_arrays(designs, actuators, calibration.mass)
@@ -57,14 +65,12 @@ def main(rounds: int) -> None:
         few = range(min(size, 8))
         naive_steps = sum(len(torques[i]) for i in few)
         ways: dict[str, Callable[[], object]] = {
-            "ours": lambda d=designs: one(d),  # type: ignore[misc]
-            "built": lambda r=robots, d=designs: evaluate_robots(r, columns(d, CONTROL), calibration),  # type: ignore[misc]
-            "two": lambda d=designs: two(d),  # type: ignore[misc]
+            "ours": partial(one, designs),
+            "built": partial(from_robots, robots, designs),
+            "two": partial(two, designs),
             "raw": raw.rollout,
             "python": raw.python_loop,
-            "naive": lambda x=documents, d=designs, r=robots, f=few: [  # type: ignore[misc]
-                _naive(mjcf(r, calibration, i), d[i], r, i, calibration) for i in f
-            ],
+            "naive": partial(naively, robots, designs, few),
         }
         wall: dict[str, list[float]] = {name: [] for name in ways}
         cpu: dict[str, list[float]] = {name: [] for name in ways}

@@ -23,9 +23,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.design import DEFAULT_RULES
 from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM
-from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.definition import Study
 from pareto_monoped.study.run import default_workers, run
 from pareto_monoped.study.session import Progress
 
@@ -81,19 +80,7 @@ def main() -> None:
     parser.add_argument("--db", type=Path, help="keep the study here")
     arguments = parser.parse_args()
     evaluations, searched = 200_000 if arguments.full else 10_000, arguments.algorithm
-    study = study_from_dict(
-        {
-            "name": "long",
-            "case": "C",
-            "evaluations": evaluations,
-            "audit": False,
-            "rules": DEFAULT_RULES,
-            "strength": True,
-            "gear_list": True,
-            "algorithm": {"name": searched},
-        },
-        source="benchmark",
-    )
+    study = Study.define(name="long", case="C", evaluations=evaluations, audit=False, algorithm=searched)
     samples: list[Sample] = []
 
     def watch(progress: Progress) -> None:

@@ -18,6 +18,8 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import optuna
@@ -25,13 +27,14 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_NAMES
+from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study import session
-from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM
-from pareto_monoped.study.definition import Bounds, Study, study_from_dict
+from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM, OwnSettings
+from pareto_monoped.study.algorithms import make_algorithm
+from pareto_monoped.study.definition import Bounds, Study
 from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.protocol import Algorithm, Proposal, Scores
 from pareto_monoped.study.reader import read_study
@@ -52,10 +55,9 @@ def medians(times: list[tuple[float, float]]) -> tuple[float, float]:
     return statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times)
 
 
-def bare(simulator: Simulator, designs: NDArray[np.float64], batch: int) -> NDArray[np.float64]:
-    """Heights of the designs, simulated in batches."""
-    parts = [simulator.evaluator(designs[first : first + batch]).height_m for first in range(0, len(designs), batch)]
-    return np.concatenate(parts)
+def bare(simulator: Simulator, designs: NDArray[np.float64], ends: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Heights of the designs, simulated in batches; ``ends`` are the numbers of designs up to the end of each."""
+    return np.concatenate([simulator.evaluator(part).height_m for part in np.split(designs, ends) if len(part)])
 
 
 class Timed:
@@ -82,17 +84,14 @@ class Timed:
 
 def timed_run(study: Study, db: Path, workers: int) -> tuple[float, float, float]:
     """Wall and CPU seconds of a run, and the seconds of its algorithm."""
-    original, made = session.make_algorithm, []
+    made: list[Timed] = []
 
-    def make(study: Study, coordinates: AnyCoordinates | None = None) -> Algorithm:
-        made.append(Timed(original(study, coordinates)))
+    def make(study: Study, coordinates: AnyCoordinates | None = None, own: Any = None) -> Algorithm:
+        made.append(Timed(make_algorithm(study, coordinates, own)))
         return made[-1]
 
-    session.make_algorithm = make
-    try:
+    with patch.object(session, "make_algorithm", make):
         wall, cpu = timed(partial(run, study, db, workers=workers))
-    finally:
-        session.make_algorithm = original
     return wall, cpu, made[0].seconds
 
 
@@ -138,21 +137,10 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=default_workers())
     arguments = parser.parse_args()
     evaluations, searched = 8_000 if arguments.full else 4_000, arguments.algorithm
-    study = study_from_dict(
-        {
-            "name": "b",
-            "case": "C",
-            "evaluations": evaluations,
-            "audit": False,
-            "rules": DEFAULT_RULES,
-            "strength": True,
-            "gear_list": True,
-            "algorithm": {"name": searched},
-        },
-        source="benchmark",
-    )
+    study = Study.define(name="b", case="C", evaluations=evaluations, audit=False, algorithm=searched)
     simulator = load_simulator(study, workers=arguments.workers)
     simulator.probe()
+    assert not isinstance(study.algorithm, OwnSettings)
     population = study.algorithm.population
     assert population is not None
     stored, own, generations, batch = [], [], [], []
@@ -166,9 +154,10 @@ def main() -> None:
             own.append(1000.0 * thought / evaluations)
             trials = read_study(db).trials
             designs = trials[list(NAMES)].to_numpy()
-            generations.append(timed(partial(bare, simulator, designs, population)))
-            batch.append(timed(partial(bare, simulator, designs, len(designs))))
-        assert np.array_equal(bare(simulator, designs[:200], 200), trials["height_m"][:200], equal_nan=True)
+            ends = np.flatnonzero(np.diff(trials["generation"])) + 1
+            generations.append(timed(partial(bare, simulator, designs, ends)))
+            batch.append(timed(partial(bare, simulator, designs, ends[:0])))
+        assert np.array_equal(bare(simulator, designs[:200], ends[:0]), trials["height_m"][:200], equal_nan=True)
         size = (folder / "0.db").stat().st_size
         few = 100
         loop_s, loop_cpu_s = timed(lambda: optuna_loop(study, simulator, folder, few))
@@ -184,7 +173,7 @@ def main() -> None:
     )
     for label, seconds, busy in (
         ("study, stored and resumable", wall, cpu),
-        (f"bare, in generations of {population}", each_wall, each_cpu),
+        (f"bare, in the same {len(ends) + 1} generations", each_wall, each_cpu),
         ("bare, in one batch", one_wall, one_cpu),
     ):
         print(f"{label:<32} {seconds:8.2f} s wall {busy:8.2f} s CPU {evaluations / seconds:8.0f} designs/s")

@@ -11,8 +11,10 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, UPPER, complete
@@ -21,6 +23,8 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.strength.factors import capacities, safeties, strength_factors
 from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
 from pareto_monoped.strength.table import TABLE
+
+Floats = NDArray[np.float64]
 
 ALLOWED = 0.03
 """Of the evaluator's time."""
@@ -33,6 +37,10 @@ def main(rounds: int) -> None:
     start = time.perf_counter()
     capacities(actuators)
     print(f"{len(TABLE)} joints; their capacities take {time.perf_counter() - start:.2f} s once per actuator map")
+
+    def factors_of(designs: Floats, loads: Loads) -> object:
+        return safeties(strength_factors(designs, actuators, loads))
+
     print(f"{'batch':>6} {'us/jump':>9} {'us/factors':>11} {'share':>8}")
     for size in (8, 40, 200):
         designs = complete(np.random.default_rng(size).uniform(LOWER, UPPER, (size, len(LOWER))))
@@ -45,8 +53,8 @@ def main(rounds: int) -> None:
                 raise SystemExit("a design has other factors alone than in its batch: no share is printed")
         pairs = [
             (
-                _busy(lambda d=designs: evaluator(d)),  # type: ignore[misc]
-                _busy(lambda d=designs, x=loads: safeties(strength_factors(d, actuators, x))),  # type: ignore[misc]
+                _busy(partial(evaluator, designs)),
+                _busy(partial(factors_of, designs, loads)),
             )
             for _ in range(rounds)
         ]

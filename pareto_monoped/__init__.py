@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.3.0"
 
 if TYPE_CHECKING:
+    from pareto_monoped.actuator.motor import Motor
     from pareto_monoped.api.jumps import (
         actuator_map,
         build_robot,
@@ -25,24 +26,31 @@ if TYPE_CHECKING:
     )
     from pareto_monoped.api.outputs import export, export_trial, write_report
     from pareto_monoped.api.plots import plot_actuators, plot_front, plot_jump
+    from pareto_monoped.api.robustness import robust
     from pareto_monoped.api.running import resume, run
     from pareto_monoped.api.studies import Picked, StoredStudy, load_study
     from pareto_monoped.design import PAPER_CASES, VARIABLES, Design
     from pareto_monoped.errors import ParetoMonopedError
+    from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.measures import MEASURES
     from pareto_monoped.study.definition import Study
     from pareto_monoped.study.optuna_objective import OptunaObjective
+    from pareto_monoped.study.protocol import Scores, Space
     from pareto_monoped.study.pymoo_problem import MonopedProblem
 
 __all__ = [
     "MEASURES",
     "PAPER_CASES",
     "VARIABLES",
+    "Calibration",
     "Design",
     "MonopedProblem",
+    "Motor",
     "OptunaObjective",
     "ParetoMonopedError",
     "Picked",
+    "Scores",
+    "Space",
     "StoredStudy",
     "Study",
     "__version__",
@@ -57,6 +65,7 @@ __all__ = [
     "plot_front",
     "plot_jump",
     "resume",
+    "robust",
     "run",
     "simulate",
     "trace",
@@ -64,31 +73,37 @@ __all__ = [
 ]
 
 _HOMES = {
+    "actuator.motor": ("Motor",),
     "api.jumps": ("actuator_map", "build_robot", "load_calibration", "load_motor", "simulate", "trace"),
     "api.outputs": ("export", "export_trial", "write_report"),
     "api.plots": ("plot_actuators", "plot_front", "plot_jump"),
+    "api.robustness": ("robust",),
     "api.running": ("resume", "run"),
     "api.studies": ("Picked", "StoredStudy", "load_study"),
     "design": ("PAPER_CASES", "VARIABLES", "Design"),
     "errors": ("ParetoMonopedError",),
+    "jump.calibration": ("Calibration",),
     "measures": ("MEASURES",),
     "study.definition": ("Study",),
     "study.optuna_objective": ("OptunaObjective",),
+    "study.protocol": ("Scores", "Space"),
     "study.pymoo_problem": ("MonopedProblem",),
 }
 """Module -> the public names that it defines."""
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 
-def __getattr__(name: str) -> Any:
-    """A public name, imported now that it is used (PEP 562)."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'pareto_monoped' has no attribute {name!r}")
-    from importlib import import_module
+if not TYPE_CHECKING:  # to a type checker every misspelt name would be there
 
-    value = getattr(import_module(f"pareto_monoped.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
+    def __getattr__(name: str) -> Any:
+        """A public name, imported now that it is used (PEP 562)."""
+        if name not in _HOME:
+            raise AttributeError(f"module 'pareto_monoped' has no attribute {name!r}")
+        from importlib import import_module
+
+        value = getattr(import_module(f"pareto_monoped.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

@@ -6,12 +6,15 @@ others are optional: each has a default that leaves the paper's controller as it
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from functools import wraps
+from typing import Literal, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.errors import DesignError, complaint
+from pareto_monoped.errors import DesignError, complaint, unknown_name
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +93,7 @@ VARIABLES: tuple[Variable, ...] = (
         default=BASE_START_HEIGHT_M,
     ),
 )
+"""The records of all design variables, the paper's seven first."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
 """The names of all variables; the order of the columns of every array of designs."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
@@ -168,9 +172,34 @@ def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
     return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
 
+def _with_known_names(kind: type[_T]) -> type[_T]:
+    """The class, with errors of ours for names that are unknown or missing."""
+    made = kind.__init__
+
+    @wraps(made)
+    def checked(self: _T, **values: float) -> None:
+        for name in values:
+            if name not in NAMES:
+                raise DesignError(unknown_name("design variable", name, NAMES))
+        if missing := [name for name in PAPER_NAMES if name not in values]:
+            raise DesignError(f"design: lacks {', '.join(missing)}; add them")
+        made(self, **values)
+
+    kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
+    return kind
+
+
+@_with_known_names
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults."""
+    """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults.
+
+    Example:
+        >>> from pareto_monoped import PAPER_CASES
+        >>> longer = PAPER_CASES["C"].design.replace({"thigh_length_m": 0.45})
+        >>> longer.thigh_length_m, longer.rest_length_m
+        (0.45, 10.0)
+    """
 
     thigh_length_m: float
     shank_length_m: float
@@ -199,7 +228,10 @@ class Design:
         Raises:
             DesignError: a wrong number of values, or a value that is not finite.
         """
-        array = np.asarray(values, dtype=np.float64)
+        try:
+            array = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            raise DesignError(complaint("design", values, "a number for each variable", "correct it")) from None
         if array.ndim != 1:
             shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
@@ -216,9 +248,12 @@ class Design:
         Raises:
             DesignError: an unknown name or a value that is not finite.
         """
+        if not isinstance(changes, Mapping):
+            allowed = "a mapping of variables to numbers, such as {'knee_ratio': 6.0}"
+            raise DesignError(complaint("changes of a design", changes, allowed, "give one"))
         for name in changes:
             if name not in NAMES:
-                raise DesignError(complaint("design variable", name, f"one of {', '.join(NAMES)}", "correct the name"))
+                raise DesignError(unknown_name("design variable", name, NAMES))
         return Design.from_array([changes.get(name, getattr(self, name)) for name in NAMES])
 
 
@@ -251,6 +286,7 @@ PAPER_CASES: Mapping[str, PaperCase] = {
     "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + PAPER_CONTROL),
     "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + PAPER_CONTROL),
 }
+"""The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``."""
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""
 RuleSet = Literal["paper", "iso6336"]

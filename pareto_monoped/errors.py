@@ -1,4 +1,6 @@
-"""Everything that this package raises on purpose, as a tree of exceptions.
+"""Everything that this package raises on purpose.
+
+The exceptions are a tree::
 
     ParetoMonopedError          everything this package raises on purpose; exit code 1
     |-- InputError              what the user gave cannot be used; exit code 2
@@ -12,6 +14,7 @@
     |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
     |-- DiskError               a disk, or another limit of the system, that is full or fails
     |-- SimulationError         a simulation that should have worked failed
+    |-- WorkerError             no worker process or cluster that can do the work
     `-- CheckError              an export failed its own checks (overlap, open mesh, ...)
 
 Every message is one line that gives the quantity, its value, what is allowed, and the cure, in one of two forms::
@@ -20,9 +23,22 @@ Every message is one line that gives the quantity, its value, what is allowed, a
     motor file 'my.toml': no such file; check the path
 """
 
+import difflib
+import re
+from collections.abc import Iterable
+
 
 class ParetoMonopedError(Exception):
-    """Base of all errors raised on purpose; the command line prints the message and exits with ``exit_code``."""
+    """Base of all errors raised on purpose; the command line prints the message and exits with ``exit_code``.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> try:
+        ...     pm.load_motor("VT8021")
+        ... except pm.ParetoMonopedError as error:
+        ...     print(str(error)[:40])
+        motor = 'VT8021': must be one of VT8020,
+    """
 
     exit_code = 1
 
@@ -73,10 +89,44 @@ class SimulationError(ParetoMonopedError):
     """A simulation that should have succeeded did not."""
 
 
+class WorkerError(ParetoMonopedError):
+    """Nobody is left to do the work: no scheduler, no worker, or none that computes the same numbers."""
+
+
 class CheckError(ParetoMonopedError):
     """An export failed its own checks; the message names the parts and the measured values."""
 
 
+_SHOWN = 400
+"""Most characters that a message shows of a value, such as a list; our own choice, more than any path has."""
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
+"""Where an object is in memory, as Python's own ``repr`` ends."""
+
+
 def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:
     """The message of an error in the first of the two forms above."""
-    return f"{quantity} = {value!r}: must be {allowed}; {cure}"
+    return f"{quantity} = {shown(value)}: must be {allowed}; {cure}"
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: without an address in memory, and a table or a large object by its kind alone."""
+    text = _ADDRESS.sub("", repr(value))
+    large = len(text) > _SHOWN and not isinstance(value, str | list | tuple | dict)
+    if large or "\n" in text:
+        return type(value).__name__
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+
+
+def unknown_name(quantity: str, value: object, known: Iterable[str], other: str = "") -> str:
+    """The complaint about a name that is none of those known; its cure is the most similar one if there is one.
+
+    Args:
+        quantity: what has the name.
+        value: the name given.
+        known: the names that there are.
+        other: what may be given besides a name, such as ", or a TOML file".
+    """
+    names = {name.casefold(): name for name in known}
+    near = difflib.get_close_matches(str(value).casefold(), names, n=1)
+    cure = f"did you mean {names[near[0]]!r}?" if near else "correct the name"
+    return complaint(quantity, value, f"one of {', '.join(names.values())}{other}", cure)

@@ -4,6 +4,7 @@ This is the only table of measures. ``jump.evaluate.Evaluations`` and ``jump.aud
 the database has one column per measure, and the report takes its labels from here.
 """
 
+import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -50,7 +51,7 @@ class Measure:
 
     def text(self, value: float) -> str:
         """``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
-        return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}"
+        return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}".removesuffix(" 1")
 
 
 def _measure(
@@ -614,6 +615,13 @@ ROBUST_NAMES: tuple[str, ...] = tuple(measure.name for measure in ROBUST_MEASURE
 GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)
 """What a study can ask for."""
 
+OWN = "own_"
+"""What the name of a measure that is a function of the user's own begins with."""
+_OWN = re.compile(rf"{OWN}[A-Za-z_][A-Za-z0-9_]{{0,99}}")
+OWN_REFERENCE = 1000.0
+"""Corner of the hypervolume for an own objective whose study names none. Our own choice: nothing is known of the
+function, and values beyond the corner add no volume, so it is far off."""
+
 _BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES, *ROBUST_MEASURES)}
 
 
@@ -623,7 +631,34 @@ def measure(name: str) -> Measure:
     Raises:
         KeyError: there is none.
     """
-    return _BY_NAME[name]
+    return _own_measure(name) if is_own(name) else _BY_NAME[name]
+
+
+def is_own(name: object) -> bool:
+    """Whether a measure is a function of the user's own, such as "own_landing_speed" for ``landing_speed``."""
+    return isinstance(name, str) and _OWN.fullmatch(name) is not None
+
+
+def is_goal(name: object) -> bool:
+    """Whether a study can ask for a measure of that name."""
+    return isinstance(name, str) and (name in GOAL_NAMES or is_own(name))
+
+
+def _own_measure(name: str) -> Measure:
+    """The measure that an own function is. Less is better; its unit is known only to the function."""
+    function = name.removeprefix(OWN)
+    words = function.replace("_", " ").strip()
+    return Measure(
+        name=name,
+        unit="1",
+        meaning=f"own function {function} of the measures",
+        direction="minimise",
+        label=words,
+        shown_unit="1",
+        decimals=4,
+        reference=OWN_REFERENCE,
+        short=words,
+    )
 
 
 def is_robust(name: str) -> bool:

@@ -1,4 +1,7 @@
+import copy
 import csv
+import dataclasses
+import inspect
 import io
 
 import numpy as np
@@ -107,6 +110,19 @@ def test_replace_changes_only_what_is_named():
 def test_bad_changes_are_refused(changes):
     with pytest.raises(DesignError, match=next(iter(changes))):
         PAPER_CASES["C"].design.replace(changes)
+
+
+def test_unknown_and_missing_names_of_a_new_design_are_told():
+    values = PAPER_CASES["C"].design.as_dict()
+    assert Design(**values) == PAPER_CASES["C"].design
+    with pytest.raises(DesignError, match=r"'thigh_lenght_m': .* did you mean 'thigh_length_m'\?"):
+        Design(**values, thigh_lenght_m=0.4)
+    del values["hip_ratio"]
+    with pytest.raises(DesignError, match=r"^design: lacks hip_ratio; add them$"):
+        Design(**values)
+    design = PAPER_CASES["C"].design
+    assert copy.copy(design) == dataclasses.replace(design) == design
+    assert list(inspect.signature(Design).parameters) == list(NAMES)
 
 
 def test_wrong_number_of_values_is_refused():

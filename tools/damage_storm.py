@@ -25,6 +25,7 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from pareto_monoped.cli import main as command_line
@@ -84,7 +85,7 @@ def main() -> int:
             copy = folder / "copy" / whole.db.name
             copy.parent.mkdir()
             copy.write_bytes(damaged)
-            said = _in_a_fork(lambda copy=copy: _findings(copy, whole))  # type: ignore[misc]
+            said = _in_a_fork(partial(_findings, copy, whole))
             outcome, megabytes, lines = said[0], float(said[1]), said[2:]
             results[outcome] += 1
             most_mb = max(most_mb, megabytes)

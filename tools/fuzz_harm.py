@@ -6,6 +6,7 @@ import random
 import sqlite3
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 STUDIES = ("s.db", "old.db", "own.db")
 """Studies in every folder: of today's format, of version 0.1.0, and of that with files of the user's own."""
@@ -135,11 +136,11 @@ def _change_setting(connection: sqlite3.Connection, dice: random.Random) -> None
     places = list(_places(value))
     if places:
         holder, place = dice.choice(places)
-        holder[place] = dice.choice([v for v in VALUES if not isinstance(v, bytes)])  # type: ignore[index]
+        holder[place] = dice.choice([v for v in VALUES if not isinstance(v, bytes)])
     connection.execute("UPDATE monoped_meta SET value = ? WHERE key = ?", (json.dumps(value), key))
 
 
-def _places(value: object) -> Iterator[tuple[object, object]]:
+def _places(value: object) -> Iterator[tuple[Any, Any]]:
     """Every container within a JSON value with each of its keys."""
     inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for place, each in inner:

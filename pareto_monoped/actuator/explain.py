@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.motor_facts import CONTINUOUS_BASIS, how_long, motor_values_shown, peak_basis
@@ -14,7 +15,6 @@ from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
 from pareto_monoped.actuator.service.losses import BushLoad
 from pareto_monoped.actuator.service.sheet import ServiceSheet
-from pareto_monoped.actuator.settings import ConstraintName
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
 

@@ -204,7 +204,8 @@ def _shifts(gears: GearSet) -> _Shifts:
 def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:
     """Sum of shifts over sum of teeth at a working pressure angle."""
     wider = involute(working_angle_rad) - involute(PRESSURE_ANGLE_RAD)
-    return wider / (2.0 * np.tan(PRESSURE_ANGLE_RAD))
+    ratio: Numbers = wider / (2.0 * np.tan(PRESSURE_ANGLE_RAD))
+    return ratio
 
 
 def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
@@ -219,7 +220,8 @@ def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
 def _tip_reach_mm(gear: ExternalGear | InternalGear) -> Numbers:
     """Length of the tangent to the base circle that ends on the tip circle."""
     # The tips of a small ring may lie inside its base circle; the rules refuse such a ring.
-    return np.sqrt(np.maximum(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm), 0.0))
+    length_mm: Numbers = np.sqrt(np.maximum(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm), 0.0))
+    return length_mm
 
 
 def efficiency(gears: GearSet, friction: float) -> Numbers:
@@ -241,7 +243,8 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
     def share(gear: ExternalGear | InternalGear, working_angle_rad: Numbers) -> Numbers:
         rolling = gear.pitch_radius_mm * (np.cos(PRESSURE_ANGLE_RAD) / np.cos(working_angle_rad))
         beyond = (_tip_reach_mm(gear) - rolling * np.sin(working_angle_rad)) / pitch
-        return -beyond if isinstance(gear, InternalGear) else beyond
+        signed: Numbers = -beyond if isinstance(gear, InternalGear) else beyond
+        return signed
 
     def sliding(part: Numbers) -> Numbers:
         return 0.5 * (part * np.abs(part) + (1.0 - part) * np.abs(1.0 - part))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg
 from pareto_monoped.actuator.candidates import interval_tenths
+from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family, Layout, layout
@@ -28,7 +29,7 @@ from pareto_monoped.actuator.rating.width import (
 )
 from pareto_monoped.actuator.ratiomap import RATIO_HIGH
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, active_rules, violations
-from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.shapes import Numbers
 
 _FIRST = 4
@@ -63,7 +64,8 @@ class Judged:
         A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
         """
         weak, count = np.isin(self.names, list(LOAD_RULES)), self.broken.sum(axis=0)
-        return np.where(self.broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
+        missing: NDArray[np.float64] = np.where(self.broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
+        return missing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -146,6 +146,14 @@ class Motor:
         rotor_mass_share: of the rotor in the motor's active mass; default: the estimate of
             ``estimated_rotor_mass_share``.
         thermal: measured thermal properties, or None.
+
+    Example:
+        >>> from dataclasses import replace
+        >>> from pareto_monoped import load_motor
+        >>> known = load_motor("U8")
+        >>> cooler = replace(known, name="U8 cooler", winding_resistance_ohm=0.8 * known.winding_resistance_ohm)
+        >>> cooler.name, cooler.kv_rpm_per_v == known.kv_rpm_per_v
+        ('U8 cooler', True)
     """
 
     __pydantic_config__ = _STRICT
@@ -221,7 +229,7 @@ class Motor:
 
     @property
     def terminal_resistance_ohm(self) -> float:
-        """Line to line: its product with the square of torque over torque constant is the heat of all phases."""
+        """Line to line; its product with the square of torque over torque constant is the heat of all phases."""
         return line_to_line_ohm(self.winding_resistance_ohm, self.winding_resistance_kind)
 
     def current_a(self, torque_n_m: float) -> float:
@@ -239,7 +247,7 @@ class Motor:
 
     @property
     def continuous_torque_time_s(self) -> float | None:
-        """The same for the published continuous torque: many makers mean a motor in the wind of its propeller."""
+        """The same for the published continuous torque; many makers mean a motor in the wind of its propeller."""
         return self._time_to_limit_s(self.continuous_torque_n_m)
 
     @property
@@ -273,7 +281,11 @@ class Motor:
         of gyration smaller, so counting its mass into the ring errs to the high side by a few percent. For the U8 the
         estimate is 6.2e-5 kg m2; 6.07e-5 and 6.3e-5 are published for motors of its class, see ``data/motors.toml``.
         """
-        active = self.frameless.mass_kg if self.frameless else _ACTIVE_SHARE * self.framed.mass_kg  # type: ignore[union-attr]
+        if self.frameless is not None:
+            active = self.frameless.mass_kg
+        else:
+            assert self.framed is not None  # one of both is there
+            active = _ACTIVE_SHARE * self.framed.mass_kg
         _, outer = self.stator_diameters_mm
         r_in, r_out = 0.5e-3 * outer + 1e-3 * AIR_GAP_MM, 0.5e-3 * self.outer_diameter_mm
         return self.rotor_mass_share * active * 0.5 * (r_in**2 + r_out**2)

@@ -19,7 +19,7 @@ from pareto_monoped.actuator.motor import (
 )
 from pareto_monoped.actuator.motor_checks import contradiction
 from pareto_monoped.config import checked, read_shipped, read_toml
-from pareto_monoped.errors import InputError, MotorError
+from pareto_monoped.errors import InputError, MotorError, unknown_name
 from pareto_monoped.materials import MATERIALS
 
 __all__ = [
@@ -78,9 +78,7 @@ def _user_values(name_or_path: str) -> dict[str, Any]:
     """The fields of the motor in a user's file."""
     path = Path(name_or_path)
     if path.suffix != ".toml" and not path.is_file():
-        raise MotorError(
-            f"motor = {name_or_path!r}: must be one of {', '.join(motor_names())}, or a TOML file; correct the name"
-        )
+        raise MotorError(unknown_name("motor", name_or_path, motor_names(), ", or a TOML file"))
     values = read_toml(path, what="motor file", error=MotorError)
     known = {field.name for field in fields(Motor)}
     if len(values) == 1 and not known & set(values):

@@ -106,7 +106,8 @@ def dynamic_rating_n(count: int, needle_mm: float, length_mm: Numbers, pitch_mm:
     rings = (1.04 * ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)) ** 4.5
     shape = gamma ** (2.0 / 9.0) * (1.0 - gamma) ** (29.0 / 27.0) / (1.0 + gamma) ** 0.25
     factor = shape * (1.0 + rings) ** (-2.0 / 9.0)
-    return _DYNAMIC * factor * length_mm ** (7.0 / 9.0) * count**0.75 * needle_mm ** (29.0 / 27.0)
+    rating_n: Numbers = _DYNAMIC * factor * length_mm ** (7.0 / 9.0) * count**0.75 * needle_mm ** (29.0 / 27.0)
+    return rating_n
 
 
 def static_rating_n(count: int, needle_mm: float, length_mm: Numbers, pitch_mm: float) -> Numbers:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from importlib import resources
 
 from pareto_monoped.actuator.needles import NeedleRows
-from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.errors import InputError, complaint, unknown_name
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,8 +76,7 @@ def roller_bearing(designation: str) -> RollerBearing:
     """
     found = roller_bearings().get(designation)
     if found is None:
-        known = ", ".join(roller_bearings())
-        raise InputError(complaint("needle bearing", repr(designation), f"one of {known}", "correct the designation"))
+        raise InputError(unknown_name("needle bearing", designation, roller_bearings()))
     return found
 
 

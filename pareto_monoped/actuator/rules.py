@@ -7,6 +7,7 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import END_BEARING_BORE_MM, Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motors import Motor
@@ -14,7 +15,7 @@ from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
 from pareto_monoped.actuator.service.output import output_margin
 from pareto_monoped.actuator.service.planets import planet_margin
-from pareto_monoped.actuator.settings import ActuatorSettings, ConstraintName
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import RULE_SETS, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
 from pareto_monoped.geometry.shapes import Numbers
@@ -86,7 +87,10 @@ def _teeth_min(sets: CandidateSets) -> Numbers:
     """Teeth beyond those that undercutting asks for: a profile shift of x makes up for 2 x / sin(alpha)^2 of them."""
     gears, per_shift = sets.gears, 2.0 / np.square(np.sin(PRESSURE_ANGLE_RAD))
     sun = gears.sun_teeth + per_shift * gears.sun_shift
-    return np.minimum(sun, gears.planet_teeth + per_shift * gears.planet_shift) - sets.settings.teeth_min
+    spare_teeth: Numbers = (
+        np.minimum(sun, gears.planet_teeth + per_shift * gears.planet_shift) - sets.settings.teeth_min
+    )
+    return spare_teeth
 
 
 def _tip_thickness(sets: CandidateSets) -> Numbers:
@@ -142,7 +146,8 @@ def _ring_rim(sets: CandidateSets) -> Numbers:
 def _ring_interference(sets: CandidateSets) -> Numbers:
     ring = sets.gears.ring()
     reach = sets.gears.carrier_radius_mm * np.sin(sets.gears.ring_working_angle_rad)
-    return ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
+    spare_mm: Numbers = ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
+    return spare_mm
 
 
 def _contact_ratio(sets: CandidateSets) -> Numbers:

@@ -2,16 +2,17 @@
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.actuator.carrier_data import NeedleData, PlanetBearing, SecondCarrier, WebData
+from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
 from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
 from pareto_monoped.actuator.service.data import ServiceData, default_service
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
-from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.errors import InputError, unknown_name
 from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES, RATED_SERIES
@@ -19,32 +20,6 @@ from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
-
-ConstraintName = Literal[
-    "meshing",
-    "no_interference",
-    "teeth_min",
-    "tip_thickness",
-    "gearbox_diameter",
-    "ring_root",
-    "root_fillet",
-    "sun_rim",
-    "planet_rim",
-    "ring_rim",
-    "ring_interference",
-    "contact_ratio",
-    "within_stator",
-    "bearing",
-    "bearing_room",
-    "face_width",
-    "flank_strength",
-    "root_strength",
-    "overload_strength",
-    "output_bearing",
-    "planet_bearing",
-]
-"""Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings."""
-CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)
 
 ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
 ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
@@ -247,12 +222,10 @@ class ActuatorSettings:
 
     def __post_init__(self) -> None:
         if self.rules not in RULE_SETS:
-            raise InputError(complaint("rules", self.rules, f"one of {', '.join(RULE_SETS)}", "correct the name"))
+            raise InputError(unknown_name("rules", self.rules, RULE_SETS))
         for name in sorted(self.constraints_off):
             if name not in CONSTRAINT_NAMES:
-                raise InputError(
-                    f"constraints_off = {name!r}: must be one of {', '.join(CONSTRAINT_NAMES)}; correct the name"
-                )
+                raise InputError(unknown_name("constraints_off", name, CONSTRAINT_NAMES))
         if not self.modules_mm or min(self.modules_mm) <= 0.0:
             raise InputError(f"modules_mm = {self.modules_mm!r}: must be one or more positive numbers; correct it")
         if self.shifts is not None and not self.shifts:

@@ -2,16 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.joint_maps import JointMaps
-from pareto_monoped.actuator.motors import Motor, motor_source
+from pareto_monoped.actuator.motors import Motor, motor_source, motor_values, stored_motor
 from pareto_monoped.actuator.motors import load_motor as motor_of
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.api.own import own_calibration
 from pareto_monoped.design import (
     CONTROL,
     DEFAULT_RULES,
@@ -24,13 +26,14 @@ from pareto_monoped.design import (
     columns,
     complete,
 )
-from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
+from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint, unknown_name
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
 from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
 from pareto_monoped.leg.motor_fit import require_leg
 from pareto_monoped.robot.build import Robot
 from pareto_monoped.robot.build import build_robot as robot_of
+from pareto_monoped.study.counts import count_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -85,9 +88,29 @@ def actuator_map(motor: AnyMotor = PAPER_MOTOR, *, rules: RuleSet = DEFAULT_RULE
         >>> actuator_map("VT8020").lookup(6.0).ratio
         6.0
     """
+    if not isinstance(rules, str) or rules not in get_args(RuleSet):
+        raise MotorError(complaint("rules", rules, " or ".join(map(repr, get_args(RuleSet))), "correct it"))
     if isinstance(motor, Motor):
-        return map_of(motor, rules)
+        return map_of(_own_motor(motor), rules)
     return map_of(load_motor(motor), rules, source=motor_source(fspath(motor)))
+
+
+def _own_motor(motor: Motor) -> Motor:
+    """A motor that a script made, checked as one from a file.
+
+    Raises:
+        MotorError: a value that no motor can have.
+    """
+    if type(motor) is not Motor:
+        raise MotorError(
+            f"motor {motor.name!r}: is a {type(motor).__name__}, must be a Motor itself; change the values of one: "
+            "dataclasses.replace(load_motor('VT8020'), ...)"
+        )
+    try:
+        values = motor_values(motor)
+    except (AttributeError, TypeError, ValueError) as error:
+        raise MotorError(f"motor {motor.name!r}: {error}; correct its values") from None
+    return stored_motor(values, source=f"motor {motor.name!r}")
 
 
 def joint_maps_of(
@@ -130,9 +153,8 @@ def build_robot(
         >>> round(build_robot(PAPER_CASES["C"].design).mass_kg, 1)
         4.8
     """
-    if not isinstance(design, Design):
-        raise DesignError(complaint("design", design, "a Design", "give for example PAPER_CASES['C'].design"))
-    return robot_of(design, joint_maps_of(motor, hip_motor, knee_motor, rules))
+    checked = Design.from_array(as_values(require_design(design))[0])
+    return robot_of(checked, joint_maps_of(motor, hip_motor, knee_motor, rules))
 
 
 def simulate(
@@ -159,8 +181,8 @@ def simulate(
         workers: number of threads, all cores if None. It does not change the results.
 
     Returns:
-        One row per design, in order: the variables, ``status`` and ``reason``, and every measure of ``MEASURES`` in the
-        unit of its name, NaN where the jump failed.
+        One row per design, in the order given, with the variables, ``status``, ``reason``, and every measure of
+        ``MEASURES`` in the unit of its name, NaN where the jump failed.
 
     Raises:
         DesignError: a missing or unknown variable, or an array of another shape. A design that cannot be built or does
@@ -185,8 +207,8 @@ def jumps_of(designs: Any, maps: JointMaps, calibration: Calibration, workers: i
     from pareto_monoped.jump.evaluate import Evaluator
     from pareto_monoped.study.run import default_workers
 
-    values = as_values(designs)
-    result = Evaluator(maps, calibration, workers=workers or default_workers())(values)
+    values, threads = as_values(designs), count_of("workers", workers)
+    result = Evaluator(maps, calibration, workers=threads or default_workers())(values)
     return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | result.as_columns())
 
 
@@ -248,14 +270,17 @@ def as_values(designs: Any) -> NDArray[np.float64]:
         DesignError: a missing or unknown variable, a value that is no number, or an array of another shape.
     """
     if isinstance(designs, Design):
-        return designs.as_array()[None]
+        return _of_designs([designs])
+    one = designs[0] if isinstance(designs, list | tuple) and designs else designs
+    if isinstance(getattr(one, "design", None), Design):
+        raise DesignError(f"designs: are of class {type(one).__name__}, must be Designs; {_cure_of_holder(one)}")
     if isinstance(designs, Mapping) or hasattr(designs, "columns"):
         return _of_columns(designs)
     if isinstance(designs, Sequence) and designs and all(isinstance(one, Design) for one in designs):
-        return np.array([one.as_array() for one in designs])
+        return _of_designs(designs)
     try:
         values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         allowed = "a Design, a list of them, a mapping or data frame of variables, or an array of numbers"
         raise DesignError(complaint("designs", designs, allowed, "give one of these")) from None
     if values.ndim != 2:
@@ -263,27 +288,60 @@ def as_values(designs: Any) -> NDArray[np.float64]:
     return complete(values)
 
 
+def require_design(given: Any) -> Design:
+    """One design.
+
+    Raises:
+        DesignError: something else.
+    """
+    if isinstance(given, Design):
+        return given
+    if isinstance(getattr(given, "design", None), Design):
+        raise DesignError(f"design: is of class {type(given).__name__}, must be a Design; {_cure_of_holder(given)}")
+    raise DesignError(complaint("design", given, "a Design", "give for example PAPER_CASES['C'].design"))
+
+
+def _cure_of_holder(given: Any) -> str:
+    """What to do with an object that has a design: one that was picked from a study has the study's motors, too."""
+    if hasattr(given, "trial"):
+        return "use its .design and the motors of its study, or what knows them: StoredStudy.simulate, export_trial"
+    return "use its .design"
+
+
+def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
+    try:
+        return np.array([one.as_array() for one in designs])
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError("designs: must have a number for each variable; correct them") from None
+
+
 def _of_columns(table: "Mapping[str, Any] | DataFrame") -> NDArray[np.float64]:
     """Designs from one column per variable; a data frame may have other columns, a mapping of one design may not."""
     if missing := [name for name in PAPER_NAMES if name not in table]:
         raise DesignError(f"designs: lack {', '.join(missing)}; add them")
     if isinstance(table, Mapping) and (unknown := [name for name in table if name not in NAMES]):
-        raise DesignError(complaint("design variable", unknown[0], f"one of {', '.join(NAMES)}", "correct the name"))
+        raise DesignError(unknown_name("design variable", unknown[0], NAMES))
     given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
     try:
         return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given)))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise DesignError("designs: must have numbers, as many of each variable; correct them") from None
 
 
 def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Calibration, RuleSet]:
     """The calibration, and the rules of gearboxes that go with it."""
-    model = calibration if isinstance(calibration, Calibration) else load_calibration(calibration)
-    return model, rules_for(model.name if isinstance(calibration, Calibration) else fspath(calibration), rules)
+    if isinstance(calibration, Calibration):
+        model = own_calibration(calibration)
+        return model, rules_for(model.name, rules)
+    return load_calibration(calibration), rules_for(fspath(calibration), rules)
 
 
 def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationError]) -> str:
     """A name or path as text."""
-    if isinstance(given, str | PathLike):
-        return fspath(given)
+    if isinstance(given, str | PathLike) and isinstance(text := fspath(given), str):
+        try:
+            Path(text).is_file()
+        except (OSError, ValueError) as problem:
+            raise error(f"{what}: cannot be the name of a file ({problem.args[-1]}); check the path") from None
+        return text
     raise error(complaint(what, given, "a name or the path of a TOML file", "give one of these"))

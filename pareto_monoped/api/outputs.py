@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
-from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
+from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of, require_design
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, load_study
-from pareto_monoped.cad.installed import require_cad
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
-from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.extras import require_extra
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 
 
@@ -48,14 +47,19 @@ def export(
     Raises:
         InputError: an unknown format, an unusable motor or calibration, or a folder that holds something else.
         CheckError: the design cannot be built as it stands; the message says what does not hold.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> record = pm.export(pm.PAPER_CASES["C"].design, "case_c", formats=["step"])  # doctest: +SKIP
+        >>> print(f"{record['mass_kg']:.2f} kg")  # doctest: +SKIP
+        4.77 kg
     """
-    require_cad()
+    require_extra("cad", "CAD")
     from pareto_monoped.cad.batch import run
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.cad.write.formats import chosen_formats
 
-    if not isinstance(design, Design):
-        raise InputError(complaint("design", design, "a Design", "give for example PAPER_CASES['C'].design"))
+    require_design(design)
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
     job = Job(
@@ -64,7 +68,7 @@ def export(
         knee_motor=maps.knee.motor if maps.knee is not maps.hip else None,
         calibration=model,
         rules=chosen,
-        folder=as_path(folder),
+        folder=as_path(folder, "folder"),
         formats=chosen_formats(formats),
         force=force,
         source={"design": design.as_dict()},
@@ -99,36 +103,51 @@ def export_trial(
         SelectionError: no such trial.
         InputError: see ``export``.
         CheckError: see ``export``.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> knee = pm.load_study("light.db").pick("knee")
+        >>> record = pm.export_trial("light.db", knee, "knee", formats=["mjcf", "urdf"])  # doctest: +SKIP
     """
-    require_cad()
+    require_extra("cad", "CAD")
     from pareto_monoped.cad.batch import run
     from pareto_monoped.cad.jobs import trial_job
 
     stored = study if isinstance(study, StoredStudy) else load_study(study)
     number = trial.trial if isinstance(trial, Picked) else trial
     stored.design(number)  # refuses a number that the study does not have
-    return run(trial_job(stored.data, number, folder=as_path(folder), formats=formats, force=force, strength=strength))
+    return run(
+        trial_job(
+            stored.data, number, folder=as_path(folder, "folder"), formats=formats, force=force, strength=strength
+        )
+    )
 
 
-def write_report(studies: StrPath | Sequence[StrPath], out: StrPath, *, force: bool = False) -> None:
+def write_report(
+    studies: StoredStudy | StrPath | Sequence[StoredStudy | StrPath], out: StrPath, *, force: bool = False
+) -> None:
     """Write the report of one study or several: one HTML page that works without a network.
 
     Args:
-        studies: one database, or several that are compared.
+        studies: one study or database, or several that are compared.
         out: the HTML file.
         force: replace a file that is not a report.
 
     Raises:
         DatabaseError: a database that is missing, damaged, or no study.
+        InputError: what is given is neither a study nor a path.
         OutputError: the file cannot be written, or must not be replaced.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> pm.write_report("light.db", "light.html")
     """
     from pareto_monoped.files import refuse_database, write_text
     from pareto_monoped.report.page import page, payload_of
 
-    dbs = (
-        [as_path(studies)]
-        if isinstance(studies, str) or not isinstance(studies, Sequence)
-        else list(map(as_path, studies))
-    )
-    refuse_database(as_path(out))
-    write_text(as_path(out), page(payload_of(dbs)), force=force)
+    several = [studies] if isinstance(studies, str) or not isinstance(studies, Sequence) else studies
+    allowed = "a study as load_study returns it, the path of its database, or a list of these"
+    dbs = [one.path if isinstance(one, StoredStudy) else as_path(one, "studies", allowed=allowed) for one in several]
+    target = as_path(out, "out")
+    refuse_database(target)
+    write_text(target, page(payload_of(dbs)), force=force)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.api.studies import StoredStudy
-from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.measures import MEASURE_NAMES, measure
+from pareto_monoped.errors import InputError, complaint, unknown_name
+from pareto_monoped.measures import MEASURE_NAMES, is_goal, measure
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -66,15 +66,24 @@ def plot_front(
 
     Raises:
         InputError: no study, an unknown measure, or an unknown backend.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> figure = pm.plot_front(pm.load_study("light.db"), backend="matplotlib")
+        >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+        ('energy (J)', 'height (m)')
     """
-    several = [studies] if isinstance(studies, StoredStudy) else list(studies)
+    several = [studies] if isinstance(studies, StoredStudy) else studies
+    if not isinstance(several, Sequence) or not all(isinstance(one, StoredStudy) for one in several):
+        allowed = "a study as load_study returns it, or a list of these"
+        raise InputError(complaint("studies", studies, allowed, "give one"))
     if not several:
         raise InputError(complaint("number of studies", 0, "at least 1", "give one"))
     names = several[0].study.objectives.names
-    across, up = x or names[1], y or names[0]
+    across, up = names[1] if x is None else x, names[0] if y is None else y
     for name in (across, up):
-        if name not in MEASURE_NAMES:
-            raise InputError(complaint("axis", name, f"one of {', '.join(MEASURE_NAMES)}", "correct the name"))
+        if not is_goal(name) or not all(name in one.trials for one in several):
+            raise InputError(unknown_name("axis", name, MEASURE_NAMES))
     series: list[_Series] = []
     for k, one in enumerate(several):
         colour = _COLOURS[k % len(_COLOURS)]
@@ -104,6 +113,9 @@ def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
         >>> len(figure.data)
         2
     """
+    for given in maps:
+        if not isinstance(given, ActuatorMap):
+            raise InputError(complaint("map", given, "a map as actuator_map returns it", "give one"))
     if not maps:
         raise InputError(complaint("number of maps", 0, "at least 1", "give one"))
     series = []
@@ -143,6 +155,8 @@ def plot_jump(trace: "DataFrame", *, backend: Backend = "plotly") -> Any:
         "angle (rad)": (("hip", "hip_rad"), ("knee", "knee_rad")),
         "motor torque (N m)": (("hip", "hip_motor_torque_n_m"), ("knee", "knee_motor_torque_n_m")),
     }
+    if not hasattr(trace, "columns"):
+        raise InputError(complaint("trace", trace, "what pareto_monoped.trace returns", "give it"))
     needed = ["time_s", *(column for pair in rows.values() for _, column in pair)]
     if missing := [column for column in needed if column not in trace]:
         raise InputError(f"trace: lacks {', '.join(missing)}; give what pareto_monoped.trace returns")
@@ -168,6 +182,8 @@ def _title(name: str) -> str:
 
 
 def _drawn(panels: Sequence[_Panel], backend: Backend) -> Any:
+    if not isinstance(backend, str):
+        raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
     if backend == "plotly":
         return _by_plotly(panels)
     if backend == "matplotlib":

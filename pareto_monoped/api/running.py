@@ -1,15 +1,36 @@
 """Run, resume and make robust: studies that grow, from scripts."""
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.api.jumps import StrPath
+from pareto_monoped.api.given import executor_of, seed_of
+from pareto_monoped.api.jumps import AnyCalibration, StrPath
+from pareto_monoped.api.own import (
+    Goal,
+    Limits,
+    called_after,
+    limits_of,
+    objective_names,
+    own_calibration,
+    stored_calibration_name,
+)
 from pareto_monoped.api.studies import StoredStudy, as_path, load_study
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.study.definition import Study
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.calibration_defaults import rules_for
+from pareto_monoped.study.counts import count_of
+from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.own import Own
+from pareto_monoped.study.own_algorithm import own_algorithm_name
+from pareto_monoped.study.own_functions import OwnFunction, functions_of, listed
+from pareto_monoped.study.weighted_budget import within_budget
 
 if TYPE_CHECKING:
+    from pareto_monoped.study.run import RunSummary
     from pareto_monoped.study.session import Progress
 
 
@@ -17,51 +38,96 @@ def run(
     study: Study | StrPath,
     db: StrPath | None = None,
     *,
-    algorithm: str | Mapping[str, Any] | None = None,
-    objectives: Sequence[str] | None = None,
-    constraints: Mapping[str, Any] | None = None,
+    algorithm: Any = None,
+    objectives: Sequence[Goal] | None = None,
+    constraints: Limits | None = None,
+    calibration: AnyCalibration | None = None,
     evaluations: int | None = None,
     seed: int | None = None,
     workers: int | None = None,
+    executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
 ) -> StoredStudy:
     """Run a study into a database, or continue it where it stopped; the command ``run`` makes the same trials.
 
     Every generation is stored before ``callback`` hears of it. After a crash or an interrupt the same call goes on.
 
+    An own function takes a table of jumps, name of a variable or measure -> array of shape (n,), and returns one number
+    for each, from that jump alone. It becomes the measure ``own_NAME``, of which less is better. The database stores
+    name and values, never the function: commands read, pick and report such a study, and only Python continues it.
+
     Args:
         study: a study, or the path of a study file.
         db: the database, made if missing; by default a file beside the study file, with the suffix ``.db``.
-        algorithm: name of a search algorithm, or its name and settings, instead of the study's.
-        objectives: two or three measures, instead of the study's.
-        constraints: limits of measures, such as ``{"mass_kg": {"max": 4.0}}``, besides the study's or instead of those
-            of the same measures.
+        algorithm: name of a search algorithm, or its name and settings, instead of the study's. Or one's own: an object
+            with ``ask()``, which returns designs of shape (n, d) or None at its end, and ``tell(scores)``, see
+            ``Scores``; or a class or function of the ``Space`` and the seed that makes one.
+        objectives: two or three measures or own functions, instead of the study's.
+        constraints: limits of measures or own functions, such as ``{"mass_kg": {"max": 4.0}}``, an own function that
+            holds at <= 0, or a list of these; besides the study's, or instead of those on the same side of the same
+            measure.
+        calibration: the jump model instead of the study's: a calibration, the name of a shipped one, or a TOML file.
+            ``paper`` brings the gearbox rules ``paper``; else rules and strength stay the study's.
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
         workers: threads that simulate, all cores if None. It does not change the trials.
+        executor: does the jumps in their place, such as ``concurrent.futures.ProcessPoolExecutor``; it does not change
+            the trials either.
         callback: called after each generation with the progress. If it returns True, the run stops there and can be
             resumed.
 
+    Warns:
+        UserWarning: no design is feasible; it says which limits are missed, and by how much.
+
     Raises:
-        StudyError: an unusable study, or a database that began with other settings.
-        MotorError, CalibrationError: an unknown name or an unusable file.
+        StudyError: an unusable study, function or algorithm, a database that began with other settings, or fewer
+            evaluations than it has.
+        MotorError: an unknown name or an unusable file.
+        CalibrationError: an unknown name, an unusable file, or a calibration whose values cannot be.
         DatabaseError: the file is no study, is damaged, is in use, or cannot be written.
 
     Example:
         >>> import tempfile, pareto_monoped as pm
         >>> folder = tempfile.TemporaryDirectory()
         >>> study = pm.Study.define(name="small", evaluations=200)
-        >>> stored = pm.run(study, folder.name + "/small.db", constraints={"mass_kg": {"max": 5.0}})
-        >>> len(stored.trials)
-        200
+        >>> def lean(jumps):  # holds at <= 0
+        ...     return jumps["mass_kg"] - 10.0 * jumps["thigh_length_m"]
+        >>> stored = pm.run(study, folder.name + "/small.db", constraints=[{"mass_kg": {"max": 5.0}}, lean])
+        >>> len(stored.trials), bool((stored.front().own_lean <= 0).all())
+        (200, True)
         >>> folder.cleanup()
     """
     from pareto_monoped.study.run import run as run_study
 
-    one = study if isinstance(study, Study) else Study.from_toml(as_path(study))
+    one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study"))
     target = _database(study, db)
-    changed = _changed(one, algorithm=algorithm, objectives=objectives, constraints=constraints)
-    run_study(changed, target, evaluations=evaluations, seed=seed, workers=workers, progress=callback)
+    changes, functions = _goals(one, objectives, constraints)
+    if isinstance(calibration, Calibration):
+        calibration = own_calibration(calibration)
+        changes["calibration"] = stored_calibration_name(calibration)
+    elif calibration is not None:
+        changes["calibration"] = str(as_path(calibration, "calibration"))
+    if "calibration" in changes and rules_for(changes["calibration"]) == "paper":
+        changes["rules"] = "paper"
+    own = _own_algorithm(algorithm)
+    if algorithm is not None:
+        changes["algorithm"] = {"name": own_algorithm_name(own)} if own is not None else _settings(algorithm)
+    if seed is not None:
+        changes["seed"] = seed_of(seed)
+    summary = run_study(
+        _changed(one, changes),
+        target,
+        evaluations=count_of("evaluations", evaluations),
+        workers=count_of("workers", workers),
+        executor=executor_of(executor),
+        progress=called_after(callback),
+        own=Own(
+            functions=functions,
+            algorithm=own,
+            calibration=calibration if isinstance(calibration, Calibration) else None,
+        ),
+    )
+    _warn_of_no_front(summary)
     return load_study(target)
 
 
@@ -69,65 +135,105 @@ def resume(
     db: StrPath,
     *,
     evaluations: int | None = None,
+    algorithm: Any = None,
+    functions: OwnFunction | Sequence[OwnFunction] = (),
     workers: int | None = None,
+    executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
 ) -> StoredStudy:
-    """Continue a study from its database alone.
+    """Continue a study from its database alone, and from what is one's own, which no database holds.
+
+    Own functions are checked against some of the stored trials. An own algorithm is asked again for all of them, and
+    told their scores.
 
     Args:
         db: the database.
         evaluations: the new total; by default that of the last run.
+        algorithm: the study's own algorithm, as it was at the start, if it has one; see ``run``.
+        functions: the study's own objectives and constraints, if it has some.
         workers: threads that simulate, all cores if None.
+        executor: does the jumps in their place, see ``run``.
         callback: see ``run``.
 
+    Warns:
+        UserWarning: no design is feasible, see ``run``.
+
     Raises:
-        StudyError: this code or machine computes other jumps than the study began with.
+        StudyError: this code or machine computes other jumps than the study began with, an own function or algorithm is
+            missing or another, or the new total is less than what is stored.
         DatabaseError: the file is no study, is damaged, is in use, or cannot be written.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> stored = pm.resume("light.db", evaluations=240)
+        >>> len(stored.trials)
+        240
     """
     from pareto_monoped.study.run import resume as resume_study
 
-    resume_study(as_path(db), evaluations=evaluations, workers=workers, progress=callback)
+    own = _own_algorithm(algorithm)
+    if algorithm is not None and own is None:
+        raise StudyError(complaint("algorithm", algorithm, "an own one, the study knows every other", "leave it out"))
+    summary = resume_study(
+        as_path(db, "db"),
+        evaluations=count_of("evaluations", evaluations),
+        workers=count_of("workers", workers),
+        executor=executor_of(executor),
+        progress=called_after(callback),
+        own=Own(functions=functions_of(listed("functions", functions)), algorithm=own),
+    )
+    _warn_of_no_front(summary)
     return load_study(db)
+
+
+def _warn_of_no_front(summary: "RunSummary") -> None:
+    """Warn the caller of ``run`` or ``resume`` of what the command line notes where no design is feasible."""
+    if summary.front_size == 0:
+        for line in summary.remarks:
+            warnings.warn(f"{summary.db}: {line}", UserWarning, stacklevel=3)
 
 
 def _database(study: Study | StrPath, db: StrPath | None) -> Path:
     if db is not None:
-        return as_path(db)
+        return as_path(db, "db")
     if isinstance(study, Study):
         raise StudyError("db: is not given; name the database file, such as 'mine.db'")
     return as_path(study).with_suffix(".db")
 
 
-def _changed(
-    study: Study,
-    *,
-    algorithm: str | Mapping[str, Any] | None,
-    objectives: Sequence[str] | None,
-    constraints: Mapping[str, Any] | None,
-) -> Study:
-    """The study with other goals or another search."""
-    values = study.as_dict()
-    if algorithm is not None:
-        values["algorithm"] = algorithm if isinstance(algorithm, str) else dict(algorithm)
+def _goals(
+    study: Study, objectives: Sequence[Goal] | None, constraints: Limits | None
+) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
+    """The keys of a study that other goals change, and the own functions among them."""
+    changes: dict[str, Any] = {}
+    functions: dict[str, OwnFunction] = {}
     if objectives is not None:
-        values["objectives"] = list(objectives)
-        values["reference_point"] = {
-            name: value for name, value in values["reference_point"].items() if name in objectives
-        }
+        names, functions = objective_names(objectives)
+        corner = study.reference_point.as_dict()
+        changes["objectives"] = names
+        changes["reference_point"] = {name: value for name, value in corner.items() if name in names}
     if constraints is not None:
-        if not isinstance(constraints, Mapping):
-            allowed = "a mapping of measures to limits, such as {'mass_kg': {'max': 4.0}}"
-            raise StudyError(complaint("constraints", constraints, allowed, "give one"))
-        values["constraints"] = _joined(values["constraints"], constraints)
+        limits, limited = limits_of(constraints)
+        changes["constraints"] = study.constraints.as_dict() | limits
+        functions = functions_of([*functions.values(), *limited.values()])
+    return changes, functions
+
+
+def _own_algorithm(algorithm: Any) -> Any:
+    """An algorithm that is not one of the package's by its name; else None."""
+    return None if algorithm is None or isinstance(algorithm, str | Mapping) else algorithm
+
+
+def _settings(algorithm: str | Mapping[str, Any]) -> dict[str, Any]:
+    return {"name": algorithm} if isinstance(algorithm, str) else dict(algorithm)
+
+
+def _changed(study: Study, changes: Mapping[str, Any]) -> Study:
+    """The study with other values for some keys, in their stored form."""
+    values = study.as_dict() | dict(changes)
     if values == study.as_dict():
         return study
-    return Study.define(**values)
-
-
-def _joined(before: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Limits in their stored form, ``max_mass_kg``, with those given in either form in the place of older ones."""
-    flat: dict[str, Any] = {}
-    for key, limits in given.items():
-        sides = limits if isinstance(limits, Mapping) else None
-        flat |= {key: limits} if sides is None else {f"{side}_{key}": value for side, value in sides.items()}
-    return dict(before) | flat
+    changed = study_from_dict(values, source="study")
+    given = "iterations" in values["algorithm"]
+    settings = within_budget(changed.algorithm, changed.evaluations, given=given, source="study")
+    return replace(changed, algorithm=settings)

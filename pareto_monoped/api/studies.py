@@ -6,9 +6,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.design import NAMES, Design
-from pareto_monoped.errors import InputError, SelectionError, complaint
+from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
+from pareto_monoped.measures import is_own
 from pareto_monoped.pareto.conditions import CONDITION_NAMES
 from pareto_monoped.pareto.selectors import (
     Among,
@@ -22,6 +24,7 @@ from pareto_monoped.pareto.selectors import (
     Trial,
     Weights,
 )
+from pareto_monoped.study.counts import count_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
@@ -43,6 +46,12 @@ class Picked:
         design: its variables.
         row: its row of ``StoredStudy.trials``.
         why: the reason in one sentence.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> picked = pm.load_study("light.db").pick(min_height_m=0.7)
+        >>> bool(picked.row.height_m >= 0.7), picked.design.start_height_m
+        (True, 0.5)
     """
 
     trial: int
@@ -59,6 +68,12 @@ class StoredStudy:
         path: the database.
         study: its definition.
         data: everything that was read; its form may change between versions.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> stored = pm.load_study("light.db")
+        >>> stored.finished, len(stored.trials), len(stored.front()) <= len(stored.trials)
+        (True, 200, True)
     """
 
     path: Path
@@ -67,7 +82,7 @@ class StoredStudy:
 
     @cached_property
     def trials(self) -> "DataFrame":
-        """All trials in order: number, generation, variables, ``state`` and ``reason``, and every stored measure.
+        """All trials in order, with number, generation, variables, ``state``, ``reason`` and every stored measure.
 
         Columns have the names and units that databases, files and flags have.
         """
@@ -88,6 +103,9 @@ class StoredStudy:
         Raises:
             StudyError: an unknown measure, one without a direction, or not two or three of them.
         """
+        if not isinstance(include_ill_conditioned, bool):
+            name = "include_ill_conditioned"
+            raise StudyError(complaint(name, include_ill_conditioned, "True or False", "give one"))
         return self.data.front(include_ill_conditioned, self._objectives(objectives))
 
     def pick(
@@ -127,8 +145,8 @@ class StoredStudy:
 
         Example:
             >>> import pareto_monoped as pm
-            >>> pm.load_study("studies/case_c.db").pick(min_height_m=0.9).trial  # doctest: +SKIP
-            3471
+            >>> pm.load_study("light.db").pick(min_height_m=0.7, at_most={"mass_kg": 6.0}).design.start_height_m
+            0.5
         """
         from pareto_monoped.pareto.pick import pick
 
@@ -174,13 +192,15 @@ class StoredStudy:
         """
         from pareto_monoped.study.alternatives import alternatives
 
-        return alternatives(self.data, trial, count=count, tolerance=tolerance)
+        self._row(trial)
+        most, share = count_of("count", count) or 5, number_of("tolerance", tolerance)
+        return alternatives(self.data, trial, count=most, tolerance=share)
 
     def simulate(self, designs: Any, *, trial: int | None = None, workers: int | None = None) -> "DataFrame":
         """Let other designs jump as this study does: with its motors, calibration and gearbox rules, as stored.
 
         Args:
-            designs: see ``pareto_monoped.simulate``.
+            designs: see ``pareto_monoped.simulate``; or what ``pick`` returned, with the motors of its trial.
             trial: whose motors they have, where the study has a choice of motors; else its first ones.
             workers: number of threads, all cores if None.
 
@@ -190,6 +210,8 @@ class StoredStudy:
         """
         from pareto_monoped.api.jumps import jumps_of
 
+        if isinstance(designs, Picked):
+            designs, trial = designs.design, designs.trial if trial is None else trial
         kit = self.data.kits[0]
         if trial is not None:
             self._row(trial)
@@ -197,7 +219,7 @@ class StoredStudy:
         return jumps_of(designs, kit, self.data.calibration, workers)
 
     def _row(self, trial: int) -> "Series[Any]":
-        rows = self.data.trials[self.data.trials["trial"] == trial]
+        rows = self.data.trials[self.data.trials["trial"] == trial_of(trial)]
         if len(rows) == 0:
             allowed = f"0 to {len(self.data.trials) - 1}"
             raise SelectionError(complaint("trial", trial, allowed, "take one that the study has"))
@@ -206,7 +228,12 @@ class StoredStudy:
     def _objectives(self, names: Sequence[str] | None) -> "Objectives | None":
         from pareto_monoped.study.goals import objectives_of
 
-        return None if names is None else objectives_of(names, source="front")
+        if names is None:
+            return None
+        chosen = objectives_of(names, source="front")
+        if lacking := [name for name in chosen.names if name not in self.data.trials]:
+            raise StudyError(f"front: objective {lacking[0]!r} is not stored with this study; choose another")
+        return chosen
 
 
 def load_study(path: StrPath) -> StoredStudy:
@@ -217,6 +244,11 @@ def load_study(path: StrPath) -> StoredStudy:
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> pm.load_study("light.db").study.name
+        'light'
     """
     from pareto_monoped.study.reader import read_study
 
@@ -224,16 +256,24 @@ def load_study(path: StrPath) -> StoredStudy:
     return StoredStudy(path=data.db, study=data.study, data=data)
 
 
-def as_path(given: StrPath) -> Path:
+def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a path") -> Path:
     """A path from text or a path.
+
+    Args:
+        given: the path.
+        what: the argument that it is, for a message.
+        allowed: what may be given there.
 
     Raises:
         InputError: it is neither.
     """
     try:
-        return Path(given)
+        path = Path(given)
     except TypeError:
-        raise InputError(complaint("path", given, "text or a path", "give one")) from None
+        raise InputError(complaint(what, given, allowed, "give one")) from None
+    if "\0" in str(path):
+        raise InputError(complaint(what, str(path), "without a zero byte", "check it"))
+    return path
 
 
 def _ways(
@@ -250,17 +290,19 @@ def _ways(
     """
     ways: list[Chooser] = []
     if by is not None:
-        if by not in ("knee", "tradeoff"):
+        if not isinstance(by, str) or by not in ("knee", "tradeoff"):
             raise SelectionError(complaint("by", by, "'knee' or 'tradeoff'", "correct it, or use another argument"))
         ways.append(Knee() if by == "knee" else Tradeoff())
     if trial is not None:
-        ways.append(Trial(number=trial))
+        ways.append(Trial(number=trial_of(trial)))
     if weights is not None:
-        ways.append(Weights(values=tuple(map(float, weights))))
+        ways.append(Weights(values=numbers_of("weights", weights)))
     if compromise is not None:
-        ways.append(Compromise(values=tuple(map(float, compromise))))
+        ways.append(Compromise(values=numbers_of("compromise", compromise)))
     if nearest is not None:
-        ways.append(Nearest(wish=_known(nearest)))
+        if not (wish := _known("nearest", nearest)):
+            raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
+        ways.append(Nearest(wish=wish))
     if len(ways) > 1:
         raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
     return ways
@@ -274,27 +316,30 @@ def _conditions(
 ) -> tuple[Condition | MaxEnergy, ...]:
     found: list[Condition | MaxEnergy] = []
     if min_height_m is not None:
-        found.append(Condition(name="height_m", side="min", value=float(min_height_m), asked="min_height_m"))
+        least = number_of("min_height_m", min_height_m)
+        found.append(Condition(name="height_m", side="min", value=least, asked="min_height_m"))
     if max_energy_j is not None:
-        found.append(MaxEnergy(energy_j=float(max_energy_j)))
-    for name, value in _known(at_least or {}).items():
+        found.append(MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
+    for name, value in _known("at_least", {} if at_least is None else at_least).items():
         found.append(Condition(name=name, side="min", value=value))
-    for name, value in _known(at_most or {}).items():
+    for name, value in _known("at_most", {} if at_most is None else at_most).items():
         found.append(Condition(name=name, side="max", value=value))
     return tuple(found)
 
 
-def _known(values: Mapping[str, float]) -> dict[str, float]:
+def _known(what: str, values: Any) -> dict[str, float]:
     """Numbers of known measures and variables.
 
     Raises:
+        InputError: no mapping, or a value that is no number.
         SelectionError: an unknown name.
     """
-    for name in values:
-        if name not in CONDITION_NAMES:
+    numbers = table_of(what, values)
+    for name in numbers:
+        if name not in CONDITION_NAMES and not is_own(name):
             import difflib
 
             near = difflib.get_close_matches(str(name), CONDITION_NAMES, n=1)
             cure = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(CONDITION_NAMES)}"
-            raise SelectionError(f"name = {name!r}: must be a measure or a variable; {cure}")
-    return {name: float(value) for name, value in values.items()}
+            raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
+    return numbers

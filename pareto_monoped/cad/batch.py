@@ -1,13 +1,15 @@
-"""Run export jobs: one here, or many in parallel, each in its own process and folder."""
+"""Run export jobs: one here, or many in parallel, each in its own process and folder or on an executor."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
 
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.sent import exported
 from pareto_monoped.cad.workers import Workers
 
 
@@ -61,7 +63,13 @@ def run(
     return summary.record
 
 
-def run_all(jobs: Sequence[Job], *, workers: int, progress: Callable[[Progress], None] = lambda _: None) -> int:
+def run_all(
+    jobs: Sequence[Job],
+    *,
+    workers: int,
+    executor: Executor | None = None,
+    progress: Callable[[Progress], None] = lambda _: None,
+) -> int:
     """Export designs in parallel; the same call continues with what is not made yet.
 
     The first failure is raised when the exports in progress have ended. An interrupt ends them at once; each folder is
@@ -70,6 +78,7 @@ def run_all(jobs: Sequence[Job], *, workers: int, progress: Callable[[Progress],
     Args:
         jobs: what to export; what is made already is left alone.
         workers: number of processes.
+        executor: makes the exports in their place, perhaps elsewhere; their files are written here.
         progress: called after every job.
 
     Returns:
@@ -79,7 +88,13 @@ def run_all(jobs: Sequence[Job], *, workers: int, progress: Callable[[Progress],
     if not todo:
         return 0
     start_s = time.monotonic()
-    with Workers(run, min(workers, len(todo))) as processes:
-        for made, job in enumerate(processes.do(todo), 1):
+
+    def count(done: Iterable[Job]) -> int:
+        for made, job in enumerate(done, 1):
             progress(Progress(job=job, made=made, total=len(todo), elapsed_s=time.monotonic() - start_s))
-    return len(todo)
+        return len(todo)
+
+    if executor is not None:
+        return count(exported(todo, executor))
+    with Workers(run, min(workers, len(todo))) as processes:
+        return count(processes.do(todo))

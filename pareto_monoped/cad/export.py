@@ -21,8 +21,8 @@ from pareto_monoped.cad.product import Product, build_product
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.checks_record import checks_record
 from pareto_monoped.cad.write.design_record import design_record
-from pareto_monoped.cad.write.folder import RECORD, beside, files_in, move_in, require_free, write
-from pareto_monoped.cad.write.formats import chosen_formats
+from pareto_monoped.cad.write.folder import beside, files_in, move_in, require_free, write
+from pareto_monoped.cad.write.formats import RECORD, chosen_formats
 from pareto_monoped.cad.write.parameters import equations, parameters, parameters_csv
 from pareto_monoped.cad.write.parts_list import parts_list
 from pareto_monoped.cad.write.readme import readme

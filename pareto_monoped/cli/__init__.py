@@ -20,6 +20,7 @@ _COMMANDS = {
     "run": "studies",
     "resume": "studies",
     "status": "studies",
+    "campaign": "campaign",
     "verify": "storage",
     "repair": "storage",
     "trials": "trials",
@@ -29,6 +30,7 @@ _COMMANDS = {
     "sensitivity": "sensitivity",
     "export": "exports",
     "report": "reports",
+    "dashboard": "dashboard",
 }
 """Command -> module of this package that defines it, in the order of use."""
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from pareto_monoped.cli import completing
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.terminal import echo, new_console
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
@@ -30,17 +31,30 @@ class _WithRules(click.Command):
     """Its help ends with the names that ``--without`` takes; they are read only then."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        from pareto_monoped.actuator.settings import CONSTRAINT_NAMES
+        from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
 
         formatter.write_paragraph()
         formatter.write_text(f"Constraints of --without: {', '.join(CONSTRAINT_NAMES)}.")
 
 
 @click.command(cls=_WithRules)
-@click.option("--motor", metavar="NAME", default=PAPER_MOTOR, show_default=True, help="Name or TOML file.")
+@click.option(
+    "--motor",
+    metavar="NAME",
+    shell_complete=completing.motors,
+    default=PAPER_MOTOR,
+    show_default=True,
+    help="Name or TOML file.",
+)
 @click.option("--ratio", metavar="X", type=float, help="Show the gearbox for this ratio, part by part.")
 @click.option("--rules", type=click.Choice(RULE_SETS), default=DEFAULT_RULES, show_default=True, help="Set of rules.")
-@click.option("--without", metavar="NAME", multiple=True, help="Switch a constraint off; may be repeated.")
+@click.option(
+    "--without",
+    metavar="NAME",
+    multiple=True,
+    shell_complete=completing.constraints,
+    help="Switch a constraint off; may be repeated.",
+)
 @click.option(
     "--bearings",
     type=click.Choice(["catalogue", "regression"]),
@@ -51,7 +65,7 @@ class _WithRules(click.Command):
 @click.option(
     "--csv",
     "csv_file",
-    metavar="FILE",
+    metavar="FILE.csv",
     type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
     help="Also write the table to a CSV file; `-` prints it as CSV instead.",
 )

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli import completing
+from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, where
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, new_console
@@ -17,7 +19,7 @@ from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 if TYPE_CHECKING:
     from pareto_monoped.cad.batch import Progress
     from pareto_monoped.cad.jobs import Job
-    from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.pareto.selectors import Selector
     from pareto_monoped.study.reader import StudyData
 
 
@@ -31,7 +33,10 @@ if TYPE_CHECKING:
 @motor_options("With --case: ")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
-    "--record", type=click.Path(path_type=Path), metavar="FILE", help="Repeat the export that has this design.json."
+    "--record",
+    type=click.Path(path_type=Path),
+    metavar="FILE.json",
+    help="Repeat the export that has this design.json.",
 )
 @click.option("--front", "whole_front", is_flag=True, help="Export all designs of the front to DIR/trial_N.")
 @click.option(
@@ -40,8 +45,12 @@ if TYPE_CHECKING:
 @click.option(
     "--workers", type=click.IntRange(1, 1024), metavar="N", help="With --front: processes.  [default: all cores]"
 )
+@scheduler_option
 @click.option(
-    "--formats", metavar="NAMES", help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,\nassembly,png.  [default: all]"
+    "--formats",
+    metavar="A,B",
+    shell_complete=completing.formats,
+    help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,\nassembly,png.  [default: all]",
 )
 @click.option("--no-drawings", is_flag=True, help="Leave out pdf, the workshop drawings.")
 @click.option("--no-assembly", is_flag=True, help="Leave out assembly, the instructions with their pictures.")
@@ -62,6 +71,7 @@ def export(
     whole_front: bool,
     every: int,
     workers: int | None,
+    scheduler: str | None,
     formats: str | None,
     no_drawings: bool,
     no_assembly: bool,
@@ -77,13 +87,16 @@ def export(
     so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg, no_strength)
+    place = where(None, scheduler, workers)
+    if scheduler is not None and not whole_front:
+        raise click.UsageError("--scheduler goes with --front only, for which it makes many exports; drop it")
     given = {"--rules": rules, "--motor": motor, "--hip-motor": hip_motor, "--knee-motor": knee_motor}
     for option, value in given.items():
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
-    from pareto_monoped.cad.installed import require_cad
+    from pareto_monoped.extras import require_extra
 
-    require_cad()
+    require_extra("cad", "CAD")
     from pareto_monoped.cad.interrupt import ending_at
     from pareto_monoped.cad.kernel import client as kernel
 
@@ -117,7 +130,7 @@ def export(
         elif whole_front:
             data = _read(_given(db))
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
-            _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1)
+            _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1, place)
         else:
             from pareto_monoped.pareto.pick import pick
             from pareto_monoped.study.behind import with_numbered
@@ -205,11 +218,12 @@ def _say_of_strength(jobs: "list[Job]") -> None:
         _note(f"note: {NO_STRENGTH}")
 
 
-def _many(jobs: "list[Job]", workers: int) -> None:
+def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
     from pareto_monoped.cad.batch import run_all
+    from pareto_monoped.compute.staff import EXPORT_LIMITS
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Bar(*columns, console=new_console(stderr=True)) as bar:
@@ -224,7 +238,8 @@ def _many(jobs: "list[Job]", workers: int) -> None:
             )
 
         try:
-            made = run_all(jobs, workers=workers, progress=show)
+            with executor_at(place, limits=EXPORT_LIMITS) as executor:
+                made = run_all(jobs, workers=workers, executor=executor, progress=show)
         except KeyboardInterrupt:
             bar.console.print("interrupted; the same command continues from here")
             raise

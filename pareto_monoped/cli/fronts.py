@@ -3,13 +3,14 @@
 import json
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli import completing
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.pareto.selectors import Selector
     from pareto_monoped.study.alternatives import Alternative
     from pareto_monoped.study.definition import Study
     from pareto_monoped.study.reader import StudyData
@@ -48,11 +49,16 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 @click.argument("db", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
 @click.option(
-    "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE", help="Write the designs to a CSV file."
+    "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write the designs to a CSV file."
 )
 @force_option
 @click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
-@click.option("--objectives", metavar="A,B", help="Two or three measures to judge by, instead of the study's.")
+@click.option(
+    "--objectives",
+    metavar="A,B",
+    shell_complete=completing.measures,
+    help="Two or three measures to judge by, instead of the study's.",
+)
 def front(
     db: Path, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
 ) -> None:
@@ -135,7 +141,9 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     last = sum(width + 1 for width in motors.values())
     wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= _TABLE_WIDTH
     # With a third objective the usual columns do not fit; three digits of each variable then must do.
-    number = (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
+    number: Callable[[float], str] = (
+        (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
+    )
     symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
     names = "".join(f" {name:<{width}}" for name, width in motors.items())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli import completing
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.terminal import echo, new_console
@@ -24,7 +25,7 @@ from pareto_monoped.design import (
     RuleSet,
     columns,
 )
-from pareto_monoped.errors import DesignError, SimulationError, complaint
+from pareto_monoped.errors import DesignError, SimulationError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
 if TYPE_CHECKING:
@@ -55,10 +56,21 @@ _VARIABLES = "\n".join(
     help="Start from a row of Table I.",
 )
 @click.option(
-    "--set", "changes", metavar="NAME=VALUE", multiple=True, help="Change a design variable; may be repeated."
+    "--set",
+    "changes",
+    metavar="NAME=X",
+    multiple=True,
+    shell_complete=completing.variables,
+    help="Change a design variable; may be repeated.",
 )
 @click.option(
-    "--calibration", "calibration_name", metavar="NAME", default=DEFAULT, show_default=True, help="Name or TOML file."
+    "--calibration",
+    "calibration_name",
+    metavar="NAME",
+    shell_complete=completing.calibrations,
+    default=DEFAULT,
+    show_default=True,
+    help="Name or TOML file.",
 )
 @motor_options()
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")
@@ -153,9 +165,9 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
         name, equals, text = change.partition("=")
         name = name.strip()
         if not equals:
-            raise DesignError(f"--set {change!r}: must be NAME=VALUE; give for example knee_ratio=6.0")
+            raise DesignError(f"--set {change!r}: must be NAME=X; give for example knee_ratio=6.0")
         if name not in NAMES:
-            raise DesignError(complaint("--set name", name, f"one of {', '.join(NAMES)}", "correct the name"))
+            raise DesignError(unknown_name("--set name", name, NAMES))
         try:
             numbers[name] = float(text)
         except ValueError:

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from pareto_monoped.cli import completing
 from pareto_monoped.design import PAPER_MOTOR
 
 
@@ -14,9 +15,21 @@ def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[.
     Args:
         prefix: of their help texts.
     """
-    both = click.option("--motor", metavar="NAME", help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]")
-    hip = click.option("--hip-motor", metavar="NAME", help=f"{prefix}The hip's, with --knee-motor instead of --motor.")
-    knee = click.option("--knee-motor", metavar="NAME", help=f"{prefix}The knee's, with --hip-motor.")
+    both = click.option(
+        "--motor",
+        metavar="NAME",
+        shell_complete=completing.motors,
+        help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]",
+    )
+    hip = click.option(
+        "--hip-motor",
+        metavar="NAME",
+        shell_complete=completing.motors,
+        help=f"{prefix}The hip's, with --knee-motor instead of --motor.",
+    )
+    knee = click.option(
+        "--knee-motor", metavar="NAME", shell_complete=completing.motors, help=f"{prefix}The knee's, with --hip-motor."
+    )
     return lambda command: both(hip(knee(command)))
 
 

@@ -4,7 +4,9 @@ Code below the command line raises its own errors (``errors``), which say file, 
 is an error of the system, or a fault of this program; both end in one line as well.
 """
 
+import difflib
 import os
+import re
 import traceback
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +19,9 @@ from pareto_monoped.files import cure_of, is_failure
 
 TRACEBACK = "PARETO_MONOPED_TRACEBACK"
 """Environment variable that makes faults of the program show where they come from."""
+_KINDS = {"integer": "whole number", "float": "number"}
+_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")
+"""How click calls what must be a number."""
 _LONGEST = 1200
 """Characters of a message; of longer ones, such as on a text of a megabyte, the middle is left out. Our own choice."""
 
@@ -28,9 +33,9 @@ def told(error: BaseException) -> tuple[str, int]:
     if isinstance(error, click.ClickException):
         # One line, as for our own errors; by default click prints the usage text, too.
         hint = ""
-        if isinstance(error, click.UsageError) and error.ctx is not None:
-            hint = f" (see '{error.ctx.command_path} --help')"
-        return f"error: {_line(error.format_message())}{hint}", error.exit_code
+        if isinstance(error, click.UsageError):
+            hint = f" (see '{'pareto-monoped' if error.ctx is None else error.ctx.command_path} --help')"
+        return f"error: {_line(_of_click(error))}{hint}", error.exit_code
     if isinstance(error, ParetoMonopedError):
         return f"error: {_line(str(error))}", error.exit_code
     if isinstance(error, MemoryError):
@@ -42,6 +47,15 @@ def told(error: BaseException) -> tuple[str, int]:
         f"error: unexpected {type(error).__name__}{where}: {_line(str(error)) or 'without a message'}; "
         f"check the files given, or report it with what {TRACEBACK}=1 shows"
     ), 1
+
+
+def _of_click(error: click.ClickException) -> str:
+    """Its message, in the words of this program."""
+    if isinstance(error, click.NoSuchOption):
+        # The first is the most similar.
+        near = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
+        return f"option {error.option_name!r}: is unknown; {f'did you mean {near[0]!r}?' if near else 'drop it'}"
+    return _KIND.sub(lambda found: f"is no {_KINDS[found[1]]}", error.format_message())
 
 
 def _of_system(error: OSError) -> tuple[str, int]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Folder for the results.  [default: reports/STUDY]",
 )
-@click.option("--db", metavar="FILE", type=click.Path(path_type=Path), help="Database.  [default: beside STUDY.toml]")
+@click.option("--db", metavar="DB", type=click.Path(path_type=Path), help="Database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
@@ -49,13 +49,14 @@ def pareto(
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
     """
-    from pareto_monoped.cad.installed import require_cad
+    from pareto_monoped.extras import require_extra
 
     # Before the search: minutes later would be too late to say so.
-    require_cad()
+    require_extra("cad", "CAD")
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.made import is_made
-    from pareto_monoped.pareto.pick import Knee, pick
+    from pareto_monoped.pareto.pick import pick
+    from pareto_monoped.pareto.selectors import Knee
     from pareto_monoped.study.choices import counterpart
     from pareto_monoped.study.definition import NO_STRENGTH, load_study
     from pareto_monoped.study.reader import read_study

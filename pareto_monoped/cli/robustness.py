@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.computing import executor_at, where, where_options
+from pareto_monoped.cli.options import sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.terminal import echo
 
 if TYPE_CHECKING:
@@ -31,14 +33,10 @@ if TYPE_CHECKING:
 @click.option(
     "--samples", type=int, metavar="N", help="Per design.  [default: 256, or the study's if it asks for more]"
 )
-@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]")
-@click.option(
-    "--uncertainty",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="TOML file of ranges, instead of the study's or ours.",
-)
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
+@sample_seed_option
+@uncertainty_option
+@workers_option
+@where_options
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def robust(
     db: Path,
@@ -49,6 +47,8 @@ def robust(
     seed: int | None,
     uncertainty: Path | None,
     workers: int | None,
+    processes: int | None,
+    scheduler: str | None,
     as_json: bool,
 ) -> None:
     """Simulate designs again as robots are built.
@@ -63,6 +63,7 @@ def robust(
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
+    place = where(processes, scheduler, workers)
     kept = read_front(db)
     ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
     chosen = list(trials) or kept.rows["trial"].tolist()[::every]
@@ -72,15 +73,17 @@ def robust(
 
         data = read_study(db)
         chosen += [other.trial for trial in chosen for other in alternatives(data, trial, count=count)]
-    results = run_robust(
-        db,
-        ranges,
-        trials=chosen or None,
-        samples=samples,
-        seed=seed,
-        workers=workers,
-        progress=lambda done, total: echo(f"{done}/{total} designs", err=True),
-    )
+    with executor_at(place) as executor:
+        results = run_robust(
+            db,
+            ranges,
+            trials=chosen or None,
+            samples=samples,
+            seed=seed,
+            workers=workers,
+            executor=executor,
+            progress=lambda done, total: echo(f"{done}/{total} designs", err=True),
+        )
     if as_json:
         shown = {str(trial): result.as_dict() for trial, result in results.items()}
         echo(json.dumps({"uncertainty": ranges.name, "samples": samples, "seed": seed, "trials": shown}, indent=2))

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli import completing
+
 if TYPE_CHECKING:
     from pareto_monoped.pareto.selectors import Chooser, Condition, MaxEnergy, Selector
 
@@ -23,17 +25,38 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
     @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
-    @click.option("--limit", multiple=True, metavar="MEASURE=X", help="Condition: a measure at X or better.")
     @click.option(
-        "--min", "least", multiple=True, metavar="NAME=X", help="Condition: measure or variable of at least X."
+        "--limit",
+        multiple=True,
+        metavar="NAME=X",
+        shell_complete=completing.conditions,
+        help="Condition: a measure at X or better.",
     )
-    @click.option("--max", "most", multiple=True, metavar="NAME=X", help="Condition: measure or variable of at most X.")
+    @click.option(
+        "--min",
+        "least",
+        multiple=True,
+        metavar="NAME=X",
+        shell_complete=completing.conditions,
+        help="Condition: measure or variable of at least X.",
+    )
+    @click.option(
+        "--max",
+        "most",
+        multiple=True,
+        metavar="NAME=X",
+        shell_complete=completing.conditions,
+        help="Condition: measure or variable of at most X.",
+    )
     @click.option("--knee", is_flag=True, help="The design where the front bends most.")
     @click.option("--tradeoff", is_flag=True, help="The design whose neighbours give up most for what they gain.")
     @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
     @click.option("--compromise", metavar="WH,WE", help="Nearest to the best of every objective, with these weights.")
     @click.option(
-        "--nearest", metavar="NAME=X,...", help="Nearest to a wished-for point, such as height_m=1,energy_j=20."
+        "--nearest",
+        metavar="NAME=X,...",
+        shell_complete=completing.conditions,
+        help="Nearest to a wished-for point, such as height_m=1,energy_j=20.",
     )
     @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
     @functools.wraps(command)
@@ -86,7 +109,7 @@ def required(selector: "Selector | None") -> "Selector":
     """The selector; without one, a usage error that names the options."""
     if selector is None:
         raise click.UsageError(
-            "no selector given: must be one of --min-height M, --max-energy J, --limit MEASURE=X, --min NAME=X, "
+            "no selector given: must be one of --min-height M, --max-energy J, --limit NAME=X, --min NAME=X, "
             "--max NAME=X, --knee, --tradeoff, --weights WH,WE, --compromise WH,WE, --nearest NAME=X,..., --trial N; "
             "add one"
         )
@@ -146,10 +169,10 @@ def _wish(text: str) -> dict[str, float]:
 def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
     """A name and a number from NAME=X."""
     name, _, value = text.partition("=")
-    if name not in known:
-        import difflib
+    from pareto_monoped.measures import is_own, is_robust
 
-        from pareto_monoped.measures import is_robust
+    if name not in known and not is_own(name):
+        import difflib
 
         near = difflib.get_close_matches(name, known, n=1)
         listed = ", ".join(one for one in known if not is_robust(one))

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.fronts import wrapped
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import force_option, sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.robustness import asked
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo
 
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
-    from pareto_monoped.pareto.pick import Selector
+    from pareto_monoped.pareto.selectors import Selector
     from pareto_monoped.study.definition import Study
     from pareto_monoped.uncertainty.influences import FactorInfluence, Sensitivity
 
@@ -38,14 +38,9 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
     metavar="PERCENT",
     help="How far variables move, of their ranges.  [default: 2]",
 )
-@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]")
-@click.option(
-    "--uncertainty",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="TOML file of ranges, instead of the study's or ours.",
-)
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
+@sample_seed_option
+@uncertainty_option
+@workers_option
 @click.option(
     "--plot", type=click.Path(path_type=Path), metavar="FILE.html", help="Write a chart that needs no network."
 )
@@ -68,8 +63,8 @@ def sensitivity(
     The free variables move a little around the design; then everything that is uncertain in a built robot moves
     within its range. Results are stored in DB; what is there is not simulated again.
     """
-    from pareto_monoped.pareto.pick import Trial
     from pareto_monoped.pareto.pick import pick as pick_design
+    from pareto_monoped.pareto.selectors import Trial
     from pareto_monoped.study.front_reader import read_front
     from pareto_monoped.study.sensitivity import sensitivity as find
 

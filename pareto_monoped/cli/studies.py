@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli import completing
+from pareto_monoped.cli.computing import executor_at, where, where_options
+from pareto_monoped.cli.options import workers_option
 from pareto_monoped.cli.terminal import echo, name, new_console
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 
@@ -19,9 +22,6 @@ if TYPE_CHECKING:
 
 _evaluations = click.option(
     "--evaluations", type=click.IntRange(min=1), metavar="N", help="Total number of jumps, instead of the study's."
-)
-_workers = click.option(
-    "--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]"
 )
 _as_json = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON: a line per stored generation, and one at the end."
@@ -41,12 +41,16 @@ _REASONS = {
 @click.argument("study_file", metavar="STUDY.toml", type=click.Path(path_type=Path))
 @_evaluations
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
-@_workers
+@workers_option
+@where_options
 @click.option(
-    "--db", type=click.Path(path_type=Path), metavar="FILE", help="Database.  [default: STUDY.db beside STUDY.toml]"
+    "--db", type=click.Path(path_type=Path), metavar="DB", help="Database.  [default: STUDY.db beside STUDY.toml]"
 )
 @click.option(
-    "--objectives", metavar="A,B", help="Two or three measures, instead of the study's; needs a --db of its own."
+    "--objectives",
+    metavar="A,B",
+    shell_complete=completing.measures,
+    help="Two or three measures, instead of the study's; needs a --db of its own.",
 )
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
 @_as_json
@@ -55,6 +59,8 @@ def run(
     evaluations: int | None,
     seed: int | None,
     workers: int | None,
+    processes: int | None,
+    scheduler: str | None,
     db: Path | None,
     objectives: str | None,
     no_strength: bool,
@@ -74,9 +80,17 @@ def run(
         strength=False if no_strength else None,
     )
     target = db or study_file.with_suffix(".db")
-    with progress_reports(as_json) as progress:
+    place = where(processes, scheduler, workers)
+    with executor_at(place) as executor, progress_reports(as_json) as progress:
         summary = run_study(
-            study, target, evaluations=evaluations, seed=seed, workers=workers, progress=progress, notify=_say
+            study,
+            target,
+            evaluations=evaluations,
+            seed=seed,
+            workers=workers,
+            executor=executor,
+            progress=progress,
+            notify=_say,
         )
     return _finish(summary, as_json)
 
@@ -84,14 +98,25 @@ def run(
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
 @_evaluations
-@_workers
+@workers_option
+@where_options
 @_as_json
-def resume(db: Path, evaluations: int | None, workers: int | None, as_json: bool) -> int:
+def resume(
+    db: Path,
+    evaluations: int | None,
+    workers: int | None,
+    processes: int | None,
+    scheduler: str | None,
+    as_json: bool,
+) -> int:
     """Continue a study from its database alone."""
     from pareto_monoped.study.run import resume as resume_study
 
-    with progress_reports(as_json) as progress:
-        summary = resume_study(db, evaluations=evaluations, workers=workers, progress=progress, notify=_say)
+    place = where(processes, scheduler, workers)
+    with executor_at(place) as executor, progress_reports(as_json) as progress:
+        summary = resume_study(
+            db, evaluations=evaluations, workers=workers, executor=executor, progress=progress, notify=_say
+        )
     return _finish(summary, as_json)
 
 

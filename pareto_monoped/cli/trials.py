@@ -7,6 +7,7 @@ import click
 
 from pareto_monoped.cli.options import force_option
 from pareto_monoped.cli.terminal import echo
+from pareto_monoped.extras import require_extra
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -16,8 +17,8 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 
 @click.command()
 @click.argument("db", type=click.Path(path_type=Path))
-@click.option("--csv", "csv_file", metavar="FILE", type=_FILE, help="Write a table of text.")
-@click.option("--parquet", metavar="FILE", type=_FILE, help="Write a table of Apache Parquet.")
+@click.option("--csv", "csv_file", metavar="FILE.csv", type=_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE.parquet", type=_FILE, help="Write a table of Apache Parquet.")
 @click.option(
     "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
 )
@@ -30,7 +31,7 @@ def trials(db: Path, csv_file: Path | None, parquet: Path | None, state: str | N
     from pareto_monoped.study.reader import read_study
 
     if parquet is not None:
-        _require_pyarrow()
+        require_extra("parquet", "--parquet", instead="use --csv")
     rows = read_study(db).trials
     if state is not None:
         rows = rows[rows["state"] == state]
@@ -49,20 +50,3 @@ def trials(db: Path, csv_file: Path | None, parquet: Path | None, state: str | N
 
 def _say(path: Path, rows: "DataFrame") -> None:
     echo(f"wrote {path} ({len(rows)} trials)", err=True)
-
-
-def _require_pyarrow() -> None:
-    """Refuse a Parquet file without the library that writes it.
-
-    Raises:
-        InputError: pyarrow is not installed.
-    """
-    from importlib.util import find_spec
-
-    from pareto_monoped.errors import InputError
-
-    if find_spec("pyarrow") is None:
-        raise InputError(
-            "--parquet: pyarrow is not installed, which writes it; install the extra: "
-            "pip install 'pareto-monoped[parquet]', or use --csv"
-        )

@@ -31,16 +31,18 @@ def require_what_shows(gif: Path | None, video: Path | None, view: bool) -> None
     """Refuse a film or a viewer that cannot be had here, before anything is simulated.
 
     Raises:
-        InputError: no CAD extra, no encoder, or no display.
+        InputError: no CAD extra, a file of another kind, no encoder, or no display.
     """
     if gif is None and video is None and not view:
         return
-    from pareto_monoped.cad.installed import require_cad
+    from pareto_monoped.extras import require_extra
 
-    require_cad()
+    require_extra("cad", "CAD")
+    from pareto_monoped.cad.write.film_files import require_gif, require_video
+
+    if gif is not None:
+        require_gif(gif)
     if video is not None:
-        from pareto_monoped.cad.write.film_files import require_video
-
         require_video(video)
     if view and sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise InputError(

@@ -183,7 +183,8 @@ class ExternalGear:
     @property
     def base_radius_mm(self) -> Numbers:
         """Circle the involutes start from."""
-        return self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
+        radius_mm: Numbers = self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
+        return radius_mm
 
     @property
     def tip_radius_mm(self) -> Numbers:
@@ -257,7 +258,8 @@ class InternalGear:
     @property
     def base_radius_mm(self) -> Numbers:
         """Circle the involutes start from."""
-        return self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
+        radius_mm: Numbers = self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
+        return radius_mm
 
     @property
     def tip_radius_mm(self) -> Numbers:

@@ -186,7 +186,8 @@ class MassProperties:
         com = self.com_m
         central = self.second_kg_m2 - self.mass_kg[..., None, None] * (com[..., :, None] * com[..., None, :])
         trace = np.trace(central, axis1=-2, axis2=-1)
-        return trace[..., None, None] * np.eye(3) - central
+        inertia: NDArray[np.float64] = trace[..., None, None] * np.eye(3) - central
+        return inertia
 
     @property
     def inertia_about_z_kg_m2(self) -> NDArray[np.float64]:

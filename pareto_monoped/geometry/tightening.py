@@ -42,12 +42,14 @@ class ThreadSize:
     @property
     def flank_diameter_mm(self) -> float:
         """d2."""
-        return self.diameter_mm - 0.75 * np.tan(np.pi / 3.0) * 0.5 * self.pitch_mm
+        diameter_mm: float = self.diameter_mm - 0.75 * np.tan(np.pi / 3.0) * 0.5 * self.pitch_mm
+        return diameter_mm
 
     @property
     def core_diameter_mm(self) -> float:
         """d3."""
-        return self.diameter_mm - 17.0 / 24.0 * np.sqrt(3.0) * self.pitch_mm
+        diameter_mm: float = self.diameter_mm - 17.0 / 24.0 * np.sqrt(3.0) * self.pitch_mm
+        return diameter_mm
 
     @property
     def stress_diameter_mm(self) -> float:

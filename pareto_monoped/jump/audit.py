@@ -9,16 +9,20 @@ few perturbed copies, no more of them jump.
 """
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.joint_maps import Maps
+from pareto_monoped.compute.chunks import pace_of, spread
+from pareto_monoped.compute.threads import task_threads
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
 from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
 from pareto_monoped.jump.closure import balance_errors
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
 from pareto_monoped.measures import measure
 from pareto_monoped.robot.population import robot_arrays
 
@@ -180,6 +184,7 @@ def audit(
     calibration: Calibration,
     *,
     workers: int = 1,
+    executor: Executor | None = None,
     perturbations: int = 10,
     seed: int = 0,
     known: Jumps | None = None,
@@ -192,16 +197,17 @@ def audit(
         actuator_map: the gearboxes.
         calibration: the jump model.
         workers: threads.
+        executor: does the jumps in their place; what they mean is decided here.
         perturbations: perturbed copies per design.
         seed: of the perturbations; the same seed gives the same audit.
         known: the jumps, if they have been simulated already.
         brief: measure only what a limit is about, and perturb less often where the result is clear.
     """
     values = np.atleast_2d(complete(designs))
-    base = known or _of(Evaluator(actuator_map, calibration, workers)(values))
-    half = Evaluator(actuator_map, finer(calibration, 2), workers)(values)
+    jumps = evaluator_of(actuator_map, calibration, workers, executor=executor)
+    base = known or _of(jumps(values))
+    half = evaluator_of(actuator_map, finer(calibration, 2), workers, executor=executor)(values)
     halved = _changes("half_step", base, half)
-    jumps = Evaluator(actuator_map, calibration, workers)
     copies = perturbed(values, perturbations, np.random.default_rng(seed))
     copies = copies.reshape(len(values), perturbations, -1)
     if brief:
@@ -209,14 +215,13 @@ def audit(
         rest = dict.fromkeys(ONLY_IN_FULL, np.full(len(values), np.nan))
     else:
         spread = _spread(copies, base, jumps)
-        quarter = Evaluator(actuator_map, finer(calibration, 4), workers)(values)
-        held, prompt = _with_two_periods(values, actuator_map, calibration, workers, quarter)
+        quarter = evaluator_of(actuator_map, finer(calibration, 4), workers, executor=executor)(values)
+        held, prompt = _with_two_periods(values, jumps, quarter)
         rest = {**_changes("quarter_step", base, quarter), **_changes("control_period", held, prompt)}
     balance = np.full(len(values), np.nan)
     ok = np.flatnonzero(base.ok)
     if len(ok):
-        robots = robot_arrays(values[ok], actuator_map, calibration.mass)
-        balance[ok] = balance_errors(robots, columns(values[ok], CONTROL), calibration, workers)
+        balance[ok] = _open_balances(values[ok], jumps)
     measured = {
         "energy_balance_error": balance,
         **halved,
@@ -274,28 +279,49 @@ def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray
 def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
     """Where all changes that have a limit lie within a share of it; NaN does not."""
     limited = [changes[limit.name] <= share * limit.most for limit in LIMITS if limit.name in changes]
-    return np.logical_and.reduce(limited)
+    within: NDArray[np.bool_] = np.logical_and.reduce(limited)
+    return within
 
 
-def _with_two_periods(
-    values: Floats, actuator_map: Maps, calibration: Calibration, workers: int, quarter: Evaluations
-) -> tuple[Evaluations, Evaluations]:
+def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
+    """What the energy balances of designs that jump leave open, shape (n,)."""
+    if jumps.executor is None:
+        return _balances((jumps.actuator_maps, jumps.calibration), values, jumps.workers)
+    text = setup_text(jumps.actuator_maps, jumps.calibration)
+    pace = pace_of(jumps.executor, _balances_of, text)
+    return np.concatenate(spread(jumps.executor, pace, len(values), _balances_of, lambda rows: (text, values[rows])))
+
+
+def _balances_of(text: str, values: Floats) -> Floats:
+    """What a worker does."""
+    return _balances(built(text), values, task_threads())
+
+
+def _balances(setup: Setup, values: Floats, workers: int) -> Floats:
+    (maps,), calibration = setup
+    robots = robot_arrays(values, maps, calibration.mass)
+    return balance_errors(robots, columns(values, CONTROL), calibration, workers)
+
+
+def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) -> tuple[Evaluations, Evaluations]:
     """Jumps with a quarter of the step: with the control period as it is, and with a quarter of it; without delay.
 
     ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both if there is no delay anyway.
     """
+    calibration = jumps.calibration
     simulation = calibration.simulation
     period_s, step_s = simulation.period_s, simulation.timestep_s / 4
     of_quarter = step_s if simulation.control_period_s is None else period_s
     known = of_quarter if simulation.delay_s == 0.0 else None
 
-    def jumps(control_period_s: float) -> Evaluations:
+    def timed_jumps(control_period_s: float) -> Evaluations:
         if control_period_s == known:
             return quarter
         timed = replace(simulation, timestep_s=step_s, control_period_s=control_period_s, delay_s=0.0)
-        return Evaluator(actuator_map, replace(calibration, simulation=timed), workers)(values)
+        changed = replace(calibration, simulation=timed)
+        return evaluator_of(jumps.actuator_map, changed, jumps.workers, executor=jumps.executor)(values)
 
-    return jumps(period_s), jumps(period_s / 4)
+    return timed_jumps(period_s), timed_jumps(period_s / 4)
 
 
 def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict[str, Floats]:

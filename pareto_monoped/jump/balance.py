@@ -152,7 +152,8 @@ def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
     mesh = gear_efficiency(robots, calibration.drive)[0]
     chain = np.array([1.0, calibration.drive.chain_efficiency])
     lost = 1.0 - mesh * chain
-    return np.divide(1.0 - mesh, lost, out=np.zeros(2), where=lost > 0.0)
+    shares: Floats = np.divide(1.0 - mesh, lost, out=np.zeros(2), where=lost > 0.0)
+    return shares
 
 
 def back_s(calibration: Calibration) -> float:

@@ -9,6 +9,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -16,7 +17,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
-from pareto_monoped.errors import CalibrationError, InputError
+from pareto_monoped.errors import CalibrationError, InputError, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 from pareto_monoped.robot.population import MassOptions
 
@@ -294,7 +295,16 @@ def _whole(number: float) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """Everything that a jump depends on besides the robot; every result names its calibration."""
+    """Everything that a jump depends on besides the robot; every result names its calibration.
+
+    Example:
+        >>> from dataclasses import replace
+        >>> from pareto_monoped import load_calibration
+        >>> known = load_calibration("reference")
+        >>> slippery = replace(known, name="slippery", contact=replace(known.contact, friction=0.5))
+        >>> slippery.label
+        'slippery-3'
+    """
 
     __pydantic_config__ = _STRICT
 
@@ -357,27 +367,31 @@ def earlier_calibrations() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir()))
 
 
+@cache
+def _present_labels() -> Mapping[str, str]:
+    """Label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
+    return {load_calibration(name).label: name for name in calibration_names()}
+
+
 def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
 
-    A name means the present version; the label of an earlier version (``reference-1``) means that one.
+    A name means the present version; a label (``reference-1``) means that version, the present one or an earlier one.
 
     Raises:
         CalibrationError: unknown name, unreadable file, or a field missing, unknown or out of range.
     """
     if "/" in name_or_path or name_or_path.endswith(".toml"):
         path = Path(name_or_path)
-    elif name_or_path in calibration_names():
-        path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name_or_path}.toml"))
+    elif name := name_or_path if name_or_path in calibration_names() else _present_labels().get(name_or_path):
+        path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name}.toml"))
     elif name_or_path in earlier_calibrations():
         path = Path(
             str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
         )
     else:
-        known = (*calibration_names(), *earlier_calibrations())
-        raise CalibrationError(
-            f"calibration {name_or_path!r}: must be one of {', '.join(known)}, or a TOML file; correct the name"
-        )
+        known = (*calibration_names(), *sorted((*earlier_calibrations(), *_present_labels())))
+        raise CalibrationError(unknown_name("calibration", name_or_path, known, ", or a TOML file"))
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
     return calibration_of(values, source=f"calibration file {path.name}")
 

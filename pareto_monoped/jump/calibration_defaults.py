@@ -1,10 +1,15 @@
 """What goes with a calibration by its name alone; reading a stored study needs no more, and no simulator."""
 
+import re
+
 from pareto_monoped.design import DEFAULT_RULES, RuleSet
 from pareto_monoped.errors import CalibrationError, InputError, complaint
 
 DEFAULT = "reference"
 _PAPER = "paper"
+OWN_CALIBRATION = "own:"
+"""In a study, what the name of a calibration begins with that no file and no shipped name leads to: its values stand in
+the study's database alone."""
 
 
 def rules_for(
@@ -23,7 +28,7 @@ def rules_for(
     Raises:
         CalibrationError: (or ``error``) other rules than ``paper`` were asked for with the calibration ``paper``.
     """
-    if calibration != _PAPER:
+    if not _is_paper(calibration):
         return DEFAULT_RULES if asked is None else asked
     if asked not in (None, "paper"):
         allowed = f"'paper' with the calibration {_PAPER!r}, which is fitted with these gearboxes"
@@ -36,4 +41,9 @@ def strength_for(calibration: str) -> bool:
 
     The calibration ``paper`` follows the paper's simulation, whose robot has no end stops.
     """
-    return calibration != _PAPER
+    return not _is_paper(calibration)
+
+
+def _is_paper(calibration: str) -> bool:
+    """Whether a name is that of the calibration ``paper``, with or without a version."""
+    return re.fullmatch(rf"{_PAPER}(-\d+)?", calibration) is not None

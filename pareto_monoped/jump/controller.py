@@ -298,7 +298,7 @@ def _gate(clearance: float, touching: bool, jump: Any) -> float:
     """The share of the torque that passes at a foot clearance; notes lift-off."""
     length = jump.fade_length_m
     if length > 0.0:
-        u = min(max(clearance / length, 0.0), 1.0)
+        u: float = min(max(clearance / length, 0.0), 1.0)
         gate = 1.0 - u * u * (3.0 - 2.0 * u)
         in_air = clearance >= length
     else:
@@ -318,7 +318,8 @@ def _release(knee: float, jump: Any) -> float:
     """The share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
     if jump.knee_release_rad == 0.0:
         return 1.0
-    return min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
+    share: float = min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
+    return share
 
 
 @compiled
@@ -386,7 +387,7 @@ def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any
 @compiled
 def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
     """``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
-    limit = jump.torque_limit_n_m[joint]
+    limit: float = jump.torque_limit_n_m[joint]
     upper, lower = limit, -limit
     if jump.voltage_limit > 0.0:
         no_load, corner = jump.no_load_speed_rad_per_s[joint], jump.corner_speed_rad_per_s[joint]
@@ -404,7 +405,8 @@ def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
 @compiled
 def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
     """The torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
-    loss, limit = jump.loss[joint], jump.torque_limit_n_m[joint]
+    loss: float = jump.loss[joint]
+    limit: float = jump.torque_limit_n_m[joint]
     if loss == 0.0 or torque == 0.0:
         return torque
     after = torque - loss * abs(torque) * math.tanh(speed / jump.loss_speed_rad_per_s)

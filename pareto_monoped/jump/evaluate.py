@@ -1,6 +1,7 @@
 """Designs in, evaluations out, in the same order: search, report and command line jump through this module only."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -119,7 +120,10 @@ class Evaluator:
         actuator_maps: of every kit.
         calibration: the jump model.
         workers: threads.
+        executor: what shares out the jumps, see ``jump.shared``; None: these threads do them all.
     """
+
+    executor: Executor | None = None
 
     def __init__(
         self,

@@ -2,12 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+T = TypeVar("T", bound="DataclassInstance")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
@@ -18,13 +21,13 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
         rows: indices of the rows to keep, in this order.
     """
     kept: dict[str, Any] = {}
-    for field in fields(record):  # type: ignore[arg-type]
+    for field in fields(record):
         values = getattr(record, field.name)
         if isinstance(values, tuple):
             kept[field.name] = tuple(values[i] for i in rows)
         elif isinstance(values, np.ndarray):
             kept[field.name] = values[rows]
-    return replace(record, **kept)  # type: ignore[type-var]
+    return replace(record, **kept)
 
 
 def joined(records: Sequence[T]) -> T:
@@ -36,10 +39,10 @@ def joined(records: Sequence[T]) -> T:
     if len(records) == 1:
         return records[0]
     together: dict[str, Any] = {}
-    for field in fields(records[0]):  # type: ignore[arg-type]
+    for field in fields(records[0]):
         parts = [getattr(record, field.name) for record in records]
         if isinstance(parts[0], tuple):
             together[field.name] = tuple(item for part in parts for item in part)
         elif isinstance(parts[0], np.ndarray):
             together[field.name] = np.concatenate(parts)
-    return replace(records[0], **together)  # type: ignore[type-var]
+    return replace(records[0], **together)

@@ -5,18 +5,22 @@ what the audit measures one after the other, and the error of a step of first or
 jump is close to the one evaluated, an audit finds nothing. The others are audited.
 """
 
+from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.joint_maps import Maps
+from pareto_monoped.compute.chunks import pace_of, spread
+from pareto_monoped.compute.threads import task_threads
 from pareto_monoped.design import CONTROL, columns
 from pareto_monoped.jump.audit import LIMITS, Floats, Jumps, perturbed
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.closure import balanced
 from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.jump.rows import take
+from pareto_monoped.jump.rows import joined, take
+from pareto_monoped.jump.shared import built, setup_text
 from pareto_monoped.robot.population import robot_arrays
 
 CLEAR: dict[str, float] = {"half_step_height_m": 0.5, "half_step_energy": 1.5, "energy_balance_error": 0.5}
@@ -82,6 +86,7 @@ def screened(
     known: Jumps,
     *,
     workers: int = 1,
+    executor: Executor | None = None,
     seed: int = 0,
 ) -> Screened:
     """Compare the jumps of designs with coarse ones. To the last bit, no design's result depends on the others.
@@ -92,8 +97,17 @@ def screened(
         calibration: the jump model.
         known: the jumps of the designs under it.
         workers: threads.
+        executor: does the jumps in their place.
         seed: of the perturbations.
     """
+    if executor is not None and len(designs):
+        text = setup_text([actuator_map], calibration)
+
+        def of_rows(rows: slice) -> tuple[str, Floats, Jumps, int]:
+            return text, designs[rows], take(known, np.arange(rows.start, rows.stop)), seed
+
+        pace = pace_of(executor, _screened_of, text)
+        return joined(spread(executor, pace, len(designs), _screened_of, of_rows))
     changes = {name: np.full(len(designs), np.nan) for name in (field.name for field in fields(Screened))}
     coarse = coarser(calibration)
     jumped = np.flatnonzero(known.ok)
@@ -108,3 +122,9 @@ def screened(
         for name, values in zip(changes, (height, energy, found.error), strict=True):
             changes[name][rows] = np.where(found.ok, values, np.inf)
     return Screened(**changes)
+
+
+def _screened_of(text: str, designs: Floats, known: Jumps, seed: int) -> Screened:
+    """What a worker does."""
+    (maps,), calibration = built(text)
+    return screened(designs, maps, calibration, known, workers=task_threads(), seed=seed)

@@ -10,7 +10,8 @@ from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.actuator_fit import ActuatorFit
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, NECK_RADIUS, SEAT_RADIUS, support_parts
+from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, SEAT_RADIUS, support_parts
+from pareto_monoped.leg.sprocket import BORE_RADIUS as NECK_RADIUS
 from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
 from pareto_monoped.materials import ALLOYS, MATERIALS
 

@@ -41,7 +41,8 @@ def _of_two(points: NDArray[np.float64]) -> NDArray[np.intp]:
     order = np.lexsort((points[:, 1], points[:, 0]))
     second = points[order, 1]
     least_before = np.concatenate(([np.inf], np.minimum.accumulate(second)[:-1]))
-    return order[second < least_before]
+    front: NDArray[np.intp] = order[second < least_before]
+    return front
 
 
 def _of_more(points: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -14,7 +14,8 @@ from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
-from pareto_monoped.pareto.pick import Knee, MinHeight, Selector, pick
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.jump_packing import packed as packed_jumps
 from pareto_monoped.report.motors import gearbox_numbers

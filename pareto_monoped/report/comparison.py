@@ -105,7 +105,8 @@ def least_second(front: Floats, levels: Floats, objectives: Objectives = HEIGHT_
     """
     points = objectives.minimised(front)
     reach = points[:, 0][None, :] <= (levels * objectives.signs[0])[:, None]
-    return np.where(reach, points[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
+    least: Floats = np.where(reach, points[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
+    return least
 
 
 def _surface(

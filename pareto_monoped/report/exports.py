@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.jobs import trial_job
 from pareto_monoped.cad.made import is_made
-from pareto_monoped.cad.write.folder import RECORD
+from pareto_monoped.cad.write.formats import RECORD
 from pareto_monoped.errors import OutputError
 from pareto_monoped.report.schema import Model3D
 from pareto_monoped.study.reader import StudyData
@@ -141,7 +141,8 @@ def coarser(triangles_mm: Floats, most: int) -> Floats:
         new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
         kept = np.sort(order[new])
         if len(kept) <= most:
-            return grid[kept] * step + middle
+            thinned: Floats = grid[kept] * step + middle
+            return thinned
         step *= 1.25
 
 

@@ -66,7 +66,7 @@ def _style() -> Iterator[Any]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    settings = {
+    settings: dict[Any, Any] = {
         "font.size": 8.0,
         "axes.linewidth": 0.6,
         "axes.grid": True,

@@ -56,7 +56,8 @@ def front_figure(payload: Payload, figure: Any) -> bool:
     axes.set(xlabel=axis_title(across), ylabel=axis_title(up))
     if third and axes.collections:
         figure.colorbar(axes.collections[-1], ax=axes, label=axis_title(third[0]))
-    axes.legend(**ABOVE)
+    # Over the whole width of the figure: long names of studies would not fit over the axes alone.
+    figure.legend(loc="outside upper left", ncols=2, columnspacing=1.0, borderaxespad=0.1)
     return True
 
 

@@ -110,16 +110,16 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 
 def page(payload: Payload) -> str:
     """The whole HTML text."""
-    script = "(() => {\n'use strict';\n" + "\n".join(_asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
+    script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     # Only this script may run, whatever else gets into the page, and nothing may be loaded.
     policy = (
-        f"default-src 'none'; script-src {_fingerprint(script)}; style-src 'unsafe-inline'; "
+        f"default-src 'none'; script-src {fingerprint(script)}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
-    return Template(_asset("page.html")).substitute(
+    return Template(asset("page.html")).substitute(
         policy=policy,
         title=safe(payload.title),
-        style="".join(_asset(f"{name}.css") for name in STYLES),
+        style="".join(asset(f"{name}.css") for name in STYLES),
         head=head(payload),
         kind=safe(kind(payload)),
         fields=ask_fields(payload),
@@ -137,8 +137,13 @@ def page(payload: Payload) -> str:
 
 
 def embedded(payload: Payload) -> str:
-    """The payload as JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
-    text = json.dumps(payload, default=_plain, allow_nan=False, separators=(",", ":"))
+    """The payload as JSON for a script element."""
+    return embedded_json(payload)
+
+
+def embedded_json(values: Any) -> str:
+    """JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
+    text = json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
@@ -148,9 +153,11 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} does not belong on the page")
 
 
-def _fingerprint(script: str) -> str:
+def fingerprint(script: str) -> str:
+    """What a page's policy calls the one script that may run."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """The text of a script, style sheet or page of the report."""
     return (resources.files("pareto_monoped.report") / "assets" / name).read_text(encoding="utf-8")

@@ -58,7 +58,7 @@ EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 
 
 def quantities_of(robust: Sequence[str]) -> tuple[Quantity, ...]:
-    """``QUANTITIES``, and some measures under uncertainty by name."""
+    """``QUANTITIES``, and some measures under uncertainty and own functions by name."""
     return (*QUANTITIES, *(_of(measure(name)) for name in robust))
 
 

@@ -90,7 +90,8 @@ def _height_m(jumps: Mapping[int, "Recording"], trial: int) -> float:
 
 def _chosen(front: pd.DataFrame, data: StudyData, most: int) -> list[int]:
     """Positions on the front of at most ``most`` designs spread evenly over it, and of the knee."""
-    from pareto_monoped.pareto.pick import Knee, pick
+    from pareto_monoped.pareto.pick import pick
+    from pareto_monoped.pareto.selectors import Knee
 
     chosen = set(_spread(len(front), most)) if most else set()
     if len(front) and most:

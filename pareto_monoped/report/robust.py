@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.measures import ROBUST_NAMES, is_robust
+from pareto_monoped.measures import ROBUST_NAMES, is_own, is_robust
 from pareto_monoped.report.packing import packed
 from pareto_monoped.report.rounding import column
 from pareto_monoped.report.schema import Influences, Number, OtherDesign, Robust
@@ -50,10 +50,11 @@ def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int
 
 
 def names_of(studies: Sequence[StudyData], robust: Sequence[Robust | None]) -> tuple[str, ...]:
-    """The measures under uncertainty that some study on the page has, in the order of their table."""
+    """What some study on the page has beside its jumps' measures: those under uncertainty, then own functions."""
     there = {name for data in studies for name in data.trials if is_robust(name)}
     there.update(name for one in robust if one is not None for name in one.packed)
-    return tuple(name for name in ROBUST_NAMES if name in there)
+    own = dict.fromkeys(name for data in studies for name in data.trials if is_own(name))
+    return (*(name for name in ROBUST_NAMES if name in there), *own)
 
 
 def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> tuple[OtherDesign, ...]:

@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.design import Variable
-from pareto_monoped.measures import GOAL_NAMES
+from pareto_monoped.measures import GOAL_NAMES, is_own
 from pareto_monoped.report.packing import packed
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL
 from pareto_monoped.report.rounding import column
@@ -57,7 +57,8 @@ def trial_columns(
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(values_of(trials, name)) for name in names}
     columns |= numbers
-    others = [name for name in GOAL_NAMES if name in trials.columns and name not in names]
+    own = [name for name in trials.columns if is_own(name)]
+    others = [name for name in (*GOAL_NAMES, *own) if name in trials.columns and name not in names]
     return Trials(
         trial=trials["trial"].tolist(),
         state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),

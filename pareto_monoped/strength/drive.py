@@ -10,7 +10,7 @@ import numpy as np
 
 from pareto_monoped.actuator.front import z_pin_front
 from pareto_monoped.actuator.layout import Layout, layout
-from pareto_monoped.actuator.rating.build import load_sharing
+from pareto_monoped.actuator.sharing import load_sharing
 from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role

@@ -110,7 +110,8 @@ def capacities(maps: JointMaps) -> Capacities:
 
 def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:
     present = [entry.actuator is not None for entry in actuator_map.entries]
-    return np.maximum(np.cumsum(present) - 1, 0)
+    places: NDArray[np.intp] = np.maximum(np.cumsum(present) - 1, 0)
+    return places
 
 
 def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:

@@ -35,7 +35,7 @@ def static_torques_n_m(s: Structure) -> tuple[float, float]:
     shares = np.ones(2)
     for _ in range(_MOST_STEPS):
         flank, root = stage.static_safeties(actuator.face_width_mm, shares)
-        spare = np.array([flank[0], root[1]]) / required  # type: ignore[index]
+        spare = np.array([np.asarray(flank)[0], np.asarray(root)[1]]) / required
         step = np.array([np.square(spare[0]), spare[1]])
         shares = shares * step
         if np.all(np.abs(step - 1.0) < _CLOSE):

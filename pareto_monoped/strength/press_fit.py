@@ -47,4 +47,5 @@ class PressFit:
         There, sigma_t = p (1 + Q^2) / (1 - Q^2) and sigma_r = -p, so that sigma_v = p sqrt(3 + Q^4) / (1 - Q^2).
         """
         q2 = self.thinness**2
-        return yield_mpa * (1.0 - q2) / (3.0 + q2**2) ** 0.5
+        pressure_mpa: float = yield_mpa * (1.0 - q2) / (3.0 + q2**2) ** 0.5
+        return pressure_mpa

@@ -4,6 +4,9 @@ A stop of torque T pushes with F = T / lever. Every capacity is the torque of a 
 elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 8).
 """
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part
@@ -19,6 +22,8 @@ from pareto_monoped.materials import ALLOYS, MATERIALS
 from pareto_monoped.strength.bolted import least_preload_n
 from pareto_monoped.strength.drive import fastening, shank_and_thread_mm
 from pareto_monoped.strength.joint import SIDES, LegJoint, Side, Structure
+
+Capacity = Callable[[Structure], float]
 
 ALLOY = ALLOYS["aw_6082_t6"]
 """Of plates, seats, strikers and rods."""
@@ -143,7 +148,7 @@ def seat_screw(s: Structure) -> float:
 _PARTS = {"hip": ("hip_striker_front", "hip_striker_rear"), "knee": ("knee_seat_extension", "knee_seat_flexion")}
 
 
-def _row(name: str, side: Side, formula: str, capacity: object, parts: tuple[str, ...]) -> LegJoint:
+def _row(name: str, side: Side, formula: str, capacity: Capacity, parts: tuple[str, ...]) -> LegJoint:
     return LegJoint(
         name=name,
         group="stops",
@@ -153,7 +158,7 @@ def _row(name: str, side: Side, formula: str, capacity: object, parts: tuple[str
         required_source="our own choice against yield: 1.1 of EN 1999-1-1 for the metal, 10 percent for the impact's "
         "scatter",
         loads=(f"peak_stop_torque_{side}_n_m",),
-        capacity=capacity,  # type: ignore[arg-type]
+        capacity=capacity,
         parts=parts,
         cure=f"release the {side}'s torque before its stop, or jump lower",
     )
@@ -168,12 +173,10 @@ JOINTS = (
                 f"{side}_stop_edges",
                 side,
                 "lever A R_e / T",
-                lambda s, side=side: on_edges(side, s),
+                partial(on_edges, side),
                 (*_PARTS[side], "thigh_plate_inner", "thigh_plate_outer"),
             ),
-            _row(
-                f"{side}_stop_foot", side, "lever 8 Z R_e / gap / T", lambda s, side=side: foot(side, s), _PARTS[side]
-            ),
+            _row(f"{side}_stop_foot", side, "lever 8 Z R_e / gap / T", partial(foot, side), _PARTS[side]),
         )
     ),
     _row("knee_heel", "knee", "lever Z R_e / arm / T", heel, ("thigh_plate_inner", "thigh_plate_outer")),

@@ -38,7 +38,8 @@ def stud_fatigue_n(diameter_mm: float, cycles: float) -> float:
     """
     amplitude_mpa = 0.85 * (150.0 / diameter_mm + 45.0)
     amplitude_mpa *= (_LIMIT_CYCLES / min(max(cycles, _LEAST_CYCLES), _LIMIT_CYCLES)) ** (1.0 / 3.0)
-    return 2.0 * amplitude_mpa * thread_size(diameter_mm).stress_area_mm2
+    force_n: float = 2.0 * amplitude_mpa * thread_size(diameter_mm).stress_area_mm2
+    return force_n
 
 
 def strip_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> float:

@@ -6,7 +6,7 @@ output's torque, goes back to the first one through the webs; that the pins are 
 
 import numpy as np
 
-from pareto_monoped.actuator.front import WEB_SCREW
+from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Arc
 from pareto_monoped.geometry.tightening import YIELD_MPA, Fastening

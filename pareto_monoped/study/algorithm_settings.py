@@ -34,7 +34,7 @@ class SurrogateSettings:
     """Evolution that ranks many offspring by a cheap model and simulates the most promising.
 
     Attributes:
-        population: designs simulated per generation.
+        population: designs simulated in each of the first 50 generations; later ones have twice as many.
         drawn_generations: generations that are spread over the space before the model begins.
         offspring: how many offspring are ranked for each that is simulated.
         crossover_eta, mutation_eta: of simulated binary crossover and polynomial mutation.
@@ -112,7 +112,22 @@ class WeightedSettings:
     )
 
 
-AlgorithmSettings = EvolutionSettings | OptunaSettings | RandomSettings | SurrogateSettings | WeightedSettings
+OWN_ALGORITHM = "own:"
+"""What the name of a user's own algorithm begins with; the name of its class follows."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnSettings:
+    """An algorithm of the user's own, of which a study knows the name alone."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Annotated[str, Field(pattern=rf"^{OWN_ALGORITHM}[A-Za-z_][A-Za-z0-9_]{{0,99}}$")]
+
+
+AlgorithmSettings = (
+    EvolutionSettings | OptunaSettings | OwnSettings | RandomSettings | SurrogateSettings | WeightedSettings
+)
 
 ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
     "nsga2": EvolutionSettings,

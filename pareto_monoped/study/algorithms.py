@@ -1,9 +1,13 @@
 """The registry of search algorithms: settings in, algorithm out. Each implementation is imported only when used."""
 
+from typing import Any
+
 from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import StudyError
 from pareto_monoped.study.algorithm_settings import (
     EvolutionSettings,
     OptunaSettings,
+    OwnSettings,
     RandomSettings,
     SurrogateSettings,
     WeightedSettings,
@@ -14,13 +18,21 @@ from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.protocol import Algorithm
 
 
-def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None) -> Algorithm:
+def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None, own: Any = None) -> Algorithm:
     """The search algorithm that the study's settings name, before its first ``ask``.
 
     Args:
         study: its settings.
         coordinates: what it searches; every free variable within its bounds if None.
+        own: the user's own algorithm, see ``own_algorithm``, where the settings name one.
+
+    Raises:
+        StudyError: the settings name the user's own algorithm, and ``own`` is another or None.
     """
+    if own is not None and not isinstance(study.algorithm, OwnSettings):
+        raise StudyError(
+            f"algorithm: an own one is given, but the study's is {study.algorithm.name!r}, which it knows; leave it out"
+        )
     coordinates = coordinates or plain_coordinates(study)
     space = coordinates.space
     match study.algorithm:
@@ -47,6 +59,10 @@ def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None) -> A
             assert isinstance(coordinates, Coordinates)  # the study file refuses several motors
             first = coordinates.values(start[None])[0]
             return WeightedSearch(space, settings, first, study.seed, study.reference_point)
+        case OwnSettings() as settings:
+            from pareto_monoped.study.own_algorithm import OwnAlgorithm
+
+            return OwnAlgorithm(space, settings, study.seed, own)
         case RandomSettings() as settings:
             from pareto_monoped.study.random_search import RandomSearch
 

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.study.distances import farthest_first, nearest_places, shortfall_of_two
 from pareto_monoped.study.protocol import Floats, Scores, Space
+from pareto_monoped.study.response_surface import features_of
 
 _POSTS = 20
 """Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
@@ -48,16 +50,16 @@ class Standing:
         """Costs as shares of the front's extent, shape (n, m)."""
         return (costs - self.low) / self.extent
 
-    def away(self, costs: Floats) -> Floats:
-        """Squared distance of n designs from each of k posts, as shares of the front's extent, (n, m) -> (k, n)."""
-        points, posts = self.scaled(costs), self.scaled(self.costs[self.front[self.posts]])
-        return np.stack([np.square(points - post).sum(axis=1) for post in posts])
+    @property
+    def stands(self) -> Floats:
+        """Where the k posts stand, as shares of the front's extent, shape (k, m)."""
+        return self.scaled(self.costs[self.front[self.posts]])
 
     def parts(self, costs: Floats) -> NDArray[np.intp]:
         """Which of the posts is nearest each of n designs, shape (n, m) -> (n,); 0 without a front."""
         if len(self.posts) == 0:
             return np.zeros(len(costs), dtype=np.intp)
-        return np.asarray(self.away(costs).argmin(axis=0))
+        return nearest_places(self.scaled(costs), self.stands)
 
 
 class Archive:
@@ -65,34 +67,46 @@ class Archive:
 
     Above ``_MOST`` designs, ``_KEPT`` stay: the front, evenly thinned if it is long, then the designs close behind it,
     and a share spread over all others.
+
+    Attributes:
+        space: that is searched.
+        values: of the designs' variables, shape (n, d).
+        points: their features, see ``Features.scaled``, shape (n, f).
+        constraints: how far each of k constraints is missed, shape (n, k).
     """
 
     def __init__(self, space: Space) -> None:
         self.space = space
+        self._features = features_of(space)
         self.values: Floats = np.zeros((0, len(space.names)))
+        self.points: Floats = np.zeros((0, len(self._features.lower)))
         self.constraints: Floats = np.zeros((0, 0))
         self._objectives: Floats = np.zeros((0, len(space.objectives.names)))
         self._violation: Floats = np.zeros(0)
+        # The front of the first designs, and of how many: what has been dominated once stays so.
+        self._front, self._fronted = np.zeros(0, dtype=np.intp), 0
 
     def add(self, values: Floats, scores: Scores) -> None:
         """Add simulated designs: points of the space, shape (n, d), and their scores."""
         missed = scores.constraints if scores.constraints.shape[1] else scores.violation[:, None]
         self.constraints = np.vstack((self.constraints, missed)) if len(self.values) else missed
         self.values = np.vstack((self.values, values))
+        self.points = np.vstack((self.points, self._features.scaled(values)))
         self._objectives = np.vstack((self._objectives, scores.values))
         self._violation = np.concatenate((self._violation, scores.violation))
         if len(self.values) > _MOST:
             self._keep(_told_most(self.standing(), _KEPT))
 
     def _keep(self, rows: NDArray[np.intp]) -> None:
-        self.values, self.constraints = self.values[rows], self.constraints[rows]
+        self.values, self.points, self.constraints = self.values[rows], self.points[rows], self.constraints[rows]
         self._objectives, self._violation = self._objectives[rows], self._violation[rows]
+        self._front, self._fronted = self._front[:0], 0
 
     def standing(self) -> Standing:
         """How the designs stand now."""
         costs = self._costs()
         jumped = np.asarray(np.isfinite(costs).all(axis=1))
-        front = np.flatnonzero(front_mask(self._objectives, self.space.objectives, self._violation == 0.0))
+        front = self._feasible_front()
         front = front[np.argsort(costs[front, 0], kind="stable")]
         low, extent = np.zeros(costs.shape[1]), np.ones(costs.shape[1])
         posts, behind = np.zeros(0, dtype=np.intp), self._violation.copy()
@@ -105,10 +119,17 @@ class Archive:
             points = (np.where(jumped[:, None], costs, low) - low) / extent
             behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
         # Of equals the newest first: a long front is known best where the search is now.
-        order = np.lexsort((-np.arange(len(behind)), behind))
+        order = len(behind) - 1 - np.argsort(behind[::-1], kind="stable")
         return Standing(
             costs=costs, front=front, posts=posts, behind=behind, order=order[jumped[order]], low=low, extent=extent
         )
+
+    def _feasible_front(self) -> NDArray[np.intp]:
+        """Rows of the designs on the front, in their order."""
+        rows = np.concatenate((self._front, np.arange(self._fronted, len(self.values))))
+        on_it = front_mask(self._objectives[rows], self.space.objectives, self._violation[rows] == 0.0)
+        self._front, self._fronted = rows[on_it], len(self.values)
+        return self._front
 
     def _costs(self) -> Floats:
         values, feasible = self._objectives, self._objectives[self._violation == 0.0]
@@ -149,7 +170,8 @@ def shortfall(points: Floats, front: Floats) -> Floats:
         Shape (n,).
     """
     if front.shape[1] == 2:
-        return _shortfall_of_two(points, front)
+        # Along a front, a point falls ever less short in the first objective and ever more in the second.
+        return shortfall_of_two(points, front[np.lexsort((-front[:, 1], front[:, 0]))])
     result = np.empty(len(points))
     for first in range(0, len(points), _CHUNK):
         rows = slice(first, first + _CHUNK)
@@ -161,23 +183,7 @@ def shortfall(points: Floats, front: Floats) -> Floats:
     return result
 
 
-def _shortfall_of_two(points: Floats, front: Floats) -> Floats:
-    """``shortfall`` of two objectives.
-
-    Along a front, a point falls ever less short in the first objective and ever more in the second. The lesser of both
-    is therefore greatest where they cross.
-    """
-    front = front[np.lexsort((-front[:, 1], front[:, 0]))]
-    after = np.searchsorted(front[:, 0] - front[:, 1], points[:, 0] - points[:, 1])
-    sides = (np.maximum(after - 1, 0), np.minimum(after, len(front) - 1))
-    return np.maximum(*((points - front[side]).min(axis=1) for side in sides))
-
-
 def _posts(front: Floats) -> NDArray[np.intp]:
     """Rows of the front that stand for its parts: the best in each objective, then always the farthest from them."""
     chosen = list(dict.fromkeys(front.argmin(axis=0).tolist()))
-    away = np.min([np.square(front - front[row]).sum(axis=1) for row in chosen], axis=0)
-    while len(chosen) < _POSTS and away.max() > 0.0:
-        chosen.append(int(away.argmax()))
-        away = np.minimum(away, np.square(front - front[chosen[-1]]).sum(axis=1))
-    return np.array(chosen, dtype=np.intp)
+    return farthest_first(front, np.array(chosen, dtype=np.intp), _POSTS)

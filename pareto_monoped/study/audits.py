@@ -1,6 +1,7 @@
 """Audits of a study's front: whether each point is a property of its design or an accident of the simulation."""
 
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,7 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
     """
     from pareto_monoped.jump.screen import screened
 
-    calibration, workers = simulator.calibration, simulator.evaluator.workers
+    calibration, workers, executor = simulator.calibration, simulator.evaluator.workers, simulator.evaluator.executor
     while True:
         data = read_study(db)
         front = data.front()
@@ -40,27 +41,36 @@ def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[
             return
         notify(f"auditing {len(fresh)} designs of the front")
         for kit, rows in _chunks(data, fresh):
-            found = screened(_designs(rows), kit, calibration, _known(rows), workers=workers)
+            found = screened(_designs(rows), kit, calibration, _known(rows), workers=workers, executor=executor)
             clear = found.clear
             columns = {name: values[clear] for name, values in found.as_columns().items()}
             _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
             unclear = rows[~clear]
             for first in range(0, len(unclear), _AUDITED):
-                _audit(store, unclear.iloc[first : first + _AUDITED], kit, calibration, workers)
+                _audit(store, unclear.iloc[first : first + _AUDITED], kit, calibration, workers, executor)
 
 
-def _audit(store: Store, rows: pd.DataFrame, kit: JointMaps, calibration: Calibration, workers: int) -> None:
+def _audit(
+    store: Store,
+    rows: pd.DataFrame,
+    kit: JointMaps,
+    calibration: Calibration,
+    workers: int,
+    executor: Executor | None,
+) -> None:
     """Audit trials briefly, and store what was found."""
     from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
 
-    audits = audit(_designs(rows), kit, calibration, workers=workers, known=_known(rows), brief=True)
+    known = _known(rows)
+    audits = audit(_designs(rows), kit, calibration, workers=workers, executor=executor, known=known, brief=True)
     columns = {name: values for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL}
     good = columns.pop("well_conditioned")
     _store(store, rows, good, columns)
 
 
 def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
-    return rows[list(NAMES)].to_numpy(dtype=np.float64)
+    values: NDArray[np.float64] = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    return values
 
 
 def _known(rows: pd.DataFrame) -> "Jumps":

@@ -27,7 +27,7 @@ def mutated(choices: Floats, count: int, probability: float, generator: np.rando
     return np.where(changes, others, choices)
 
 
-class MotorSBX(SBX):
+class MotorSBX(SBX):  # type: ignore[misc]  # pymoo has no types
     """Simulated binary crossover of the numbers, exchange of the motors."""
 
     def __init__(self, space: Space, **settings: float) -> None:
@@ -43,7 +43,7 @@ class MotorSBX(SBX):
         return children
 
 
-class MotorPM(PM):
+class MotorPM(PM):  # type: ignore[misc]  # pymoo has no types
     """Polynomial mutation of the numbers, another motor with the same probability."""
 
     def __init__(self, space: Space, **settings: float) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
-from pareto_monoped.pareto.pick import MinHeight, pick
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import MinHeight
 from pareto_monoped.study.reader import StudyData
 
 HEIGHT_AND_BATTERY = Objectives(names=("height_m", "electrical_energy_j"))

@@ -133,8 +133,9 @@ COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_M
 
 
 def columns_of(study: "Study") -> tuple[Column, ...]:
-    """The columns of a study: all, and those of the measures under uncertainty that it asks for."""
-    return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in study.robust_names))
+    """The columns of a study: all, and those of the measures under uncertainty and own functions that it asks for."""
+    asked = (*study.robust_names, *study.own_names)
+    return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in asked))
 
 
 def listed(names: Iterable[str]) -> str:

@@ -113,11 +113,16 @@ def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
     """The gearboxes that ratios within the bounds, both included, lead to; by ascending real ratio.
 
     An interval of the map counts if the bounds touch it, so that 8.7 as the upper bound includes the gearbox of
-    [8.7, 8.8), whose real ratio may be a little more.
+    [8.7, 8.8), whose real ratio may be a little more. Where all intervals within the bounds are empty, there is none:
+    a gearbox from outside does not stand in for all of them.
     """
     lows = actuator_map.ratios_low
     within = lows[(lows > bounds.lower) & (lows < bounds.upper)]
-    chosen = np.unique(actuator_map.interval_index(np.concatenate(([bounds.lower], within, [bounds.upper]))))
+    ratios = np.concatenate(([bounds.lower], within, [bounds.upper]))
+    indices = actuator_map.interval_index(ratios)
+    if all(actuator_map.stand_in(ratio) for ratio in ratios[indices >= 0]):
+        return ()
+    chosen = np.unique(indices)
     gears = []
     for index in chosen[chosen >= 0]:
         actuator = actuator_map.entries[index].actuator

@@ -52,8 +52,11 @@ def _of_sqlalchemy(error: BaseException | None) -> BaseException | None:
     imported only to ask for names.
     """
     library = sys.modules.get("sqlalchemy.exc")
-    while library is not None and error is not None:
-        if isinstance(error, library.SQLAlchemyError):
+    if library is None:
+        return None
+    wrapper: type[BaseException] = library.SQLAlchemyError
+    while error is not None:
+        if isinstance(error, wrapper):
             return error
         error = error.__cause__
     return None

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,16 +12,18 @@ from pydantic import ConfigDict, Field
 
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
-from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.errors import StudyError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
-from pareto_monoped.measures import SHARE_MEASURES, is_robust
+from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.study.algorithm_settings import (
     ALGORITHMS,
     DEFAULT_ALGORITHM,
+    OWN_ALGORITHM,
     AlgorithmSettings,
+    OwnSettings,
     WeightedSettings,
 )
 from pareto_monoped.study.goals import (
@@ -107,6 +109,12 @@ class Study:
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
     gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``uncertainty``
     is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
+
+    Example:
+        >>> from pareto_monoped import Study
+        >>> study = Study.define(name="mine", motor="U8", evaluations=400, constraints={"mass_kg": {"max": 4.0}})
+        >>> study.objectives.names, study.constraints.value("max_mass_kg")
+        (('height_m', 'energy_j'), 4.0)
     """
 
     name: str
@@ -146,7 +154,9 @@ class Study:
             >>> Study.from_toml("studies/case_c.toml", evaluations=400).name
             'case_c'
         """
-        return _filled(_file_values(Path(path)) | changes, source=f"study file {str(path)!r}")
+        if not isinstance(path, str | PathLike) or not isinstance(fspath(path), str):
+            raise StudyError(complaint("study file", path, "text or a path", "give one"))
+        return filled(file_values(Path(path)) | changes, source=f"study file {str(path)!r}")
 
     @classmethod
     def define(cls, **values: Any) -> "Study":
@@ -165,7 +175,7 @@ class Study:
             >>> study.free[0]
             'thigh_length_m'
         """
-        return _filled(dict(values), source="study")
+        return filled(dict(values), source="study")
 
     @property
     def motors(self) -> tuple[str, ...]:
@@ -189,10 +199,16 @@ class Study:
 
     @property
     def robust_names(self) -> tuple[str, ...]:
-        """The measures under uncertainty that each trial has: those asked for, and with them the shares of jumps."""
+        """The measures under uncertainty that each trial has, which are those asked for and the shares of jumps."""
         asked = [name for name in (*self.objectives.names, *self.constraints.measures) if is_robust(name)]
         shares = [entry.name for entry in SHARE_MEASURES] if asked else []
         return tuple(dict.fromkeys((*shares, *asked)))
+
+    @property
+    def own_names(self) -> tuple[str, ...]:
+        """The measures that are functions of the user's own, such as "own_landing_speed", each once."""
+        asked = (*self.objectives.names, *self.constraints.measures)
+        return tuple(dict.fromkeys(name for name in asked if is_own(name)))
 
     @property
     def least_safeties(self) -> dict[str, float]:
@@ -271,7 +287,7 @@ def load_study(
         StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
             weighted search, or no readable TOML.
     """
-    values = _file_values(path)
+    values = file_values(path)
     if evaluations is not None:
         values["evaluations"] = evaluations
     if seed is not None:
@@ -279,29 +295,48 @@ def load_study(
     if strength is not None:
         values["strength"] = strength
     if objectives is not None:
-        values["objectives"] = list(objectives)
-        if isinstance(corner := values.get("reference_point"), dict):
-            values["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
-    return _filled(values, source=f"study file {str(path)!r}")
+        values = with_objectives(values, objectives)
+    return filled(values, source=f"study file {str(path)!r}")
 
 
-def _file_values(path: Path) -> dict[str, Any]:
-    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved."""
-    values = read_toml(path, what="study file", error=StudyError)
+def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dict[str, Any]:
+    """The keys of a study file with other objectives; what its reference point says of others is left out."""
+    changed = dict(values) | {"objectives": list(objectives)}
+    if isinstance(corner := values.get("reference_point"), dict):
+        changed["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
+    return changed
+
+
+def file_values(path: Path) -> dict[str, Any]:
+    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved.
+
+    Raises:
+        StudyError: no readable TOML.
+    """
+    return with_paths(read_toml(path, what="study file", error=StudyError), path.parent)
+
+
+def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Keys of a study file with the files of motors and calibrations, named relative to ``folder``, as full paths."""
 
     def resolved(name: Any) -> Any:
         file = isinstance(name, str) and name.endswith(".toml")
-        return str((path.parent / name).resolve()) if file else name
+        return str((folder / name).resolve()) if file else name
 
+    changed = dict(values)
     for key in (*MOTOR_KEYS, "calibration"):
-        if key in values:
-            given = values[key]
-            values[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
-    return values
+        if key in changed:
+            given = changed[key]
+            changed[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
+    return changed
 
 
-def _filled(values: dict[str, Any], *, source: str) -> Study:
-    """The study of a file's keys, with the defaults of a file where they say nothing."""
+def filled(values: dict[str, Any], *, source: str) -> Study:
+    """The study of a file's keys, with the defaults of a file where they say nothing.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, or impossible bounds.
+    """
     calibration = str(values.get("calibration"))
     defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
     values = defaults | values
@@ -356,16 +391,16 @@ def _algorithm(file: _File, corner: ReferencePoint, source: str) -> AlgorithmSet
     if not table:
         return DEFAULT_ALGORITHM
     name = table.get("name")
-    kind = ALGORITHMS.get(name) if isinstance(name, str) else None
+    kind: type[AlgorithmSettings] | None = ALGORITHMS.get(name) if isinstance(name, str) else None
+    if isinstance(name, str) and name.startswith(OWN_ALGORITHM):
+        kind = OwnSettings
     if kind is None:
-        allowed = f"one of {', '.join(ALGORITHMS)}"
-        raise StudyError(f"{source}: {complaint('algorithm.name', name, allowed, 'correct it')}")
+        raise StudyError(f"{source}: {unknown_name('algorithm.name', name, ALGORITHMS)}")
     settings: AlgorithmSettings = checked(kind, table, source=f"{source}, table [algorithm]", error=StudyError)
     if isinstance(settings, WeightedSettings):
         for key, value in settings.start.items():
             if key not in NAMES:
-                allowed = f"one of {', '.join(NAMES)}"
-                raise StudyError(f"{source}: {complaint('variable in algorithm.start', key, allowed, 'correct it')}")
+                raise StudyError(f"{source}: {unknown_name('variable in algorithm.start', key, NAMES)}")
             _number(f"{source}: algorithm.start.{key}", key, value)
         _check_weighted(file, corner, source)
     return settings
@@ -394,8 +429,7 @@ def _check_weighted(file: _File, corner: ReferencePoint, source: str) -> None:
 def _variables(file: _File, source: str) -> dict[str, Bounds | float]:
     for name in file.variables:
         if name not in NAMES:
-            allowed = f"one of {', '.join(NAMES)}"
-            raise StudyError(f"{source}: {complaint('variable', name, allowed, 'correct the name')}")
+            raise StudyError(f"{source}: {unknown_name('variable', name, NAMES)}")
     chosen: dict[str, Bounds | float] = {}
     for variable in VARIABLES:
         given = file.variables.get(variable.name)
@@ -434,7 +468,16 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
                 "correct them, or fix the variable to a number"
             )
         return bounds
+    if not isinstance(given, int | float):
+        low, high = _limits(name)
+        allowed = f"a number from {low:g} to {high:g}, or a range such as {_range_example(name)}"
+        raise StudyError(complaint(key, given, allowed, "correct it"))
     return _number(key, name, given)
+
+
+def _range_example(name: str) -> str:
+    bounds = next(variable for variable in VARIABLES if variable.name == name)
+    return f'{{"lower": {bounds.lower:g}, "upper": {bounds.upper:g}}}'
 
 
 _LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
@@ -442,9 +485,14 @@ _LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
 _REST_LENGTHS_M = (0.5, 100.0)  # longer than any leg; a longer spring acts by its product with K alone
 
 
-def _number(key: str, name: str, given: Any) -> float:
+def _limits(name: str) -> tuple[float, float]:
+    """Least and greatest value of a variable."""
     unit = next(variable.unit for variable in VARIABLES if variable.name == name)
-    low, high = _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
+    return _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
+
+
+def _number(key: str, name: str, given: Any) -> float:
+    low, high = _limits(name)
     allowed = f"a number from {low:g} to {high:g}"
     if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
         raise StudyError(complaint(key, given, allowed, "correct it"))

@@ -103,7 +103,7 @@ def jsonable(value: float) -> float | str:
     return value if np.isfinite(value) else str(value)
 
 
-class _Snap(Repair):
+class _Snap(Repair):  # type: ignore[misc]  # pymoo has no types
     """Rounds the variables that are whole numbers."""
 
     def __init__(self, space: Space) -> None:
@@ -114,7 +114,7 @@ class _Snap(Repair):
         return self._space.snap(X)
 
 
-class _Unseen(DefaultDuplicateElimination):
+class _Unseen(DefaultDuplicateElimination):  # type: ignore[misc]  # pymoo has no types
     """Leaves out what is in the population already, as pymoo does, and what was ever asked for."""
 
     def __init__(self, seen: Seen) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M
-from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.measures import GOAL_NAMES, MEASURES, STATISTICS, is_robust, measure
+from pareto_monoped.errors import StudyError, complaint, unknown_name
+from pareto_monoped.measures import GOAL_NAMES, MEASURES, STATISTICS, is_goal, is_own, is_robust, measure
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
 from pareto_monoped.strength.groups import REQUIRED_MEASURES
@@ -32,7 +32,10 @@ _ALLOWED = {("min", "height_m"): (BASE_START_HEIGHT_M, 10.0), ("min", "foot_clea
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """One constraint: ``measure`` is at least (``min``) or at most (``max``) ``value``, in its stored unit."""
+    """One constraint: ``measure`` is at least (``min``) or at most (``max``) ``value``, in its stored unit.
+
+    Only that of an own function may be 0 or less.
+    """
 
     measure: str
     side: Side
@@ -49,9 +52,12 @@ class Limit:
         return "above" if self.side == "max" else "below"
 
     def shares(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0."""
+        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0.
+
+        Beyond a limit of 0 they are as far as their own values say.
+        """
         sign = 1.0 if self.side == "max" else -1.0
-        return sign * (values - self.value) / self.value
+        return sign * (values - self.value) / (abs(self.value) or 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,7 +117,9 @@ def constraints_of(
     for name in {name for _, name in chosen}:
         low, high = chosen.get(("min", name)), chosen.get(("max", name))
         if low is not None and high is not None and low > high:
-            raise StudyError(f"{source}: constraints.{name}: min = {low:g}, max = {high:g}: min must not exceed max")
+            raise StudyError(
+                f"{source}: constraints.{name}: min = {low:g}, max = {high:g}: min must not exceed max; swap them"
+            )
     limits = [Limit(measure=name, side=side, value=value) for (side, name), value in chosen.items()]
     return Constraints(limits=tuple(sorted(limits, key=_place)))
 
@@ -120,9 +128,9 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
     """Side, measure and value of each limit that one key of the table sets."""
     for side in ("min", "max"):
         name = key.removeprefix(f"{side}_")
-        if name != key and name in GOAL_NAMES:
+        if name != key and is_goal(name):
             return [(side, name, value)]
-    if key not in GOAL_NAMES:
+    if not is_goal(key):
         near = _near(key.removeprefix("min_").removeprefix("max_"))
         raise StudyError(f"{source}: constraints.{key}: must be the name of a measure; {near}")
     if not isinstance(value, Mapping) or not value or not set(value) <= {"min", "max"}:
@@ -134,7 +142,11 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
 def _value(place: tuple[Side, str], value: Any, typed: str) -> float:
     """The value of a limit; ``typed`` is its key as in the file, for the message."""
     low, high = _ALLOWED.get(place, (0.0, math.inf))
-    number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
+    number = not isinstance(value, bool) and isinstance(value, int | float) and _is_finite(value)
+    if is_own(place[1]):
+        if not number:
+            raise StudyError(complaint(typed, value, "a finite number", "correct it"))
+        return float(value)
     if not number or value <= 0.0 or not low <= value <= high:
         allowed = "a number above 0" if high == math.inf else f"a number from {low:g} to {high:g}"
         allowed += ", above 0" if low == 0.0 < high < math.inf else ""
@@ -142,10 +154,23 @@ def _value(place: tuple[Side, str], value: Any, typed: str) -> float:
     return float(value)
 
 
+def _is_finite(number: int | float) -> bool:
+    """Whether a number is one as floating point has it."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:  # a whole number beyond the greatest float
+        return False
+
+
 def _place(limit: Limit) -> tuple[int, int, bool]:
-    """Where a limit stands among the others: those of 0.1.0 first, in their order, so that its studies go on."""
+    """Where a limit stands among the others: those of 0.1.0 first, in their order, so that its studies go on.
+
+    Those of own functions stand last, as they are given.
+    """
     if limit.key in _ALWAYS_STORED:
         return _ALWAYS_STORED.index(limit.key), 0, False
+    if is_own(limit.measure):
+        return len(_ALWAYS_STORED) + 1, 0, False
     return len(_ALWAYS_STORED), GOAL_NAMES.index(limit.measure), limit.side == "max"
 
 
@@ -167,7 +192,7 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
     # The order of a table means nothing; that of a list decides which objective charts and tables show first.
     names = tuple(sorted(given, key=_rank) if isinstance(given, Mapping) else given)
     for name in names:
-        if name not in GOAL_NAMES:
+        if not is_goal(name):
             raise StudyError(f"{source}: objective {name!r} is not a measure; {_near(name)}")
         direction = measure(name).direction
         if direction is None:
@@ -204,12 +229,12 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
     """
     for name, value in flattened(table).items():
         if name not in objectives.names:
-            allowed = f"one of {', '.join(objectives.names)}"
-            raise StudyError(f"{source}: {complaint('measure in reference_point', name, allowed, 'correct it')}")
-        number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
+            raise StudyError(f"{source}: {unknown_name('measure in reference_point', name, objectives.names)}")
+        number = not isinstance(value, bool) and isinstance(value, int | float) and _is_finite(value)
         least = 0.0 if measure(name).direction == "maximise" else 1e-9
-        if not number or value < least:
+        if not number or (value < least and not is_own(name)):
             allowed = "a number of at least 0" if least == 0.0 else "a number above 0"
+            allowed = "a finite number" if is_own(name) else allowed
             raise StudyError(f"{source}: {complaint(f'reference_point.{name}', value, allowed, 'correct it')}")
     return reference_point(objectives, {name: float(value) for name, value in flattened(table).items()})
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.pareto.pick import MinHeight, pick
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import MinHeight
 from pareto_monoped.study.reader import StudyData
 
 CASE = PAPER_CASES["C"]

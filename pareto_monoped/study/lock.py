@@ -66,7 +66,7 @@ def locked(db: Path) -> Iterator[Lock]:
                 ) from None
             raise OutputError(
                 f"study database {str(db)!r}: its folder cannot be written to ({error.strerror}); "
-                "give --db FILE in a writable folder"
+                "give a database file in a writable folder (--db)"
             ) from None
         try:
             try:
@@ -74,7 +74,7 @@ def locked(db: Path) -> Iterator[Lock]:
             except BlockingIOError:
                 raise DatabaseError(
                     f"study database {str(db)!r}: is being run by process {_words(descriptor)[0]}; wait for it, stop "
-                    "it, or give another --db"
+                    "it, or give another database file (--db)"
                 ) from None
             # The previous holder removes the file. If that happened between our opening and our locking it, we have
             # locked a file that nobody else can find, and must try again.
@@ -106,7 +106,9 @@ def locked(db: Path) -> Iterator[Lock]:
 
 
 def _in_the_way(path: Path) -> OutputError:
-    return OutputError(f"lock file {str(path)!r}: something else has its name; move that away, or give another --db")
+    return OutputError(
+        f"lock file {str(path)!r}: something else has its name; move that away, or give another database file (--db)"
+    )
 
 
 def _words(descriptor: int) -> list[str]:

@@ -171,7 +171,8 @@ class Nsga2:
         winners = np.where(lead > 0.0, first, second)
         for row in np.flatnonzero(lead == 0.0):
             winners[row] = self._generator.choice(drawn[row])
-        return winners.reshape(-1, 2)
+        rows: NDArray[np.intp] = winners.reshape(-1, 2)
+        return rows
 
     def _new(self, values: Floats, *known: Floats) -> Floats:
         """Those of n designs that no other before them, none of ``known`` and none that was ever asked for equals."""

@@ -8,7 +8,8 @@ import optuna
 from pareto_monoped.design import NAMES
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.outside import JumpFunction, OwnFunction
+from pareto_monoped.study.outside import JumpFunction
+from pareto_monoped.study.own_functions import OwnFunction
 
 
 class OptunaObjective:
@@ -37,10 +38,15 @@ class OptunaObjective:
     """
 
     def __init__(
-        self, study: Study, *, objectives: Sequence[OwnFunction] = (), constraints: Sequence[OwnFunction] = ()
+        self,
+        study: Study,
+        *,
+        objectives: OwnFunction | Sequence[OwnFunction] = (),
+        constraints: OwnFunction | Sequence[OwnFunction] = (),
     ) -> None:
         self._jump = JumpFunction(study, objectives=objectives, constraints=constraints)
-        self._signs = np.concatenate((study.objectives.signs, np.ones(len(objectives))))
+        own = len(self._jump.names) - len(study.objectives.names)
+        self._signs = np.concatenate((study.objectives.signs, np.ones(own)))
 
     @property
     def directions(self) -> list[str]:

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import warnings
 from collections.abc import Mapping, Sequence
 from datetime import UTC
 from pathlib import Path
@@ -98,7 +99,10 @@ def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> No
         study: gives the name.
         attributes: the study's user attributes, JSON values.
     """
-    import optuna
+    with warnings.catch_warnings():
+        # In a notebook without ipywidgets, Optuna's progress bar warns of itself; it is not used here.
+        warnings.filterwarnings("ignore", message="IProgress not found")
+        import optuna
 
     verbosity = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(optuna.logging.WARNING)

@@ -3,7 +3,7 @@
 Nothing is stored. ``pymoo_problem`` and ``optuna_objective`` dress it for these libraries.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,14 +14,10 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.motor_choice import MotorCoordinates
+from pareto_monoped.study.own_functions import Jumps, OwnFunction, called, listed, name_of
 from pareto_monoped.study.protocol import Floats, Space
 from pareto_monoped.study.scoring import FAILED_VIOLATION, judge, scores
 from pareto_monoped.study.simulator import evaluation_of, load_simulator
-
-Table = Mapping[str, NDArray[Any]]
-"""Name of each variable and measure -> values of n jumps, shape (n,), NaN where the jump failed."""
-OwnFunction = Callable[[Table], Any]
-"""A function of a table of jumps, to values of shape (n,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +32,7 @@ class Judged:
             failed jump has ``FAILED_VIOLATION``.
     """
 
-    table: Table
+    table: Mapping[str, NDArray[Any]]
     failed: NDArray[np.bool_]
     objectives: Floats
     constraints: Floats
@@ -53,6 +49,7 @@ class JumpFunction:
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file.
+        StudyError: no study, or no function.
 
     Attributes:
         space: what is searched. Gearboxes and motors are whole numbers, positions in their lists.
@@ -63,23 +60,34 @@ class JumpFunction:
         self,
         study: Study,
         *,
-        objectives: Sequence[OwnFunction] = (),
-        constraints: Sequence[OwnFunction] = (),
+        objectives: OwnFunction | Sequence[OwnFunction] = (),
+        constraints: OwnFunction | Sequence[OwnFunction] = (),
         workers: int = 1,
     ) -> None:
+        if not isinstance(study, Study):
+            raise StudyError(complaint("study", study, "a Study", "define one, or read it: Study.from_toml(path)"))
+        if study.own_names:
+            raise StudyError(
+                f"study {study.name!r}: names the own function {study.own_names[0]!r}; leave it out there, and give "
+                "the function here"
+            )
+        own, own_limits = listed("objectives", objectives), listed("constraints", constraints)
+        for function in (*own, *own_limits):
+            if not callable(function):
+                raise StudyError(complaint("own function", function, "a function of the jumps", "give one"))
         simulator = load_simulator(study, workers=workers)
         self._study = study
         self._evaluate = evaluation_of(study, simulator.evaluator)
         self._coordinates = simulator.coordinates(study)
-        self._own = tuple(objectives)
-        self._own_limits = tuple(constraints)
+        self._own = tuple(own)
+        self._own_limits = tuple(own_limits)
         self.space: Space = self._coordinates.space
-        self.names = (*study.objectives.names, *map(_name_of, self._own))
+        self.names = (*study.objectives.names, *map(name_of, self._own))
 
     @property
     def constraint_names(self) -> tuple[str, ...]:
         """Of the constraints, first the study's, then the own ones."""
-        return (*(limit.key for limit in self._study.constraints.limits), *map(_name_of, self._own_limits))
+        return (*(limit.key for limit in self._study.constraints.limits), *map(name_of, self._own_limits))
 
     def __call__(self, values: Floats) -> Judged:
         """Let the designs at ``values`` jump, shape (n, d); whole numbers may be any numbers that round to them.
@@ -96,34 +104,13 @@ class JumpFunction:
             evaluations = self._evaluate(designs)
         judgement = judge(evaluations, self._study.constraints, self._study.objectives)
         known = scores(evaluations, judgement, self._study.objectives)
-        table = dict(zip(NAMES, designs.T, strict=True)) | evaluations.as_columns()
+        table = Jumps(dict(zip(NAMES, designs.T, strict=True)) | evaluations.as_columns())
         failed = judgement.state == "failed"
-        own = [np.where(failed, 0.0, _called(one, table, failed)) for one in self._own]
-        limits = [np.where(failed, FAILED_VIOLATION, _called(one, table, failed)) for one in self._own_limits]
+        own = [np.where(failed, 0.0, called(one, table, failed)) for one in self._own]
+        limits = [np.where(failed, FAILED_VIOLATION, called(one, table, failed)) for one in self._own_limits]
         return Judged(
             table=table,
             failed=failed,
             objectives=np.column_stack((known.minimised(), *own)),
             constraints=np.column_stack((judgement.constraints, *limits)),
         )
-
-
-def _called(function: OwnFunction, table: Table, failed: NDArray[np.bool_]) -> Floats:
-    """The values of an own function, shape (n,)."""
-    n = len(failed)
-    try:
-        values = np.asarray(function(table), dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise StudyError(f"own function {_name_of(function)!r}: {error}; it must return {n} numbers") from error
-    if values.shape != (n,):
-        shape = complaint(
-            f"shape of own function {_name_of(function)!r}", values.shape, f"({n},)", "return one value per jump"
-        )
-        raise StudyError(shape)
-    if not np.isfinite(values[~failed]).all():
-        raise StudyError(f"own function {_name_of(function)!r}: must be finite where the jump did not fail; correct it")
-    return values
-
-
-def _name_of(function: OwnFunction) -> str:
-    return str(getattr(function, "__name__", type(function).__name__))

@@ -1,13 +1,16 @@
 """What a search expects of designs that it has not simulated: a polynomial, corrected by its errors near by."""
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
 from pareto_monoped.study.archive import Archive, Standing
-from pareto_monoped.study.promise import squared_distances
+from pareto_monoped.study.cubic import cubic_values
+from pareto_monoped.study.distances import nearest_places, squared_distances
+from pareto_monoped.study.kriging import kriging_shares, kriging_values
 from pareto_monoped.study.protocol import Floats
 from pareto_monoped.study.response_surface import Features, fitted
 
@@ -32,6 +35,8 @@ _CORRECTED = 0.1
 """Distance behind the front, as a share of its extent, up to which a point's error is interpolated first."""
 _REACH = 1.0
 """Distance, in features from -1 to 1, over which errors are alike. 0.3 and 0.6 were no better."""
+_SCALE = 3.0 / _REACH**2
+"""Of squared distances in the kernel (Rasmussen and Williams 2006, equation 4.17)."""
 _NUGGET = 1e-4
 """Share of an error that its neighbours do not have: jumps are smooth to that degree, and equations stay regular."""
 
@@ -47,7 +52,7 @@ class Prediction:
 
     def __init__(self, archive: Archive, standing: Standing, features: Features) -> None:
         self._features = features
-        self._values = archive.values
+        self._points = archive.points
         weights = np.exp(-standing.behind / _NEARNESS) + _LEAST_WEIGHT
         missed = archive.constraints
         # In the order of the trials, whatever the weights: a sum in another order has other last digits.
@@ -56,43 +61,43 @@ class Prediction:
         self._targets = np.hstack((standing.costs, missed))
         self._mean = self._targets[rows].mean(axis=0)
         self._objectives = standing.costs.shape[1]
-        self._coefficients = fitted(
-            features.terms(archive.values[rows]), self._targets[rows] - self._mean, weights[rows]
-        )
+        self._coefficients = fitted(archive.points[rows], self._targets[rows] - self._mean, weights[rows])
         self._standing = standing
-        self._shares: dict[int, tuple[Floats, Floats]] = {}
+
+    @property
+    def determined(self) -> bool:
+        """Whether the cubic is fitted to at least as many designs as it has terms; far from them it guesses if not."""
+        return len(self._standing.order) >= len(self._coefficients)
 
     def rough(self, values: Floats) -> tuple[Floats, Floats]:
         """Costs, shape (n, m), as ``Standing`` has them, and sum of missed constraints, shape (n,), by the cubic."""
-        return self._split(self._cubic(values))
+        return self._split(self._cubic(self._features.scaled(values)))
 
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
         """The same with the cubic's errors corrected, in the part of the front that the cubic sees a design in."""
-        predicted, points = self._cubic(values), self._features.scaled(values)
+        points = self._features.scaled(values)
+        predicted = self._cubic(points)
         parts = self._standing.parts(predicted[:, : self._objectives])
-        for part in np.unique(parts).tolist():
-            rows = np.flatnonzero(parts == part)
-            known, shares = self._correction(part)
-            predicted[rows] += _kernel(points[rows], known) @ shares
+        known = self._corrections
+        predicted += kriging_values(points, parts, known.points, known.shares, known.ends, _SCALE)
         return self._split(predicted)
 
-    def _cubic(self, values: Floats) -> Floats:
-        return self._features.terms(values) @ self._coefficients + self._mean
+    def _cubic(self, points: Floats) -> Floats:
+        predicted: Floats = cubic_values(points, self._coefficients) + self._mean
+        return predicted
 
     def _split(self, predicted: Floats) -> tuple[Floats, Floats]:
         costs, missed = predicted[:, : self._objectives], predicted[:, self._objectives :]
         return costs, np.maximum(missed, 0.0).sum(axis=1)
 
-    def _correction(self, part: int) -> tuple[Floats, Floats]:
-        """Points of a part of the front, shape (p, f), and how much the error of each counts, shape (p, targets)."""
-        if part not in self._shares:
-            rows = np.sort(self._latest(part))
-            values = self._values[rows]
-            points, errors = self._features.scaled(values), self._targets[rows] - self._cubic(values)
-            matrix = _kernel(points, points)
-            matrix[np.diag_indices_from(matrix)] += _NUGGET
-            self._shares[part] = points, np.asarray(cho_solve(cho_factor(matrix, lower=True), errors))
-        return self._shares[part]
+    @cached_property
+    def _corrections(self) -> "_Corrections":
+        """What corrects the cubic in each part of the front; without a front, there is one part."""
+        groups = [np.sort(self._latest(part)) for part in range(max(len(self._standing.posts), 1))]
+        rows, ends = np.concatenate(groups), np.cumsum([len(group) for group in groups])
+        points = self._points[rows]
+        shares = _shares(points, self._targets[rows] - self._cubic(points), ends)
+        return _Corrections(points, shares, ends)
 
     def _latest(self, part: int) -> NDArray[np.intp]:
         """Rows of the latest designs in a part of the front and close behind it; the nearest others if too few."""
@@ -100,12 +105,12 @@ class Prediction:
         if len(standing.posts) == 0:
             return standing.order[:_CORRECTING]
         near = self._near == part
-        latest = known[near][-_CORRECTING:]
+        latest: NDArray[np.intp] = known[near][-_CORRECTING:]
         if len(latest) == _CORRECTING:
             return latest
         others = np.flatnonzero(~near)
-        nearest = others[np.argsort(self._away[part, others], kind="stable")]
-        return np.concatenate((latest, known[nearest[: _CORRECTING - len(latest)]]))
+        nearest = _least(self._away(part)[others], _CORRECTING - len(latest))
+        return np.concatenate((latest, known[others[nearest]]))
 
     @cached_property
     def _known(self) -> NDArray[np.intp]:
@@ -113,14 +118,20 @@ class Prediction:
         return np.sort(self._standing.order)
 
     @cached_property
-    def _away(self) -> Floats:
-        """Squared distance of these designs from each post, shape (posts, designs)."""
-        return self._standing.away(self._standing.costs[self._known])
+    def _places(self) -> Floats:
+        """Costs of these designs as shares of the front's extent, shape (designs, m)."""
+        return self._standing.scaled(self._standing.costs[self._known])
+
+    def _away(self, part: int) -> Floats:
+        """Squared distance of these designs from a post, shape (designs,)."""
+        away: Floats = squared_distances(self._standing.stands[part : part + 1], self._places)[0]
+        return away
 
     @cached_property
     def _near(self) -> NDArray[np.intp]:
         """Part of the front that each of these designs is in or close behind; -1 if it is far behind."""
-        return np.where(self._standing.behind[self._known] < _CORRECTED, self._away.argmin(axis=0), -1)
+        nearest = nearest_places(self._places, self._standing.stands)
+        return np.where(self._standing.behind[self._known] < _CORRECTED, nearest, -1)
 
 
 def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -132,7 +143,33 @@ def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.concatenate((nearest, others[np.linspace(0, len(others) - 1, spread_out).astype(np.intp)]))
 
 
-def _kernel(points: Floats, others: Floats) -> Floats:
-    """How alike errors are at n points and k others, shape (n, f) and (k, f) -> (n, k): 1 at the same point."""
-    away = np.sqrt(squared_distances(points, others) * (3.0 / _REACH**2))
-    return np.asarray((1.0 + away) * np.exp(-away))
+def _least(values: Floats, count: int) -> NDArray[np.intp]:
+    """Places of the ``count`` least values, the least first, of equals the first first; shape (n,) -> (count,)."""
+    if count >= len(values):
+        return np.argsort(values, kind="stable")
+    candidates = np.flatnonzero(values <= np.partition(values, count - 1)[count - 1])
+    return candidates[np.argsort(values[candidates], kind="stable")[:count]]
+
+
+class _Corrections(NamedTuple):
+    """Points of all parts of a front, one part after the other.
+
+    Attributes:
+        points: their features, shape (n, f).
+        shares: how much the error of each counts, shape (n, targets).
+        ends: number of points up to the end of each part, shape (parts,).
+    """
+
+    points: Floats
+    shares: Floats
+    ends: NDArray[np.intp]
+
+
+def _shares(points: Floats, errors: Floats, ends: NDArray[np.intp]) -> Floats:
+    """See ``_Corrections``. Two threads take half of the parts each; a part's shares do not depend on the others."""
+    half = len(ends) // 2
+    first, later = (ends[:half], ends[half:] - ends[half - 1]) if half else (ends, ends[:0])
+    middle = first[-1]
+    with ThreadPoolExecutor(1) as helper:
+        others = helper.submit(kriging_shares, points[middle:], errors[middle:], later, _SCALE, _NUGGET)
+        return np.vstack((kriging_shares(points[:middle], errors[:middle], first, _SCALE, _NUGGET), others.result()))

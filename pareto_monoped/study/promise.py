@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.study.archive import Standing, shortfall
+from pareto_monoped.study.distances import nearest_squared
 from pareto_monoped.study.protocol import Floats
 
 _PENALTY = 10.0
@@ -30,14 +31,13 @@ def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.i
     """
     if len(standing.front) == 0:
         return np.argsort(violation, kind="stable")
-    gain = _gain(costs, violation, standing, _PENALTY)
-    part = standing.parts(costs)
+    gain = gains(costs, violation, standing)
     order = np.argsort(-gain, kind="stable")
+    part = standing.parts(costs)[order]
+    by_part = np.argsort(part, kind="stable")
     place = np.empty(len(costs), dtype=np.intp)
-    for k in range(len(standing.posts)):
-        members = order[part[order] == k]
-        place[members] = np.arange(len(members))
-    return np.lexsort((-gain, place))
+    place[by_part] = np.arange(len(costs)) - np.searchsorted(part[by_part], part[by_part])
+    return order[np.argsort(place, kind="stable")]
 
 
 def unlike(
@@ -53,7 +53,7 @@ def unlike(
         known: features of the simulated designs, shape (k, f).
         count: how many.
     """
-    gain = _gain(costs, violation, standing, _LENIENT_PENALTY)
+    gain = gains(costs, violation, standing, _LENIENT_PENALTY)
     looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
     points, gain = points[looked_at], gain[looked_at]
     away = _nearest(points, known)
@@ -63,21 +63,23 @@ def unlike(
         worth[chosen] = -np.inf
         chosen.append(int(worth.argmax()))
         away = np.minimum(away, _nearest(points, points[chosen[-1:]]))
-    return looked_at[chosen].tolist()
+    best: list[int] = looked_at[chosen].tolist()
+    return best
 
 
-def _gain(costs: Floats, violation: Floats, standing: Standing, penalty: float) -> Floats:
-    """How far designs are ahead of the front, as a share of its extent, less what violations cost, shape (n,)."""
+def gains(costs: Floats, violation: Floats, standing: Standing, penalty: float = _PENALTY) -> Floats:
+    """How far n designs are ahead of the front, as a share of its extent, less what violations cost, shape (n,).
+
+    Args:
+        costs: expected costs, as ``Standing`` has them, shape (n, m).
+        violation: expected sum of missed constraints, shape (n,).
+        standing: of the simulated designs; it has a front.
+        penalty: what a violation of 1 costs.
+    """
     front = standing.scaled(standing.costs[standing.front])
     return -shortfall(standing.scaled(costs), front) - penalty * violation
 
 
 def _nearest(points: Floats, others: Floats) -> Floats:
     """Distance of each of n points to the nearest of k others, shape (n, f) and (k, f) -> (n,)."""
-    return np.asarray(np.sqrt(squared_distances(points, others).min(axis=1)))
-
-
-def squared_distances(points: Floats, others: Floats) -> Floats:
-    """Squares of the distances between n points and k others, shape (n, f) and (k, f) -> (n, k)."""
-    squares = np.square(points).sum(axis=1)[:, None] + np.square(others).sum(axis=1) - 2.0 * points @ others.T
-    return np.maximum(squares, 0.0)
+    return np.asarray(np.sqrt(nearest_squared(points, others)))

@@ -70,6 +70,12 @@ class Space:
         objectives: two or three measures.
         gears: the gearboxes of each variable that chooses one, for joints with one motor.
         choices: the coordinates that choose a motor, the last of ``names``; empty where every joint has one.
+
+    Example:
+        >>> from pareto_monoped import MonopedProblem, Study
+        >>> space = MonopedProblem(Study.define(name="mine", evaluations=40)).jump.space
+        >>> space.names[:3], float(space.lower[0]), float(space.upper[0]), space.whole[:3].tolist()
+        (('thigh_length_m', 'shank_length_m', 'knee_ratio'), 0.3, 0.5, [False, False, True])
     """
 
     names: tuple[str, ...]
@@ -161,6 +167,17 @@ class Scores:
         violation: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed.
         constraints: how far each of k constraints is missed, as a share of its limit, shape (n, k); it holds at <= 0.
             Shape (n, 0) where a search has none.
+
+    Example:
+        >>> import numpy as np
+        >>> from pareto_monoped import Scores, Study
+        >>> objectives = Study.define(name="mine", evaluations=40).objectives  # height, which is maximised, and energy
+        >>> none = np.zeros(1)
+        >>> scores = Scores(
+        ...     objectives=objectives, values=np.array([[0.8, 15.0]]), violation=none, constraints=none[:, None]
+        ... )
+        >>> scores.minimised().tolist()
+        [[-0.8, 15.0]]
     """
 
     objectives: Objectives

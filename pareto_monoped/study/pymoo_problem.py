@@ -6,13 +6,15 @@ from typing import Any
 import numpy as np
 from pymoo.core.problem import Problem
 
+from pareto_monoped.study.counts import count_of
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.outside import JumpFunction, OwnFunction
+from pareto_monoped.study.outside import JumpFunction
+from pareto_monoped.study.own_functions import OwnFunction
 from pareto_monoped.study.protocol import Floats
 from pareto_monoped.study.run import default_workers
 
 
-class MonopedProblem(Problem):
+class MonopedProblem(Problem):  # type: ignore[misc]  # pymoo has no types
     """A study as a vectorised problem of pymoo: ``minimize(MonopedProblem(study), NSGA2(pop_size=40), ...)``.
 
     Variables are the study's free ones, in its order. A gearbox or motor is a position in its list; real numbers round
@@ -27,6 +29,7 @@ class MonopedProblem(Problem):
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file.
+        InputError: a number of workers that is none, or own functions that are no functions.
 
     Example:
         >>> from pareto_monoped import MonopedProblem, Study
@@ -40,13 +43,12 @@ class MonopedProblem(Problem):
         self,
         study: Study,
         *,
-        objectives: Sequence[OwnFunction] = (),
-        constraints: Sequence[OwnFunction] = (),
+        objectives: OwnFunction | Sequence[OwnFunction] = (),
+        constraints: OwnFunction | Sequence[OwnFunction] = (),
         workers: int | None = None,
     ) -> None:
-        self.jump = JumpFunction(
-            study, objectives=objectives, constraints=constraints, workers=workers or default_workers()
-        )
+        threads = count_of("workers", workers) or default_workers()
+        self.jump = JumpFunction(study, objectives=objectives, constraints=constraints, workers=threads)
         lower, upper = self.jump.space.edges
         super().__init__(
             n_var=len(lower),

@@ -27,7 +27,7 @@ from pareto_monoped.study.trial_frame import trial_frame, with_motors
 if TYPE_CHECKING:
     from pareto_monoped.actuator.joint_maps import JointMaps
     from pareto_monoped.actuator.motors import Motor
-    from pareto_monoped.actuator.search import ActuatorMap
+    from pareto_monoped.actuator.ratiomap import ActuatorMap
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.study.motor_choice import AnyCoordinates
 
@@ -164,7 +164,8 @@ class StudyData:
     def ill_conditioned(self) -> NDArray[np.int64]:
         """Numbers of the trials that failed their audit; ``jump.audit`` says what that means."""
         good = self.audits["well_conditioned"].to_numpy(dtype=bool)
-        return self.audits["trial"].to_numpy(dtype=np.int64)[~good]
+        trials: NDArray[np.int64] = self.audits["trial"].to_numpy(dtype=np.int64)[~good]
+        return trials
 
     @property
     def reference_point(self) -> ReferencePoint:

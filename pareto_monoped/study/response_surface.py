@@ -1,17 +1,18 @@
 """A cheap model of what a search needs to know: weighted cubic ridge regression on features of a design."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.linalg.lapack import dposv
 
+from pareto_monoped.study.cubic import cubic_terms
 from pareto_monoped.study.protocol import MOTOR_OF, Floats, MotorChoice, Space
 
-_DEGREE = 3
-"""Of the polynomial. Our own choice: the third degree is what 2,000 jumps can determine, 220 terms of nine features."""
 _RIDGE = 1e-4
 """Ridge as a share of the mean square of a term: enough for fewer points than terms, small beside 1. Our own choice."""
+_BLOCK = 256
+"""Points whose terms are in memory at once: half a megabyte, which the second cache holds. Our own choice."""
 _LOGARITHMIC = ("stiffness_n_per_m", "torsional_stiffness_n_m_per_rad")
 """Gains that act by their order of magnitude: designs on one front have K from 5 to 200 N/m."""
 
@@ -27,36 +28,29 @@ class Features:
     Attributes:
         space: that is searched.
         lower, extent: of each feature before scaling, shape (f,).
-        factors: for each term the columns of (1, features) that it is the product of, shape (t, 3).
+        tables: the features that each of a variable's or a choice's whole numbers stands for, shape (n, features).
     """
 
     space: Space
     lower: Floats
     extent: Floats
-    factors: NDArray[np.intp]
+    tables: Mapping[str, Floats]
 
     def scaled(self, values: Floats) -> Floats:
         """Features of n points from -1 to 1, shape (n, d) -> (n, f)."""
-        return 2.0 * (_raw(self.space, values) - self.lower) / self.extent - 1.0
+        return 2.0 * (_raw(self.space, self.tables, values) - self.lower) / self.extent - 1.0
 
     def terms(self, values: Floats) -> Floats:
-        """Terms of n points, shape (n, d) -> (n, t)."""
-        columns = np.concatenate((np.ones((1, len(values))), self.scaled(values).T))
-        first, second, third = self.factors.T
-        return np.ascontiguousarray((columns[first] * columns[second] * columns[third]).T)
+        """Terms of n points, shape (n, d) -> (n, t); the constant is the first."""
+        return cubic_terms(self.scaled(values))
 
 
 def features_of(space: Space) -> Features:
     """The features of a space."""
-    raw = _raw(space, _extremes(space))
+    tables = _tables(space)
+    raw = _raw(space, tables, _extremes(space))
     lower, upper = raw.min(axis=0), raw.max(axis=0)
-    factors = list(combinations_with_replacement(range(len(lower) + 1), _DEGREE))
-    return Features(
-        space=space,
-        lower=lower,
-        extent=np.where(upper > lower, upper - lower, 1.0),
-        factors=np.array(factors, dtype=np.intp),
-    )
+    return Features(space=space, lower=lower, extent=np.where(upper > lower, upper - lower, 1.0), tables=tables)
 
 
 def _extremes(space: Space) -> Floats:
@@ -77,19 +71,29 @@ def _extremes(space: Space) -> Floats:
     return np.vstack((*blocks, every))
 
 
-def _raw(space: Space, values: Floats) -> Floats:
+def _tables(space: Space) -> dict[str, Floats]:
+    """Features of every gearbox of a list and of every motor of a choice; see ``Features.tables``."""
+    tables = {name: np.array([[gear.ratio, gear.mass_kg] for gear in gears]) for name, gears in space.gears.items()}
+    for choice in space.choices:
+        tables[choice.name] = _motors(choice)
+        for name in choice.motors[0].gears:
+            gears = [gear for motor in choice.motors for gear in motor.gears[name]]
+            tables[name] = np.array([[np.log(gear.ratio), gear.mass_kg] for gear in gears])
+    return tables
+
+
+def _raw(space: Space, tables: Mapping[str, Floats], values: Floats) -> Floats:
     """Features before scaling, shape (n, d) -> (n, f)."""
-    columns = []
+    columns, listed = [], space.listed
     for name, column in zip(space.names, values.T, strict=True):
         if name in space.gears:
-            table = np.array([[gear.ratio, gear.mass_kg] for gear in space.gears[name]])
-            columns += list(table[column.astype(np.intp)].T)
-        elif name in space.listed:
-            columns += list(_actuators(space, name, values).T)
+            columns += list(tables[name].T[:, column.astype(np.intp)])
+        elif name in listed:
+            columns += list(_actuators(space, tables, name, values).T)
         elif name in MOTOR_OF:
             # The actuators tell the motors apart, unless all their ratios are fixed.
             choice = space.choices[space.choice_columns.index(space.names.index(name))]
-            columns += [] if choice.motors[0].gears else list(_motors(choice)[space.picked(choice, values)].T)
+            columns += [] if choice.motors[0].gears else list(tables[name][space.picked(choice, values)].T)
         else:
             columns.append(np.log1p(column) if name in _LOGARITHMIC else column)
     return np.column_stack(columns)
@@ -100,33 +104,54 @@ def _motors(choice: MotorChoice) -> Floats:
     return np.log([[motor.peak_torque_n_m, motor.no_load_speed_rad_per_s] for motor in choice.motors])
 
 
-def _actuators(space: Space, name: str, values: Floats) -> Floats:
+def _actuators(space: Space, tables: Mapping[str, Floats], name: str, values: Floats) -> Floats:
     """Features of the actuators that ``name`` chooses, shape (n, d) -> (n, 3)."""
     choice = space.choice_for(name)
-    lists = [motor.gears[name] for motor in choice.motors]
-    first = np.cumsum([0, *(len(gears) for gears in lists[:-1])])
-    table = np.array([[np.log(gear.ratio), gear.mass_kg] for gears in lists for gear in gears])
+    first = np.cumsum([0, *(len(motor.gears[name]) for motor in choice.motors[:-1])])
     motors = space.picked(choice, values)
-    ratio, mass = table[first[motors] + space.gear_of(name, values)].T
-    torque, speed = _motors(choice)[motors].T
+    ratio, mass = tables[name][first[motors] + space.gear_of(name, values)].T
+    torque, speed = tables[choice.name][motors].T
     return np.column_stack((torque + ratio, speed - ratio, mass))
 
 
-def fitted(terms: Floats, targets: Floats, weights: Floats) -> Floats:
+def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
     """Coefficients of the weighted ridge regression.
 
     Args:
-        terms: of n points, shape (n, t).
+        points: scaled features of n points, shape (n, f).
         targets: shape (n, k).
         weights: of the points' squared errors, at least 0, shape (n,).
 
     Returns:
-        Shape (t, k); ``terms @ coefficients`` are the predictions.
+        Shape (t, k); ``cubic_values`` makes predictions of them.
+
+    Raises:
+        numpy.linalg.LinAlgError: a target, a weight or a feature is not a number.
     """
-    weighted = terms * weights[:, None]
-    gram = weighted.T @ terms
+    gram, right = _normal_equations(points, targets, weights)
     # The first term is the constant, whose mean square is the sum of the weights; it is not held back.
     ridge = np.full(len(gram), _RIDGE * weights.sum())
     ridge[0] = 1e-9 * weights.sum()
     gram[np.diag_indices_from(gram)] += ridge
-    return np.asarray(np.linalg.solve(gram, weighted.T @ targets), dtype=np.float64)
+    _, coefficients, failed = dposv(gram, right, lower=True)
+    if failed:
+        raise np.linalg.LinAlgError(f"the model's equations for {len(points)} points have no solution")
+    return np.ascontiguousarray(coefficients)
+
+
+def _normal_equations(points: Floats, targets: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Weighted sums of the products of all pairs of terms, shape (t, t), and of terms and targets, shape (t, k).
+
+    Above the diagonal, only blocks on it are computed; the lower half is what counts.
+    """
+    first = cubic_terms(points[:1])
+    size, half = first.shape[1], first.shape[1] // 2
+    gram, right = np.zeros((size, size)), np.zeros((size, targets.shape[1]))
+    for start in range(0, len(points), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        terms = cubic_terms(points[rows])
+        weighted = (terms * weights[rows, None]).T
+        gram[:half, :half] += weighted[:half] @ terms[:, :half]
+        gram[half:] += weighted[half:] @ terms
+        right += weighted @ targets[rows]
+    return gram, right

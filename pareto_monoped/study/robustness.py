@@ -1,6 +1,7 @@
 """Simulate trials of a study again under uncertainty, and store what that says of them."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,8 @@ LEAST_SAMPLES = 256
 """Fewest samples of a design that are stored: a 5th percentile then rests on 13 of them."""
 _CHUNK = 4
 """Designs that are simulated and stored together; an interrupt loses at most these."""
+_SHARED = 32
+"""The same where an executor does the jumps, and many workers wait for each other at the end."""
 
 
 def robust(
@@ -35,6 +38,7 @@ def robust(
     samples: int = DEFAULT_SAMPLES,
     seed: int = DEFAULT_SEED,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[int, Robustness]:
     """Simulate trials under uncertainty and store their robustness; what is stored already is not simulated again.
@@ -49,6 +53,7 @@ def robust(
         samples: per design, a power of two of at least ``LEAST_SAMPLES``.
         seed: of the samples.
         workers: threads, all cores if None.
+        executor: does the jumps in their place.
         progress: called with the number of designs done and of all after each stored chunk.
 
     Raises:
@@ -68,10 +73,12 @@ def robust(
         fresh = rows[~rows["trial"].isin(known)]
         done = len(rows) - len(fresh)
         if len(fresh):
-            evaluator = stored_simulator(data, workers=workers or default_workers()).evaluator
+            threads = workers or default_workers()
+            evaluator = stored_simulator(data, workers=threads, executor=executor).evaluator
+            step = _CHUNK if executor is None else _SHARED
             with Store(db, data.study) as store:
-                for first in range(0, len(fresh), _CHUNK):
-                    chunk = fresh.iloc[first : first + _CHUNK]
+                for first in range(0, len(fresh), step):
+                    chunk = fresh.iloc[first : first + step]
                     results = simulated(data, chunk, evaluator, drawn)
                     text = strict_json(settings)
                     store.set_rows(

@@ -1,12 +1,13 @@
 """Run a study into its database, or continue it: checks before, one session, the audit after."""
 
-import os
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.errors import LostTrialsError, StudyError
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study import provenance
@@ -18,6 +19,8 @@ from pareto_monoped.study.foreign import foreign_note
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import Lock, locked
 from pareto_monoped.study.meta import StudyMeta
+from pareto_monoped.study.own import NOTHING, Own
+from pareto_monoped.study.own_functions import refuse_other_functions, require_functions, with_functions
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
 from pareto_monoped.study.session import Progress, Session
@@ -68,7 +71,7 @@ def _silent(_: Any) -> None:
 
 def default_workers() -> int:
     """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores()
 
 
 def run(
@@ -78,8 +81,10 @@ def run(
     evaluations: int | None = None,
     seed: int | None = None,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Callable[[Progress], object] | None = None,
     notify: Callable[[str], None] | None = None,
+    own: Own = NOTHING,
 ) -> RunSummary:
     """Run a study into a database, or continue it where it stopped.
 
@@ -89,11 +94,14 @@ def run(
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
         workers: number of threads that simulate, all cores if None. It does not change the trials.
+        executor: does the jumps in their place, here or elsewhere; it does not change the trials either.
         progress: called after each stored generation; the run stops there if it returns True.
         notify: called with a line for the user, for example on Ctrl-C.
+        own: functions, algorithm and calibration of the user's own.
 
     Raises:
-        StudyError: the study in the database has other settings; the message shows the difference.
+        StudyError: the study in the database has other settings; the message shows the difference. Or ``own`` is not
+            what the study names. Or ``evaluations`` is less than what is stored.
         DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     if seed is not None:
@@ -102,16 +110,22 @@ def run(
         threads = workers or default_workers()
         if is_vacant(db):
             lock.acknowledge(0)
-            simulator = load_simulator(study, workers=threads)
-            algorithm = make_algorithm(study, simulator.coordinates(study))
+            require_functions(study.own_names, own.functions, _source(db))
+            simulator = load_simulator(study, workers=threads, executor=executor, calibration=own.calibration)
+            algorithm = make_algorithm(study, simulator.coordinates(study), own.algorithm)
             create_database(db, study, _meta(study, simulator), algorithm.state())
             data = read_study(db)
         else:
             data = _checked(db, lock)
-            simulator = continued_simulator(data, study, workers=threads)
+            simulator = continued_simulator(
+                data, study, workers=threads, executor=executor, calibration=own.calibration
+            )
             _refuse_changes(data, study, simulator, db)
+            # The same limits in another order would give the algorithm its columns in another order.
+            study = replace(study, constraints=data.study.constraints)
+        _refuse_fewer(data, evaluations, db)
         budget = evaluations or study.evaluations
-        return _go_on(db, data, study, simulator, budget, progress or _silent, notify or _silent, lock)
+        return _go_on(db, data, study, simulator, budget, progress or _silent, notify or _silent, lock, own)
 
 
 def resume(
@@ -119,8 +133,10 @@ def resume(
     *,
     evaluations: int | None = None,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Callable[[Progress], object] | None = None,
     notify: Callable[[str], None] | None = None,
+    own: Own = NOTHING,
 ) -> RunSummary:
     """Continue a study from its database alone.
 
@@ -128,20 +144,24 @@ def resume(
         db: the database.
         evaluations: the new total; by default the total of the last run.
         workers: number of threads that simulate, all cores if None.
+        executor: does the jumps in their place.
         progress: called after each stored generation; the run stops there if it returns True.
         notify: called with a line for the user.
+        own: the functions and the algorithm that the study names, which its database does not hold.
 
     Raises:
-        StudyError: this code or machine computes other results than the study began with.
+        StudyError: this code or machine computes other results than the study began with, ``own`` is not what the study
+            names, or ``evaluations`` is less than what is stored.
         DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     read_study(db)
     with locked(db) as lock:
         data = _checked(db, lock)
-        simulator = stored_simulator(data, workers=workers or default_workers())
+        simulator = stored_simulator(data, workers=workers or default_workers(), executor=executor)
         _refuse_changes(data, data.study, simulator, db)
+        _refuse_fewer(data, evaluations, db)
         budget = evaluations or data.meta.budget
-        return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock)
+        return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock, own)
 
 
 def _checked(db: Path, lock: Lock) -> StudyData:
@@ -187,7 +207,16 @@ def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: Pat
     if changes:
         raise StudyError(
             f"study database {str(db)!r}: began with other settings ({'; '.join(changes)}); undo the change, "
-            "or give another --db to start anew"
+            "or give another database file (--db) to start anew"
+        )
+
+
+def _refuse_fewer(data: StudyData, evaluations: int | None, db: Path) -> None:
+    """Refuse a total that is below what is stored: trials are never taken back."""
+    if evaluations is not None and evaluations < len(data.trials):
+        raise StudyError(
+            f"study database {str(db)!r}: evaluations: {len(data.trials)} -> {evaluations} (only more is allowed); "
+            f"give at least {len(data.trials)}, or none to keep them"
         )
 
 
@@ -196,7 +225,8 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> No
     if before != now:
         raise StudyError(
             f"study database {str(db)!r}: began with other results: height and energy of the probe designs were "
-            f"{before}, are {now} with this code and machine; continue where it began, or start anew with another --db"
+            f"{before}, are {now} with this code and machine; continue where it began, or start anew with another "
+            "database file (--db)"
         )
 
 
@@ -225,6 +255,7 @@ def _go_on(
     progress: Callable[[Progress], object],
     notify: Callable[[str], None],
     lock: Lock,
+    own: Own,
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
         if any(Path(f"{db.resolve()}{end}").exists() for end in ("-wal", "-journal")):
@@ -232,13 +263,16 @@ def _go_on(
             with Store(db, study, lock=lock):
                 pass
         return _summary(db, data, data, 0.0)
+    require_functions(study.own_names, own.functions, _source(db))
+    refuse_other_functions(data.trials, own.functions, _source(db))
     _refuse_other_results(data, simulator, db)
     coordinates = simulator.coordinates(study)
+    evaluate = with_functions(evaluation_of(study, simulator.evaluator), own.functions)
     with Store(db, study, coordinates=coordinates, lock=lock) as store:
         if foreign := store.foreign_count():
             notify(f"note: {foreign_note(foreign)}")
+        session = Session(data, study, evaluate, store, budget, progress, coordinates, own.algorithm)
         store.set_meta({"study": study.as_dict(), "budget": budget, "finished": False, "stop_reason": None})
-        session = Session(data, study, evaluation_of(study, simulator.evaluator), store, budget, progress, coordinates)
         with Interrupt(notify) as interrupt:
             reason = session.go(interrupt)
         finished = reason != "interrupted"
@@ -246,6 +280,10 @@ def _go_on(
             audit_front(db, store, simulator, notify)
         store.set_meta({"finished": finished, "stop_reason": reason})
     return _summary(db, data, read_study(db), session.elapsed)
+
+
+def _source(db: Path) -> str:
+    return f"study database {str(db)!r}"
 
 
 def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> RunSummary:

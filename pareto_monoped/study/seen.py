@@ -5,13 +5,14 @@ from numpy.typing import NDArray
 
 from pareto_monoped.study.protocol import Floats, Space
 
+Digests = NDArray[np.uint64]
+
 TRIES = 100
 """How often an algorithm draws again before it ends for want of new designs; pymoo's own number for its offspring."""
 
 
 _MOST_RECENT = 4096
-"""Designs kept in a Python set before they join the sorted array: our own choice; a set takes 20 times the memory, and
-sorting the array after every generation would take time."""
+"""Designs in an array of their own before they join the large one, which takes time to copy. Our own choice."""
 _MIX = (np.uint64(0xFF51AFD7ED558CCD), np.uint64(0xC4CEB9FE1A85EC53))
 """The multipliers of MurmurHash3's 64-bit finaliser (Appleby 2011, public domain)."""
 _SHIFT = np.uint64(33)
@@ -26,33 +27,34 @@ class Seen:
     """
 
     def __init__(self) -> None:
-        self._old = np.zeros(0, dtype=np.uint64)
-        self._recent: set[int] = set()
+        self._old = self._recent = np.zeros(0, dtype=np.uint64)
 
     def add(self, values: Floats) -> None:
         """Add designs, shape (n, d)."""
-        self._recent.update(_digests(values).tolist())
+        self._recent = _union(self._recent, np.unique(_digests(values)))
         if len(self._recent) > _MOST_RECENT:
-            recent = np.sort(np.array(list(self._recent), dtype=np.uint64))
-            recent = recent[~self._is_old(recent)]
-            self._old = np.insert(self._old, np.searchsorted(self._old, recent), recent)
-            self._recent = set()
+            self._old, self._recent = _union(self._old, self._recent), self._recent[:0]
 
     def new(self, values: Floats) -> NDArray[np.bool_]:
         """Which of n designs are neither in the set nor equal to one before them, shape (n, d) -> (n,)."""
-        digests = _digests(values)
-        fresh: list[bool] = []
-        before: set[int] = set()
-        for digest, old in zip(digests.tolist(), self._is_old(digests).tolist(), strict=True):
-            fresh.append(not (old or digest in before or digest in self._recent))
-            before.add(digest)
-        return np.array(fresh, dtype=bool)
+        digests, first = np.unique(_digests(values), return_index=True)
+        fresh = np.zeros(len(values), dtype=bool)
+        fresh[first] = ~(_among(self._old, digests) | _among(self._recent, digests))
+        return fresh
 
-    def _is_old(self, digests: NDArray[np.uint64]) -> NDArray[np.bool_]:
-        if len(self._old) == 0:
-            return np.zeros(len(digests), dtype=bool)
-        places = np.minimum(np.searchsorted(self._old, digests), len(self._old) - 1)
-        return np.asarray(self._old[places] == digests)
+
+def _union(digests: Digests, others: Digests) -> Digests:
+    """All of two ascending arrays, ascending and each once."""
+    others = others[~_among(digests, others)]
+    return np.insert(digests, np.searchsorted(digests, others), others)
+
+
+def _among(digests: Digests, others: Digests) -> NDArray[np.bool_]:
+    """Which of n ``others`` are in an ascending array, shape (n,)."""
+    if len(digests) == 0:
+        return np.zeros(len(others), dtype=bool)
+    places = np.minimum(np.searchsorted(digests, others), len(digests) - 1)
+    return np.asarray(digests[places] == others)
 
 
 def drawn(space: Space, seen: Seen, generator: np.random.Generator, count: int) -> Floats:

@@ -6,12 +6,13 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.pareto.at_height import AtHeight, best_at_height
 from pareto_monoped.pareto.front import front_mask
@@ -22,6 +23,7 @@ from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
+from pareto_monoped.study.own_algorithm import OwnAlgorithm
 from pareto_monoped.study.protocol import Algorithm, Scores
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.scoring import judge, missed, scores, values_of
@@ -64,6 +66,7 @@ class Session:
         budget: int,
         progress: Callable[[Progress], object],
         coordinates: AnyCoordinates | None = None,
+        own_algorithm: Any = None,
     ) -> None:
         self._study = study
         self._evaluate = evaluate
@@ -83,7 +86,7 @@ class Session:
         names = list(study.objectives.names)
         self._front = np.zeros((0, len(names)))
         self._add_to_front(data.trials.loc[feasible, names].to_numpy())
-        self._algorithm: Algorithm = make_algorithm(study, self._coordinates)
+        self._algorithm: Algorithm = make_algorithm(study, self._coordinates, own_algorithm)
         try:
             self._algorithm.restore(data.checkpoint.state, _history(data, self._coordinates))
         except (KeyError, TypeError, ValueError, IndexError) as error:
@@ -140,6 +143,8 @@ class Session:
         motors = self._motors_of(proposal.values)
         there = len(self._designs)
         if not np.array_equal(designs[:there], self._designs) or _first(motors, there) != self._motors:
+            if isinstance(self._algorithm, OwnAlgorithm):
+                raise StudyError(self._algorithm.other_designs(f"trials {self.total - there} to {self.total - 1}"))
             raise DatabaseError(
                 f"study database {str(self._store.path)!r}: trials {self.total - there} to {self.total - 1} do not "
                 "follow from its checkpoint; it is damaged, restore a copy"

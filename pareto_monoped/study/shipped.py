@@ -4,7 +4,7 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.errors import StudyError, unknown_name
 
 START = "case_c"
 """The study that a newcomer begins with: all seven variables of the paper, its best design."""
@@ -34,5 +34,5 @@ def shipped_study(name: str) -> str:
     """
     known = shipped_studies()
     if name not in known:
-        raise StudyError(complaint("study", name, f"one of {', '.join(known)}", "correct the name"))
+        raise StudyError(unknown_name("study", name, known))
     return known[name].read_text(encoding="utf-8")

@@ -1,6 +1,7 @@
 """What a study simulates with, from the names in its study file or from what its database holds."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,11 @@ import numpy as np
 from pareto_monoped.actuator.motors import Motor, load_motor, motor_source, motor_values
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import CalibrationError, StudyError
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
+from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.shared import evaluator_of
 from pareto_monoped.leg.motor_fit import require_leg
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.meta import motor_keys
@@ -73,20 +76,32 @@ def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
     )
 
 
-def load_simulator(study: Study, *, workers: int) -> Simulator:
+def load_simulator(
+    study: Study, *, workers: int, executor: Executor | None = None, calibration: Calibration | None = None
+) -> Simulator:
     """The simulator of a study file: reads the motor and the calibration that it names.
 
     Args:
         study: names the motor and the calibration, or files of them.
         workers: threads that simulate.
+        executor: shares out the jumps in their place.
+        calibration: the user's own, in place of the one that the study names.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
     """
-    return _simulator(study, [load_motor(name) for name in study.motors], load_calibration(study.calibration), workers)
+    motors = [load_motor(name) for name in study.motors]
+    return _simulator(study, motors, calibration or _named_calibration(study.calibration), workers, executor)
 
 
-def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simulator:
+def continued_simulator(
+    data: StudyData,
+    study: Study,
+    *,
+    workers: int,
+    executor: Executor | None = None,
+    calibration: Calibration | None = None,
+) -> Simulator:
     """The simulator of a study file that continues a stored study.
 
     A motor or calibration that the user has not changed is as stored: the same file, or the same shipped name. A later
@@ -96,6 +111,8 @@ def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simul
         data: the stored study.
         study: names the motor and the calibration, or files of them.
         workers: threads that simulate.
+        executor: shares out the jumps in their place.
+        calibration: the user's own, in place of the one that the study names.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
@@ -118,10 +135,13 @@ def continued_simulator(data: StudyData, study: Study, *, workers: int) -> Simul
         ]
     )
     same = unchanged("calibration", study.calibration, data.study.calibration)
-    return _simulator(study, motors, data.calibration if same else load_calibration(study.calibration), workers)
+    known = data.calibration if same else _named_calibration(study.calibration)
+    return _simulator(study, motors, calibration or known, workers, executor)
 
 
-def _simulator(study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int) -> Simulator:
+def _simulator(
+    study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int, executor: Executor | None
+) -> Simulator:
     names = [motor.name for motor in motors]
     for name in names:
         if names.count(name) > 1:
@@ -140,7 +160,7 @@ def _simulator(study: Study, motors: Sequence[Motor], calibration: Calibration, 
     return Simulator(
         motors=tuple(motors),
         calibration=calibration,
-        evaluator=Evaluator(kits[0], calibration, workers=workers, others=kits[1:]),
+        evaluator=evaluator_of(kits[0], calibration, workers, others=kits[1:], executor=executor),
         files={
             **dict(zip(keys, map(_text, study.motors), strict=True)),
             "calibration": _text(study.calibration),
@@ -148,8 +168,13 @@ def _simulator(study: Study, motors: Sequence[Motor], calibration: Calibration, 
     )
 
 
-def stored_simulator(data: StudyData, *, workers: int) -> Simulator:
+def stored_simulator(data: StudyData, *, workers: int, executor: Executor | None = None) -> Simulator:
     """The simulator of a stored study: from the database alone, whatever has become of the user's files.
+
+    Args:
+        data: the stored study.
+        workers: threads that simulate.
+        executor: shares out the jumps in their place.
 
     Raises:
         DatabaseError: the stored motor or calibration is damaged.
@@ -158,9 +183,23 @@ def stored_simulator(data: StudyData, *, workers: int) -> Simulator:
     return Simulator(
         motors=data.motors,
         calibration=data.calibration,
-        evaluator=Evaluator(first, data.calibration, workers=workers, others=others),
+        evaluator=evaluator_of(first, data.calibration, workers, others=others, executor=executor),
         files=dict(data.meta.files),
     )
+
+
+def _named_calibration(name: str) -> Calibration:
+    """The calibration that a study names.
+
+    Raises:
+        CalibrationError: an unknown name, an unusable file, or the name of one that only its user's program has.
+    """
+    if name.startswith(OWN_CALIBRATION):
+        raise CalibrationError(
+            f"calibration {name.removeprefix(OWN_CALIBRATION)!r}: only your program has it; start the study from "
+            "Python: pareto_monoped.run(study, db, calibration=...)"
+        )
+    return load_calibration(name)
 
 
 def _text(name: str) -> str | None:

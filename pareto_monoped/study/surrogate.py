@@ -1,48 +1,67 @@
 """Surrogate-assisted search: many offspring, ranked by a cheap model; the most promising are simulated."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, Standing
+from pareto_monoped.study.climb import Climbs, climbs
 from pareto_monoped.study.one_thread import one_thread
 from pareto_monoped.study.prediction import Prediction
 from pareto_monoped.study.promise import ranked, unlike
 from pareto_monoped.study.protocol import Floats, Proposal, Scores, Space
 from pareto_monoped.study.response_surface import Features, features_of
 from pareto_monoped.study.seen import Seen, drawn
-from pareto_monoped.study.variation import offspring, small_steps, spread, swaps
+from pareto_monoped.study.variation import exchanges, offspring, small_steps, spread, swaps
 
-_REFINED = 5
+_REFINED = 3
 """Offspring per simulated design that are refined by small steps. Our own choice."""
 _STEPS = 4
 """Small steps that are tried from each of them. Our own choice."""
 
-_SWAPPED = 6
+_SWAPPED = 4
 """Designs of the front whose gearboxes are each replaced by all others. Our own choice: a gearbox that gains a
 millimetre is one of 40, which steps at random rarely try where the gain is."""
 
-_ON_BOUND = 0.25
-"""Share of a variable's values on either bound in half of the first designs and in explorers: many of the best designs
-have variables on their bounds, and polynomials are determined best by points there. Our own choice."""
+_ON_BOUND = (0.25, 0.45)
+"""Share of a variable's values on either bound in a quarter of the first designs and in the next quarter, and in either
+half of those anywhere. Our own choice: many of the best designs have most of their variables on bounds, some of them in
+a corner far from all others, and polynomials are determined best by points there."""
 _ANYWHERE = 1000
-"""Designs anywhere in the space from which explorers are chosen. Our own choice."""
+"""Designs anywhere in the space from which explorers are chosen and climbs begin. Our own choice."""
 _EXPLORING = 0.1
 """Share of a generation that explores. Our own choice: without it, some searches miss a part of the front that lies
 far from the rest in the space."""
+
+_CLIMBS = 6
+"""Climbs that begin anywhere; as many begin on the front, and half as many close to it. Our own choice."""
+_EXCHANGED = 2
+"""Those of the front whose links, gearboxes, or both are exchanged first. Our own choice: legs with a long thigh and
+with a long shank come within a percent of each other, and steps do not lead from one to the other."""
+_CLOSE = 1000
+"""Designs nearest the front that climbs begin at. Our own choice: a few times as many as the front has."""
+
+_FEW = 50
+"""Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
+_LARGER = 2
+"""How many times as many designs each later generation has, as many climbs and as many with other gearboxes. Our own
+choice: the model takes as long for twice as many designs, and the front is as good."""
 
 
 class SurrogateSearch:
     """Evolution that simulates the most promising of many offspring.
 
-    The first generations are spread over the space, half of them over its bounds, too. Later, each generation varies
-    the designs on the front so far and predicts objectives and constraints of the offspring (``Prediction``). The most
-    promising are varied again, in steps from fine to coarse, and a few designs of the front get every other gearbox. Of
-    all these, the search asks for those that gain most over the front, the best of each part of it first: the ends of
-    the front are parts, too. A tenth of each generation explores: it is far from all simulated designs, and still
-    promising.
+    The first generations are spread over the space, half of them over its bounds and corners, too. Later, each
+    generation varies the designs on the front so far and predicts objectives and constraints of the offspring
+    (``Prediction``). The most promising are varied again, in steps from fine to coarse, a few designs of the front get
+    every other gearbox, and, once the model has a design for each of its terms, some climb as far as it leads them
+    (``climbs``): designs from anywhere, from the front and close to it, and designs of the front whose links or
+    gearboxes are exchanged. Of all these, the search asks for those that gain most over the front, the best of each
+    part of it first: the ends of the front are parts, too. A tenth of each generation explores: it is far from all
+    simulated designs, and still promising. Half of that are the ends of climbs.
 
     Every generation refines, so a search that gets a larger budget goes on as if it had had it from the beginning.
     Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
@@ -59,20 +78,29 @@ class SurrogateSearch:
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
 
+    @property
+    def _times(self) -> int:
+        """How many times the population the next generation has."""
+        return 1 if self._generation < _FEW else _LARGER
+
+    @property
+    def _size(self) -> int:
+        """Designs of the next generation."""
+        return self._settings.population * self._times
+
     def ask(self) -> Proposal | None:
         """Designs spread over the space, later the most promising offspring; None if there is no new design."""
         generator = np.random.default_rng([self._seed, self._generation])
-        size = self._settings.population
+        size = self._size
         standing = self._archive.standing()
         if self._generation < self._settings.drawn_generations or len(standing.order) == 0:
-            inside = spread(self._space, size // 2, generator)
-            chosen = np.vstack((inside, spread(self._space, size - size // 2, generator, _ON_BOUND)))
+            corners = (size - size // 2) // 2
+            counts = (size // 2, size - size // 2 - corners, corners)
+            parts = zip(counts, (0.0, *_ON_BOUND), strict=True)
+            chosen = np.vstack([spread(self._space, count, generator, share) for count, share in parts])
         else:
-            chosen = offspring(self._archive, standing, self._settings, generator)
+            chosen = self._promising(standing, generator)
         chosen = chosen[self._seen.new(chosen)]
-        if len(chosen) > size:
-            with one_thread():
-                chosen = self._most_promising(chosen, standing, generator)
         if len(chosen) == 0:
             chosen = drawn(self._space, self._seen, generator, size)
         self._asked = chosen
@@ -97,25 +125,72 @@ class SurrogateSearch:
         self._seen.add(values)
         self._archive.add(values, scores)
 
-    def _most_promising(self, values: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
-        """As many designs as a generation has, from offspring, shape (n, d), small steps around the best, and afar."""
-        size = self._settings.population
-        prediction = Prediction(self._archive, standing, self._features)
+    def _promising(self, standing: Standing, generator: np.random.Generator) -> Floats:
+        """The most promising of many new designs; all of them if they are no more than a generation has."""
+        with one_thread(), ThreadPoolExecutor(1) as helper:
+            # The model needs no offspring, and offspring no model: each has a core.
+            model = helper.submit(Prediction, self._archive, standing, self._features)
+            values = offspring(self._archive, standing, self._settings, generator)
+            values = values[self._seen.new(values)]
+            if len(values) <= self._size:
+                return values
+            return self._most_promising(values, model.result(), standing, generator)
+
+    def _most_promising(
+        self, values: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
+    ) -> Floats:
+        """As many designs as a generation has: from offspring, shape (n, d), small steps around the best, and climbs.
+
+        Those that explore come last.
+        """
+        size = self._size
         best = values[ranked(*prediction.rough(values), standing)[: _REFINED * size]]
-        swapped = swaps(self._space, self._archive.values[generator.permutation(standing.front)[:_SWAPPED]])
+        swapped = swaps(
+            self._space, self._archive.values[generator.permutation(standing.front)[: self._times * _SWAPPED]]
+        )
         values = np.vstack((best, small_steps(self._space, best, _STEPS, generator), swapped))
         values = values[self._seen.new(values)]
-        explorers = self._explorers(prediction, standing, generator)
-        chosen = values[ranked(*prediction.fine(values), standing)[: size - len(explorers)]]
-        chosen = np.vstack((chosen, explorers))
-        return chosen[self._seen.new(chosen)]
+        costs, violation = prediction.fine(values)
+        explorers, count = values[:0], round(_EXPLORING * size)
+        if len(standing.front):
+            known = self._archive.points
+            anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
+            if prediction.determined:
+                climbed = self._climbs(anywhere, prediction, standing, generator)
+                values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
+                violation = np.concatenate((violation, climbed.violation))
+                ends = climbed.values[climbed.ends]
+                explorers = self._afar(ends, prediction.fine, standing, known, count // 2)
+                known = np.vstack((known, self._features.scaled(explorers)))
+            others = self._afar(anywhere, prediction.rough, standing, known, count - len(explorers))
+            explorers = np.vstack((explorers, others))
+            # A climb from anywhere may have ended where it began.
+            explorers = explorers[self._seen.new(explorers)]
+        # Where climbs ended may be among the explorers, too.
+        new = self._seen.new(np.vstack((explorers, values)))[len(explorers) :]
+        values, costs, violation = values[new], costs[new], violation[new]
+        chosen = values[ranked(costs, violation, standing)[: size - len(explorers)]]
+        return np.vstack((chosen, explorers))
 
-    def _explorers(self, prediction: Prediction, standing: Standing, generator: np.random.Generator) -> Floats:
-        """Promising designs far from all simulated ones, a tenth of a generation; none without a front."""
-        count = round(_EXPLORING * self._settings.population)
-        if count == 0 or len(standing.front) == 0:
-            return self._archive.values[:0]
-        anywhere = spread(self._space, _ANYWHERE, generator, _ON_BOUND)
-        anywhere = anywhere[self._seen.new(anywhere)]
-        points, known = self._features.scaled(anywhere), self._features.scaled(self._archive.values)
-        return anywhere[unlike(*prediction.rough(anywhere), standing, points, known, count)]
+    def _climbs(
+        self, anywhere: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
+    ) -> Climbs:
+        """Climbs from promising designs anywhere, from the front and close behind it, and from exchanged designs."""
+        count, exchanged = self._times * _CLIMBS, self._times * _EXCHANGED
+        front = self._archive.values[generator.permutation(standing.front)[:count]]
+        close = self._archive.values[generator.permutation(standing.order[:_CLOSE])[: count // 2]]
+        promising = anywhere[ranked(*prediction.rough(anywhere), standing)[:count]]
+        start = np.vstack((promising, exchanges(self._space, front[:exchanged]), front[exchanged:], close))
+        return climbs(self._space, start, prediction, standing, generator)
+
+    def _afar(
+        self,
+        values: Floats,
+        predict: Callable[[Floats], tuple[Floats, Floats]],
+        standing: Standing,
+        known: Floats,
+        count: int,
+    ) -> Floats:
+        """``count`` of n designs, shape (n, d), that promise much and are far from points that are known."""
+        values = values[self._seen.new(values)]
+        return values[unlike(*predict(values), standing, self._features.scaled(values), known, count)]

@@ -6,7 +6,7 @@ import pytest
 
 import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.errors import CheckError, OutputError, SelectionError
+from pareto_monoped.errors import CheckError, InputError, OutputError, SelectionError
 
 C = pm.PAPER_CASES["C"].design
 
@@ -49,6 +49,11 @@ def test_a_report_is_written_and_not_over_something_else(stored, tmp_path):
     pm.write_report(stored.path, tmp_path / "r.html")
     assert "</html>" in (tmp_path / "r.html").read_text(encoding="utf-8")
     pm.write_report([stored.path], str(tmp_path / "r.html"))
+    by_path = (tmp_path / "r.html").read_text(encoding="utf-8")
+    pm.write_report(stored, tmp_path / "r.html")
+    assert len((tmp_path / "r.html").read_text(encoding="utf-8")) == len(by_path)
+    with pytest.raises(InputError, match=r"^studies = DataFrame: must be a study as load_study returns it, the path"):
+        pm.write_report(stored.front(), tmp_path / "r.html")
     (tmp_path / "notes.html").write_text("mine")
     with pytest.raises(OutputError):
         pm.write_report(stored.path, tmp_path / "notes.html")

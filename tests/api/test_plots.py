@@ -26,6 +26,8 @@ def test_other_axes_and_several_studies(stored):
     figure = pm.plot_front([stored, stored], x="mass_kg", y="lift_off_s", trials=False)
     assert len(figure.data) == 2
     np.testing.assert_array_equal(figure.data[0].x, stored.front()["mass_kg"])
+    with pytest.raises(InputError, match=r"^studies = DataFrame: must be a study as load_study returns it, or a list"):
+        pm.plot_front(stored.front())
     with pytest.raises(InputError, match="axis = 'mass'"):
         pm.plot_front(stored, x="mass")
 

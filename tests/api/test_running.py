@@ -77,3 +77,48 @@ def test_a_database_with_other_goals_is_refused(file):
     pm.run(file, evaluations=40)
     with pytest.raises(pm.ParetoMonopedError, match="began with other settings"):
         pm.run(file, constraints={"mass_kg": {"max": 5.0}})
+
+
+SMALL = {"name": "s", "algorithm": "random", "audit": False, "strength": False}
+
+
+def test_a_study_without_a_feasible_design_warns_with_the_note_of_the_command_line(tmp_path, capsys):
+    study = pm.Study.define(**SMALL, evaluations=40, constraints={"mass_kg": {"max": 0.5}})
+    with pytest.warns(UserWarning, match=r"of \d+ miss mass_kg <= 0.5; the least is 4\.\d+ kg$") as caught:
+        stored = pm.run(study, tmp_path / "s.db")
+    assert caught[0].filename == __file__
+    assert cli(["resume", str(stored.path)]) == 0
+    _, _, note = str(caught[0].message).partition(".db: ")
+    assert f"note: {note}\n" in capsys.readouterr().err
+    with pytest.warns(UserWarning, match="no design is feasible") as again:
+        pm.resume(stored.path, evaluations=50)
+    assert (len(again), again[0].filename) == (1, __file__)
+
+
+def test_fewer_trials_than_are_stored_are_refused(tmp_path):
+    study = pm.Study.define(**SMALL, evaluations=60)
+    stored = pm.run(study, tmp_path / "s.db")
+    before = stored.path.read_bytes()
+    for call in (lambda: pm.resume(stored.path, evaluations=40), lambda: pm.run(study, stored.path, evaluations=40)):
+        with pytest.raises(pm.ParetoMonopedError, match=r"evaluations: 60 -> 40 \(only more is allowed\)"):
+            call()
+    assert stored.path.read_bytes() == before
+    assert len(pm.resume(stored.path, evaluations=60).trials) == 60
+
+
+def test_one_function_alone_is_a_list_of_one(tmp_path):
+    def light(jumps):
+        return jumps["mass_kg"] - 5.0
+
+    study = pm.Study.define(**SMALL, evaluations=40)
+    one = pm.run(study, tmp_path / "one.db", constraints=light, evaluations=30)
+    pm.run(study, tmp_path / "list.db", constraints=[light])
+    pm.resume(one.path, evaluations=40, functions=light)
+    same(one.path, tmp_path / "list.db")
+    assert one.study.own_names == ("own_light",)
+
+
+def test_messages_show_no_address(tmp_path):
+    study = pm.Study.define(**SMALL, evaluations=40)
+    with pytest.raises(pm.ParetoMonopedError, match=r"^objectives = <function \S*<lambda>>: must be a list"):
+        pm.run(study, tmp_path / "s.db", objectives=lambda jumps: jumps["mass_kg"])

@@ -8,7 +8,7 @@ import pytest
 
 import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.errors import SelectionError, StudyError
+from pareto_monoped.errors import DesignError, SelectionError, StudyError
 
 
 @pytest.fixture(scope="module")
@@ -91,6 +91,22 @@ def test_a_design_of_a_study_jumps_again_as_it_is_stored(stored):
     pd.testing.assert_frame_equal(
         pm.simulate(stored.design(trial), hip_motor=hip, knee_motor=knee), again.iloc[[0]], check_exact=True
     )
+
+
+def test_a_pick_jumps_with_the_motors_of_its_study_and_never_with_others(tmp_path):
+    stored = pm.run(pm.Study.define(name="u8", evaluations=40, motor="U8", strength=False), tmp_path / "u8.db")
+    picked = stored.pick("knee")
+    assert stored.simulate(picked)["height_m"][0] == picked.row["height_m"]
+    for call in (pm.simulate, pm.trace, pm.build_robot, lambda given: pm.simulate([given])):
+        with pytest.raises(DesignError, match=r"of class Picked, .* use its \.design and the motors of its study"):
+            call(picked)
+    with pytest.raises(DesignError, match=r"of class PaperCase, must be Designs; use its \.design$"):
+        pm.simulate(pm.PAPER_CASES["C"])
+
+
+def test_an_unknown_condition_names_its_argument(stored):
+    with pytest.raises(SelectionError, match=r"^at_most = 'mass': .* did you mean 'mass_kg'\?$"):
+        stored.pick(at_most={"mass": 3.0})
 
 
 def test_a_variable_around_a_pick_is_varied_in_a_few_lines(stored):

@@ -108,7 +108,7 @@ def test_a_failure_while_writing_leaves_nothing(quick, monkeypatch, actuator_map
 
 
 def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp_path):
-    with pytest.raises(InputError, match="format 'dwg': must be one of step, stl"):
+    with pytest.raises(InputError, match="format = 'dwg': must be one of step, stl"):
         export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=("dwg",))
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="is a file"):

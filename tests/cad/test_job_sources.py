@@ -57,7 +57,7 @@ def test_a_row_of_table_1_has_the_paper_s_motor_and_the_reference_calibration(tm
     assert (job.motor.name, job.calibration.name, job.rules) == ("VT8020", "reference", "iso6336")
     assert case_job("B", folder=tmp_path, rules="paper").rules == "paper"
     assert (job.hip_rad, job.knee_rad, job.formats) == (0.1, 0.2, FORMATS)
-    with pytest.raises(InputError, match="format 'dwg'"):
+    with pytest.raises(InputError, match="format = 'dwg'"):
         case_job("B", folder=tmp_path, formats=["dwg"])
 
 

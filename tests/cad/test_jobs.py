@@ -139,7 +139,7 @@ def put(value, *keys):
         (put(float("inf"), "pose", "hip_rad"), "hip_rad = Infinity is not a number"),
         (put(-0.4, "searched", "shank_length_m"), "shank_length_m"),
         (put(99.0, "searched", "knee_ratio"), "gear ratio = 99.0"),
-        (put(["step", "../../x"], "formats"), "format '../../x': must be one of"),
+        (put(["step", "../../x"], "formats"), "format = '../../x': must be one of"),
         (put(-1.0, "motor_data", "kv_rpm_per_v"), "kv_rpm_per_v = -1.0"),
         (put(1e9, "motor_data", "framed", "outer_diameter_mm"), "framed.outer_diameter_mm = 1000000000.0"),
         (put({"os": "rm"}, "motor_data", "extra"), "unknown key 'extra'"),

@@ -37,7 +37,7 @@ def run(capsys, *words):
         (("export", "--case", "C", "--hip-motor", "U8", "-o", "x"), "--knee-motor is missing"),
         (("export", "--case", "C", "--motor", "U8", "--hip-motor", "U8", "-o", "x"), "--motor stands for both joints"),
         (("export", "--case", "C", "--hip-motor", "U8", "--knee-motor", "U99", "-o", "x"), "motor = 'U99'"),
-        (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format 'dwg'"),
+        (("export", "--case", "C", "--formats", "step,dwg", "-o", "x"), "format = 'dwg'"),
     ],
 )
 def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypatch, words, message):

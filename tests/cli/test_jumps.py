@@ -75,7 +75,7 @@ def test_a_ratio_without_a_gearbox_is_refused_with_a_cure(capsys):
     ("arguments", "said"),
     [
         (("--set", "knee=6"), "thigh_length_m"),
-        (("--set", "knee_ratio"), "NAME=VALUE"),
+        (("--set", "knee_ratio"), "NAME=X"),
         (("--set", "knee_ratio=six"), "a number"),
         (("--set", "knee_ratio=nan"), "finite"),
         (("--set", "knee_ratio=40"), "knee_ratio"),

@@ -1,3 +1,5 @@
+import re
+import shlex
 import subprocess
 import sys
 from importlib import metadata
@@ -99,7 +101,11 @@ def test_version():
 
 def test_a_closed_pipe_is_no_error():
     result = subprocess.run(
-        f"{sys.executable} -m pareto_monoped --help | head -n 1", shell=True, capture_output=True, text=True, check=True
+        f"{shlex.quote(sys.executable)} -m pareto_monoped --help | head -n 1",
+        shell=True,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert result.stderr == ""
     assert result.stdout.startswith("Usage: pareto-monoped")
@@ -129,3 +135,66 @@ def test_a_usage_error_points_to_the_help_of_its_command(capsys):
         cli.main(["pick", "x.db", "--nonsense"])
     assert caught.value.code == 2
     assert "(see 'pareto-monoped pick --help')" in capsys.readouterr().err
+
+
+METAVARS = {
+    # Numbers: a count or number of something, a value, metres, joules, degrees, percent.
+    "N", "X", "M", "J", "DEG", "PERCENT",
+    # Names, in lists with commas where there are several; with a value; the weights of two objectives.
+    "NAME", "A,B", "NAME=X", "NAME=X,...", "WH,WE",
+    # A study by name, a study file, a database, a folder, a file in a format of one's choice.
+    "STUDY", "STUDY.toml", "CAMPAIGN.toml", "DB", "DIR", "FILE",
+    "ADDRESS",  # of a scheduler
+}  # fmt: skip
+PLAIN = re.compile(r"FILE\.(csv|gif|html|json|mp4|parquet|toml|xml)|DB \[DB \.\.\.\]")
+
+
+def parameters():
+    """Command, option or argument, and what stands for its value in the help; None for a flag."""
+    context = click.Context(cli.cli)
+    for name in cli._COMMANDS:
+        for one in cli.cli.get_command(context, name).params:
+            choice = isinstance(one.type, click.Choice)
+            flag = isinstance(one, click.Option) and one.is_flag
+            shown = None if flag or choice else one.make_metavar(context).removeprefix("[").removesuffix("]")
+            yield name, one.opts[-1], shown
+
+
+def test_values_are_called_the_same_in_all_commands():
+    """One word for one kind of value, and one word for one option."""
+    seen = {}
+    for command, option, shown in parameters():
+        if shown is None:
+            continue
+        if not PLAIN.fullmatch(shown.replace("[DB ...", "[DB ...]").replace("]]", "]")):
+            assert shown in METAVARS, f"{command} {option}"
+        if option.startswith("--") and option != "--output":
+            assert seen.setdefault(option, shown) == shown, f"{command} {option}"
+
+
+def test_every_option_says_what_it_does():
+    context = click.Context(cli.cli)
+    commands = [cli.cli.get_command(context, name) for name in cli._COMMANDS]
+    options = [one for command in commands for one in command.params if isinstance(one, click.Option)]
+    assert [one.name for one in options if not one.help or one.help.lstrip().startswith("[")] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["simulate", "--cse", "C"], "option '--cse': is unknown; did you mean '--case'?"),
+        (["simulate", "--zzzz"], "option '--zzzz': is unknown; drop it"),
+        (["pick", "x.db", "--trial", "abc"], "'abc' is no whole number."),
+        (["actuators", "--ratio", "six"], "'six' is no number."),
+        (["pick", "x.db", "--trial"], "requires an argument. (see 'pareto-monoped"),
+        (["actuators", "--without", "sunrim"], "did you mean 'sun_rim'?"),
+        (["simulate", "--set", "knee_rato=5"], "did you mean 'knee_ratio'?"),
+        (["init", "quik"], "did you mean 'quick'?"),
+        (["simulate", "--motor", "vt8021"], "did you mean 'VT8020'?"),
+    ],
+)
+def test_a_slip_of_the_fingers_is_told_what_was_meant(words, said, capsys):
+    assert cli._run(words) == 2
+    line = capsys.readouterr().err
+    assert said in line
+    assert line.count("\n") == 1

@@ -28,6 +28,8 @@ cli.main()
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_any_command_without_a_trace(tmp_path, number):
+    # Under nohup, or in the background of a script, the tests ignore some signals, and the command would inherit that.
+    inherited = signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
     process = subprocess.Popen(
         [sys.executable, "-c", WAITS],
         cwd=tmp_path,
@@ -37,6 +39,7 @@ def test_a_signal_ends_any_command_without_a_trace(tmp_path, number):
         stderr=subprocess.PIPE,
         text=True,
     )
+    signal.signal(number, inherited)
     assert process.stdout.readline() == "waiting\n"
     assert len(list(tmp_path.iterdir())) == 1
     process.send_signal(number)

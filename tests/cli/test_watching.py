@@ -45,3 +45,9 @@ def test_the_help_lists_the_variables_with_their_units(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
     assert any(line.split() == ["stiffness_n_per_m", "N/m", "5", "to", "200"] for line in lines)
+
+
+def test_a_gif_is_not_written_under_the_name_of_another_kind(tmp_path, capsys):
+    assert cli(["simulate", "--case", "C", "--gif", str(tmp_path / "jump.png")]) == 2
+    assert capsys.readouterr().err.rstrip().endswith("must be a file ending in .gif; correct the name, or use --video")
+    assert list(tmp_path.iterdir()) == []

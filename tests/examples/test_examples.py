@@ -10,6 +10,10 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 MAKES = {
     "one_jump": ("J at the battery", ("jump.png",)),
     "constrained_study": ("the least energy from the battery", ("light.db", "front.html")),
+    "logged_study": ("front of", ("logged.db",)),
+    "own_algorithm": ("the least energy", ("least.db",)),
+    "own_calibration": ("wet_floor: ", ("wet.db",)),
+    "own_goals": ("own_load_factor", ("gentle.db",)),
     "own_motor": ("ESSPG", ()),
     "own_objective": ("m/s", ()),
     "own_sampler": ("m on", ("sampled.db",)),

@@ -11,6 +11,7 @@ from pareto_monoped.jump.calibration import (
     earlier_calibrations,
     load_calibration,
 )
+from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 
 
 def test_three_ship_and_the_default_is_the_well_posed_one():
@@ -104,6 +105,16 @@ def test_stops_are_given_or_those_of_the_parts(tmp_path):
     path.write_text(_text("earlier/reference-1").replace("[joints]", '[joints]\nstops = "parts"'))
     with pytest.raises(CalibrationError, match="goes without hip_stop and knee_stop"):
         load_calibration(str(path))
+
+
+@pytest.mark.parametrize("name", calibration_names())
+def test_the_present_version_is_loaded_by_its_label_too(name):
+    known = load_calibration(name)
+    assert load_calibration(known.label) == known
+    assert rules_for(known.label) == rules_for(name)
+    assert strength_for(known.label) == strength_for(name)
+    with pytest.raises(CalibrationError, match=f"did you mean '{known.label}'"):
+        load_calibration(f"{name}-{known.version + 1}")
 
 
 @pytest.mark.parametrize("label", earlier_calibrations())

@@ -1,7 +1,6 @@
 """Real small studies, made once a session, and a headless browser without a network."""
 
 import base64
-import shutil
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,6 +12,7 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.report.card import Source
+from pareto_monoped.report.page import page
 from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.study.definition import study_from_dict
@@ -118,21 +118,6 @@ def grown(data: StudyData, count: int) -> StudyData:
     return replace(data, trials=trials, audits=data.audits.iloc[:0])
 
 
-@pytest.fixture(scope="session")
-def browser() -> Iterator[object]:
-    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if path is None:
-        pytest.skip("no Chromium is installed")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        # WebGL by SwiftShader, so that the 3D view is drawn without a graphics card; all else on the processor.
-        drawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        running = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", *drawing])
-        yield running
-        running.close()
-
-
 class Tab:
     """A page in a browser without a network, with everything that it complained about or asked for."""
 
@@ -217,6 +202,22 @@ class Tab:
         """Nothing was asked for but the file itself (its icon is empty data), and nothing went wrong."""
         assert [url for url in self.requests if not url.startswith("data:")] == [file.as_uri()]
         assert self.complaints == []
+
+
+@pytest.fixture(scope="module")
+def file(folder, payload, request) -> Path:
+    """The page of the small study, for one module of tests."""
+    made = folder / f"{request.module.__name__.rpartition('.')[2]}.html"
+    made.write_text(page(payload), encoding="utf-8")
+    return made
+
+
+@pytest.fixture(scope="module")
+def shared(file, browser) -> "Iterator[Tab]":
+    """That page in a tab; each test resets it."""
+    tab = Tab(browser, file)
+    yield tab
+    tab.context.close()
 
 
 @pytest.fixture

@@ -8,23 +8,8 @@ import pytest
 
 from pareto_monoped.report.page import page
 from pareto_monoped.report.payload import build
-from tests.report.conftest import Tab
 
 pytestmark = pytest.mark.browser
-
-
-@pytest.fixture(scope="module")
-def file(folder, payload):
-    made = folder / "state.html"
-    made.write_text(page(payload), encoding="utf-8")
-    return made
-
-
-@pytest.fixture(scope="module")
-def shared(file, browser):
-    tab = Tab(browser, file)
-    yield tab
-    tab.context.close()
 
 
 @pytest.fixture

@@ -9,23 +9,9 @@ import pytest
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import page
 from pareto_monoped.report.payload import build
-from tests.report.conftest import Tab, grown
+from tests.report.conftest import grown
 
 pytestmark = pytest.mark.browser
-
-
-@pytest.fixture(scope="module")
-def file(folder, payload):
-    made = folder / "table.html"
-    made.write_text(page(payload), encoding="utf-8")
-    return made
-
-
-@pytest.fixture(scope="module")
-def shared(file, browser):
-    tab = Tab(browser, file)
-    yield tab
-    tab.context.close()
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from importlib import resources
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -50,6 +51,22 @@ def test_svg_has_readable_text_and_the_width_of_a_column(figures):
     assert root.get("width") == "252pt"  # 3.5 in
     words = {node.text for node in root.iter("{http://www.w3.org/2000/svg}text")}
     assert {"energy (J)", "height (m)", "nominal", "paper, published"} <= words
+
+
+def test_the_legend_of_the_front_lies_within_the_figure(payload):
+    """It was cut off at the right for two studies with long names."""
+    names = ("case_c by mechanical energy", "case_c by battery energy")
+    long = tuple(replace(payload.studies[0], label=name) for name in names)
+    figure = Figure(figsize=(3.5, 2.6), layout="constrained")
+    with matplotlib.rc_context({"legend.fontsize": 7.0}):
+        assert front_figure(replace(payload, studies=long), figure)
+    FigureCanvasAgg(figure).draw()
+    legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
+    for legend in legends:
+        box = legend.get_window_extent()
+        assert box.x0 >= 0.0
+        assert box.x1 <= figure.bbox.x1
+        assert box.y1 <= figure.bbox.y1 + 1.0
 
 
 @pytest.fixture

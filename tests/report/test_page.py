@@ -9,7 +9,7 @@ import pytest
 from pareto_monoped import report
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
-from pareto_monoped.report.page import SCRIPTS, _asset, page, payload_of, write_report
+from pareto_monoped.report.page import SCRIPTS, asset, page, payload_of, write_report
 from pareto_monoped.report.payload import PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M
 
 
@@ -91,6 +91,6 @@ def test_scripts_hold_no_physical_constants():
 def test_no_two_scripts_declare_the_same_name():
     """They run in one scope, in which a second function of a name would silently replace the first."""
     declared = re.compile(r"^(?:async )?(?:function|const|let|class) (\w+)", re.M)
-    names = [name for script in SCRIPTS for name in declared.findall(_asset(f"{script}.js"))]
+    names = [name for script in SCRIPTS for name in declared.findall(asset(f"{script}.js"))]
     assert len(names) > 100
     assert {name for name in names if names.count(name) > 1} == set()

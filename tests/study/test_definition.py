@@ -114,6 +114,7 @@ def test_plain_values_and_back(name):
         ({"rules": "iso6336", "calibration": "paper"}, ["rules = 'iso6336'", "'paper' with the calibration"]),
         ({"variables": {"K": 5}}, ["'K'", "stiffness_n_per_m"]),
         ({"variables": {"knee_ratio": "big"}}, ["variables.knee_ratio = 'big'", "1 to 100"]),
+        ({"variables": {"knee_ratio": (5, 7)}}, ["knee_ratio = (5, 7)", 'a range such as {"lower": 4, "upper": 8.7};']),
         ({"variables": {"knee_ratio": True}}, ["variables.knee_ratio = True"]),
         ({"variables": {"knee_ratio": float("nan")}}, ["variables.knee_ratio = nan"]),
         ({"variables": {"knee_ratio": {"lower": 5.0}}}, ["variables.knee_ratio", "lower and upper"]),

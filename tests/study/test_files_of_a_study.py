@@ -122,12 +122,19 @@ def test_other_signals_end_it_as_ctrl_c_does(tmp_path, number):
     toml = tmp_path / "s.toml"
     toml.write_text('name = "s"\nevaluations = 100000\naudit = false\n')
     words = [sys.executable, "-m", "pareto_monoped", "run", str(toml), "--workers", "1"]
+    # Under nohup the tests ignore SIGHUP, and the command would inherit that.
+    inherited = signal.signal(number, signal.SIG_DFL)
     process = subprocess.Popen(words, cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-    deadline, db = time.monotonic() + 100.0, tmp_path / "s.db"
-    while time.monotonic() < deadline and not (db.exists() and len(read_study(db).trials)):
-        time.sleep(0.05)
-    process.send_signal(number)
-    _, said = process.communicate(timeout=100)
+    signal.signal(number, inherited)
+    try:
+        deadline, db = time.monotonic() + 100.0, tmp_path / "s.db"
+        while time.monotonic() < deadline and not (db.exists() and len(read_study(db).trials)):
+            time.sleep(0.05)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=100)
+    finally:
+        process.kill()
+        process.communicate()
     assert process.returncode == 130
     assert "ending after this generation" in said
     assert read_study(db).meta.stop_reason == "interrupted"

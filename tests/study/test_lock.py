@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DatabaseError, OutputError
 from pareto_monoped.study.lock import holder, locked
 
 _HOLD = """
@@ -63,3 +63,11 @@ def test_it_is_freed_by_an_error_inside(tmp_path):
 def test_two_studies_do_not_block_each_other(tmp_path, other):
     with locked(tmp_path / "t.db"):
         assert holder(tmp_path / "s.db") == other.pid
+
+
+def test_messages_say_what_to_do_on_the_command_line_and_in_python(tmp_path, other):
+    with pytest.raises(DatabaseError, match=r"give another database file \(--db\)$"), locked(tmp_path / "s.db"):
+        pass
+    with pytest.raises(OutputError, match=r"give a database file in a writable folder \(--db\)$"):  # noqa: SIM117
+        with locked(tmp_path / "nowhere" / "s.db"):
+            pass

@@ -2,11 +2,12 @@
 
 import numpy as np
 import optuna
+import pandas as pd
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import InputError, StudyError
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.optuna_objective import OptunaObjective
 from pareto_monoped.study.outside import JumpFunction
@@ -101,6 +102,23 @@ def test_optuna_optimises_a_study_with_a_choice_of_motor():
     for trial in found.best_trials:
         assert trial.user_attrs["mass_kg"] <= 5.0
         assert trial.user_attrs["height_m"] >= 0.55
+
+
+def test_one_function_alone_is_a_list_of_one(study):
+    def light(jumps):
+        return jumps["mass_kg"] - 5.0
+
+    problem = MonopedProblem(study, objectives=light, constraints=light)
+    assert problem.jump.names[-1] == problem.jump.constraint_names[-1] == "light"
+    assert OptunaObjective(study, objectives=light).directions == ["maximize", "minimize", "minimize"]
+    with pytest.raises(StudyError, match=r"^constraints = \{'mass_kg': 5.0\}: must be a function of the jumps"):
+        MonopedProblem(study, constraints={"mass_kg": 5.0})
+
+
+@pytest.mark.parametrize("workers", [0, True, "two", np.ones(3), pd.DataFrame({"workers": [1, 2]})])
+def test_workers_that_are_no_number_are_refused(workers, study):
+    with pytest.raises(InputError, match=r"^workers = [^\n]*: must be a whole number from 1 to [^\n]*$"):
+        MonopedProblem(study, workers=workers)
 
 
 WRONG = {

@@ -8,6 +8,8 @@ import pytest
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, shortfall
+from pareto_monoped.study.climb import climbs
+from pareto_monoped.study.cubic import cubic_terms
 from pareto_monoped.study.prediction import Prediction, _training
 from pareto_monoped.study.promise import unlike
 from pareto_monoped.study.protocol import Gear, MotorChoice, MotorKind, Scores, Space
@@ -57,7 +59,7 @@ def test_the_model_is_exact_for_cubics_of_its_features():
     terms = features.terms(known)
     assert terms.shape == (400, 35)  # 4 features: 1 + 4 + 10 + 20
     truth = generator.standard_normal((35, 2))
-    coefficients = fitted(terms, terms @ truth, np.ones(400))
+    coefficients = fitted(features.scaled(known), terms @ truth, np.ones(400))
     error = features.terms(new) @ (coefficients - truth)
     assert np.abs(error).max() < 0.02 * np.abs(terms @ truth).max()
 
@@ -82,9 +84,22 @@ def test_terms_are_the_products_of_scaled_features():
 
 
 def test_weights_decide_which_points_the_fit_follows():
-    terms = np.ones((4, 1))
+    # Without features, the constant is the only term.
     targets = np.array([[0.0], [0.0], [1.0], [1.0]])
-    assert fitted(terms, targets, np.array([1.0, 1.0, 3.0, 3.0]))[0, 0] == pytest.approx(0.75, rel=1e-6)
+    weights = np.array([1.0, 1.0, 3.0, 3.0])
+    assert fitted(np.zeros((4, 0)), targets, weights)[0, 0] == pytest.approx(0.75, rel=1e-6)
+
+
+def test_the_fit_of_many_points_is_the_weighted_ridge_regression():
+    """More points than are in memory at once, against numpy's least squares with a row more for each held-back term."""
+    generator = np.random.default_rng(14)
+    points, targets, weights = generator.uniform(-1.0, 1.0, (700, 4)), generator.random((700, 3)), generator.random(700)
+    terms = cubic_terms(points)
+    held_back = np.sqrt(1e-4 * weights.sum()) * np.eye(35)
+    held_back[0, 0] = np.sqrt(1e-9 * weights.sum())
+    rows = np.vstack((terms * np.sqrt(weights)[:, None], held_back))
+    wanted = np.linalg.lstsq(rows, np.vstack((targets * np.sqrt(weights)[:, None], np.zeros((35, 3)))), rcond=None)[0]
+    np.testing.assert_allclose(fitted(points, targets, weights), wanted, rtol=0.0, atol=1e-11)
 
 
 def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
@@ -114,6 +129,22 @@ def test_the_standing_of_an_archive():
     assert np.allclose(standing.behind[standing.front], 0.0)
     assert (standing.behind[scores.violation > 0.0] > 0.0).all()
     assert (np.diff(standing.behind[standing.order]) >= 0.0).all()
+
+
+def test_the_front_of_an_archive_that_grows_is_that_of_all_its_designs(small_archive):
+    """In parts, with designs beyond the limit, equal ones and thinning between, against one archive with all of it."""
+    values = spread(SPACE, 380, np.random.default_rng(15))
+    values = np.vstack((values, values[:40], spread(SPACE, 60, np.random.default_rng(16))))
+    scores = scored(values, limit=5.0)
+    growing = Archive(SPACE)
+    for first in range(0, 480, 40):
+        rows = slice(first, first + 40)
+        growing.add(values[rows], scores.of(rows))
+        whole = Archive(SPACE)
+        whole.add(growing.values, scored(growing.values, limit=5.0))
+        assert len(growing.standing().front) > 3
+        assert np.array_equal(growing.standing().front, whole.standing().front)
+    assert len(growing.values) < 480
 
 
 def test_jumps_that_failed_are_neither_parents_nor_fitted():
@@ -285,17 +316,53 @@ def test_explorers_are_far_from_what_is_known_and_from_each_other():
     assert unlike(costs, violation, standing, points, known, 1) == [7]
 
 
-def test_a_tenth_of_each_generation_explores():
-    """After 15 generations, offspring are near simulated designs, and explorers are not."""
+def test_a_tenth_of_each_generation_explores(monkeypatch):
+    """After 15 generations, offspring are near simulated designs; explorers are far from them or the ends of climbs."""
+    began, ended = [], []
+
+    def watched(space, start, *more):
+        found = climbs(space, start, *more)
+        began.append(start)
+        ended.append(found.values[found.ends])
+        return found
+
+    monkeypatch.setattr("pareto_monoped.study.surrogate.climbs", watched)
     algorithm, known = SurrogateSearch(SPACE, replace(SETTINGS, population=40), 1), np.zeros((0, 3))
     for _ in range(15):
         values = algorithm.ask().values
         algorithm.tell(scored(values))
         known = np.vstack((known, values))
-    scaled, asked = features_of(SPACE).scaled(known), features_of(SPACE).scaled(algorithm.ask().values)
+    proposed = algorithm.ask().values
+    scaled, asked = features_of(SPACE).scaled(known), features_of(SPACE).scaled(proposed)
     away = np.array([np.sqrt(np.square(scaled - one).sum(axis=1)).min() for one in asked])
     assert len(asked) == 40
-    assert away[-4:].min() > 5.0 * np.median(away[:-4])
+    assert away[-2:].min() > 5.0 * np.median(away[:-4])
+    assert {tuple(row) for row in proposed[-4:-2]} <= {tuple(row) for row in ended[-1]}
+    # Nothing can be exchanged in this space: six climbs begin anywhere, four on the front, and three close to it.
+    simulated = [tuple(row) in {tuple(design) for design in known} for row in began[-1]]
+    assert len(simulated) == 13
+    assert simulated[:6].count(False) >= 4
+    assert all(simulated[6:])
+
+
+def test_climbs_wait_until_the_cubic_has_as_many_designs_as_terms(monkeypatch):
+    """With fewer, the best place of the model is where it guesses: 4 features have 35 terms."""
+    began = []
+
+    def watched(*arguments):
+        began.append(len(known))
+        return climbs(*arguments)
+
+    monkeypatch.setattr("pareto_monoped.study.surrogate.climbs", watched)
+    algorithm, known = (
+        SurrogateSearch(SPACE, replace(SETTINGS, population=10, drawn_generations=1), 1),
+        np.zeros((0, 3)),
+    )
+    for _ in range(7):
+        values = algorithm.ask().values
+        algorithm.tell(scored(values))
+        known = np.vstack((known, values))
+    assert began == [40, 50, 60]
 
 
 def test_a_part_of_the_front_far_from_the_rest_in_the_space_is_found():
@@ -437,3 +504,18 @@ def test_a_search_that_thins_its_archive_goes_on_alike_after_a_restore(small_arc
         np.testing.assert_array_equal(one, other)
         search.tell(scored(one))
         again.tell(scored(other))
+
+
+def test_generations_double_after_the_fiftieth_and_a_resumed_search_goes_on_with_the_same(monkeypatch):
+    """Restored before, at and after the change, it asks for what the uninterrupted search asks for."""
+    monkeypatch.setattr("pareto_monoped.study.surrogate._FEW", 6)
+    whole, history = SurrogateSearch(SPACE, SETTINGS, 1), []
+    for generation in range(9):
+        resumed = SurrogateSearch(SPACE, SETTINGS, 1)
+        resumed.restore(whole.state(), history)
+        values = whole.ask().values
+        # Corners of so small a space coincide, so the first generations have fewer.
+        assert len(values) <= 20 if generation < 6 else len(values) == 40
+        assert np.array_equal(resumed.ask().values, values)
+        history.append((values, scored(values)))
+        whole.tell(history[-1][1])

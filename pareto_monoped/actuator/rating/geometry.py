@@ -28,7 +28,8 @@ TOOTH_DEPTH = ADDENDUM + DEDENDUM
 
 def zone_factor(working_angle_rad: Numbers) -> Numbers:
     """Z_H = sqrt(2 cos(alpha_w) / (cos(alpha)^2 sin(alpha_w))) of spur gears (ISO 6336-2, clause 6)."""
-    return np.sqrt(2.0 / np.tan(working_angle_rad)) / np.cos(PRESSURE_ANGLE_RAD)
+    factor: Numbers = np.sqrt(2.0 / np.tan(working_angle_rad)) / np.cos(PRESSURE_ANGLE_RAD)
+    return factor
 
 
 def contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
@@ -91,7 +92,8 @@ def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Nu
     x_E = x - A / (2 m tan(alpha)) (ISO 21771), with x as the standard counts it: in a ring, inwards.
     """
     sign = -1.0 if isinstance(gear, InternalGear) else 1.0
-    return gear.shift * sign - 0.5 * thinning_mm / (gear.module_mm * _TANGENT)
+    thinned: Numbers = gear.shift * sign - 0.5 * thinning_mm / (gear.module_mm * _TANGENT)
+    return thinned
 
 
 def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinning_mm: Numbers = 0.0) -> ToothForm:

@@ -75,18 +75,23 @@ def mesh_stiffness(pair: Numbers, contact_ratio: Numbers, load_n_per_mm: Numbers
 
 def pitch_deviation_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
     """Tolerance f_pT of a single pitch (ISO 1328-1:2013, clause 5)."""
-    return (0.001 * diameter_mm + 0.4 * module_mm + 5.0) * np.sqrt(2.0) ** (accuracy_class - 5)
+    deviation_um: Numbers = (0.001 * diameter_mm + 0.4 * module_mm + 5.0) * np.sqrt(2.0) ** (accuracy_class - 5)
+    return deviation_um
 
 
 def helix_deviation_um(diameter_mm: Numbers, width_mm: Numbers, accuracy_class: int) -> Numbers:
     """Tolerance f_HbetaT of the helix slope (ISO 1328-1:2013, clause 5)."""
-    return (0.05 * np.sqrt(diameter_mm) + 0.35 * np.sqrt(width_mm) + 4.0) * np.sqrt(2.0) ** (accuracy_class - 5)
+    deviation_um: Numbers = (0.05 * np.sqrt(diameter_mm) + 0.35 * np.sqrt(width_mm) + 4.0) * np.sqrt(2.0) ** (
+        accuracy_class - 5
+    )
+    return deviation_um
 
 
 def runout_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
     """Tolerance F_rT of the radial runout, 0.9 F_pT (ISO 1328-1:2013, clause 5 and annex E)."""
     pitch = 0.002 * diameter_mm + 0.55 * np.sqrt(diameter_mm) + 0.7 * module_mm + 12.0
-    return 0.9 * pitch * np.sqrt(2.0) ** (accuracy_class - 5)
+    deviation_um: Numbers = 0.9 * pitch * np.sqrt(2.0) ** (accuracy_class - 5)
+    return deviation_um
 
 
 def face_running_in(steel: GearGrade) -> float:

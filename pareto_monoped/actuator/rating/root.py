@@ -36,7 +36,8 @@ def notch_sensitivity_factor(steel: GearGrade, notch: Numbers) -> Numbers:
     """Y_delta rel T at the reference number of load cycles, method B (ISO 6336-3, clause 12.3)."""
     gradient, test_gradient = 0.2 * (1.0 + 2.0 * notch), 0.2 * (1.0 + 2.0 * _TEST_NOTCH)
     layer = steel.slip_layer_mm
-    return (1.0 + np.sqrt(layer * gradient)) / (1.0 + np.sqrt(layer * test_gradient))
+    factor: Numbers = (1.0 + np.sqrt(layer * gradient)) / (1.0 + np.sqrt(layer * test_gradient))
+    return factor
 
 
 def static_notch_factor(steel: GearGrade, form: ToothForm) -> Numbers:
@@ -46,7 +47,8 @@ def static_notch_factor(steel: GearGrade, form: ToothForm) -> Numbers:
     if steel.treatment == "nitrided":
         return 0.20 * form.stress_correction + 0.60
     support = 0.82 * (300.0 / steel.yield_mpa) ** 0.25
-    return (1.0 + support * (form.stress_correction - 1.0)) / (1.0 + support)
+    factor: Numbers = (1.0 + support * (form.stress_correction - 1.0)) / (1.0 + support)
+    return factor
 
 
 def roughness_factor(steel: GearGrade, roughness_um: float) -> float:

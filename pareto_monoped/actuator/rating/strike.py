@@ -66,7 +66,9 @@ def strike_shares(
 
     def spare(log_shares: NDArray[np.float64]) -> NDArray[np.float64]:
         flank, root = strike_safeties(stage, width_mm, np.exp(log_shares), jumps)
-        return np.log(np.stack([flank[0], root[1]]) / np.array(required)[:, None])  # type: ignore[index]
+        least = np.stack([np.asarray(flank)[0], np.asarray(root)[1]])
+        logs: NDArray[np.float64] = np.log(least / np.array(required)[:, None])
+        return logs
 
     low = np.full((2, len(width_mm)), np.log(_usual_share(stage)))
     high = np.full_like(low, np.log(_HIGHEST_SHARE))

@@ -111,7 +111,8 @@ def needle_compliance(actuator: Actuator, settings: ActuatorSettings) -> float:
     length_mm = float(rows.length_mm) - 2.0 * settings.parts.needles.end_mm
     highest_n = _NEEDLE_SHARE * force_n / (rows.needles * float(rows.rows))
     moved_mm = 2.0 * _PALMGREN * highest_n**0.9 / length_mm**0.8
-    return 1e-3 * moved_mm / (radius_m * actuator.peak_torque_n_m)
+    angle_per_torque: float = 1e-3 * moved_mm / (radius_m * actuator.peak_torque_n_m)
+    return angle_per_torque
 
 
 def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:

@@ -134,7 +134,10 @@ def _contacts(placed: Sequence[Instance], pieces: Sequence[Slab]) -> dict[tuple[
 
     def meeting(shift: NDArray[np.float64]) -> Bools:
         mine = bounds + np.tile(shift, 2)
-        return np.all((mine[:, None, :2] < bounds[None, :, 2:]) & (mine[:, None, 2:] > bounds[None, :, :2]), axis=2)
+        overlapping: Bools = np.all(
+            (mine[:, None, :2] < bounds[None, :, 2:]) & (mine[:, None, 2:] > bounds[None, :, :2]), axis=2
+        )
+        return overlapping
 
     gap = low[None] - high[:, None]
     before = others & (gap > -_TOUCH_MM) & (gap < PLAY_MM) & meeting(np.zeros(2))

@@ -13,7 +13,7 @@ from pareto_monoped.geometry.features import Cone, Hole, Mouth
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.screws import M3, M4, M5, M25
-from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 _SAME_MM = 1e-6
 
@@ -188,10 +188,7 @@ def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bo
 def _covers(prism: Prism, x: float, y: float) -> bool:
     """Whether a prism has material at a point."""
 
-    def within(shape: object) -> bool:
-        return any(
-            shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y)
-            for contour in contours(shape)  # type: ignore[arg-type]
-        )
+    def within(shape: Shape) -> bool:
+        return any(shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y) for contour in contours(shape))
 
     return within(prism.outline) and not any(within(hole) for hole in prism.holes)

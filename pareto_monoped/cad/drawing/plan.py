@@ -197,7 +197,8 @@ def _turn(outlines: Sequence[Contour]) -> float:
 
 def _rotated(points: Points, angle: float) -> Points:
     cos, sin = np.cos(angle), np.sin(angle)
-    return points @ np.array([[cos, sin], [-sin, cos]])
+    turned: Points = points @ np.array([[cos, sin], [-sin, cos]])
+    return turned
 
 
 def _moved(contour: Contour, turn: float, shift: Points) -> Contour:
@@ -236,7 +237,8 @@ def _centre(bore: Bore) -> tuple[float, float]:
 
 def _along(line: Line) -> bool:
     (x0, y0), (x1, y1) = ends(line)
-    return min(abs(x1 - x0), abs(y1 - y0)) < _FLAT_RAD * max(abs(x1 - x0), abs(y1 - y0)) + 1e-9
+    flat: bool = min(abs(x1 - x0), abs(y1 - y0)) < _FLAT_RAD * max(abs(x1 - x0), abs(y1 - y0)) + 1e-9
+    return flat
 
 
 def cut_along(plan: Plan, x: float) -> BaseGeometry:

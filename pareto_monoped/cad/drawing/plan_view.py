@@ -122,7 +122,8 @@ def _has_ladders(plan: Plan) -> bool:
 def _square_values(plan: Plan) -> tuple[list[float], list[float]]:
     """Distinct x and y of the nodes of outlines whose edges lie along the sheet."""
     points = np.array([point for layer in plan.layers if is_square(layer.outline) for point, _ in nodes(layer.outline)])
-    return [sorted({round(float(v), 3) for v in points[:, k]}) for k in (0, 1)]  # type: ignore[return-value]
+    x, y = (sorted({round(float(v), 3) for v in points[:, k]}) for k in (0, 1))
+    return x, y
 
 
 def _marks(values: Sequence[float], start: float, scale: float) -> list[Mark]:

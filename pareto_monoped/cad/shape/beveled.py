@@ -97,7 +97,8 @@ def _border(triangles: Triangles) -> Triangles:
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     low, high = edges.min(axis=1), edges.max(axis=1)
     _, where, counts = np.unique(low * (edges.max(initial=0) + 1) + high, return_index=True, return_counts=True)
-    return edges[np.sort(where[counts == 1])]
+    single: Triangles = edges[np.sort(where[counts == 1])]
+    return single
 
 
 def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:

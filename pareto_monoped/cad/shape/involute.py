@@ -173,7 +173,8 @@ def _placed(piece: Line | Arc | Spline, angle: float, *, mirror: bool) -> Line |
 
 def _turned(points: Point, angle: float) -> Point:
     cos, sin = np.cos(angle), np.sin(angle)
-    return points @ np.array([[cos, sin], [-sin, cos]])
+    result: Point = points @ np.array([[cos, sin], [-sin, cos]])
+    return result
 
 
 def _arc(centre: Point, first: Point, last: Point) -> Arc:

@@ -51,7 +51,10 @@ def assembly_pack(product: Listed) -> dict[str, bytes]:
     assembly = take_apart(blocking)
     for members in stuck(assembly):
         names = ", ".join(_name(blocking, k) for k in sorted(members))
-        raise CheckError(f"assembly: {names} cannot be put together along straight lines with room for keys")
+        raise CheckError(
+            f"assembly: {names} cannot be put together along straight lines with room for keys; choose another design, "
+            "or leave the format assembly out"
+        )
     steps = steps_of(assembly)
     stage = stage_of(blocking, placed)
     made = {f"{FOLDER}/step_{step.number:02d}.png": png(step_picture(step, stage)) for step in steps}

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.film import FRAMES_PER_S, hold_frames
 from pareto_monoped.errors import InputError, SimulationError, complaint
+from pareto_monoped.extras import require_extra
 from pareto_monoped.files import replacing
 
 Image = NDArray[np.uint8]
@@ -51,15 +52,21 @@ def encoder() -> str:
     found = shutil.which("ffmpeg")
     if found is not None:
         return found
-    try:
-        import imageio_ffmpeg
-    except ImportError:
-        raise InputError(
-            "--video: ffmpeg is not installed, which encodes it; install it, or the extra: "
-            "pip install 'pareto-monoped[video]'; --gif needs neither"
-        ) from None
+    require_extra("video", "--video", instead="install the program ffmpeg, or use --gif")
+    import imageio_ffmpeg
+
     program: str = imageio_ffmpeg.get_ffmpeg_exe()
     return program
+
+
+def require_gif(path: Path) -> None:
+    """Refuse a name that is not one of a GIF, before anything is drawn.
+
+    Raises:
+        InputError: the suffix is another one.
+    """
+    if path.suffix.lower() != ".gif":
+        raise InputError(complaint("--gif", str(path), "a file ending in .gif", "correct the name, or use --video"))
 
 
 def require_video(path: Path) -> str:

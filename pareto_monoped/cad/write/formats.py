@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from pareto_monoped.errors import InputError
+from pareto_monoped.errors import InputError, complaint, unknown_name
 
 FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     "step": (
@@ -76,7 +76,9 @@ def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
     """
     if names is None:
         return FORMATS
+    if isinstance(names, str) or not isinstance(names, Sequence):
+        raise InputError(complaint("formats", names, "a list of formats, such as ['step']", "give one"))
     for name in names:
         if name not in FORMATS:
-            raise InputError(f"format {name!r}: must be one of {', '.join(FORMATS)}; correct the name")
+            raise InputError(unknown_name("format", name, FORMATS))
     return tuple(name for name in FORMATS if name in names)

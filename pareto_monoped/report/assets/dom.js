@@ -25,6 +25,12 @@ function draw(tag, attributes = {}, ...children) {
   return node;
 }
 
+function text(x, y, content, anchor = "start", kind = "") {
+  const node = draw("text", { x, y, "text-anchor": anchor, class: kind });
+  node.textContent = content;
+  return node;
+}
+
 const tints = new Map();
 
 // A colour of the style sheet; kept until the scheme changes, because asking for it makes the browser lay out the page.

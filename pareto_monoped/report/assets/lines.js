@@ -27,12 +27,6 @@ function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18,
   return { svg, toX, toY, left, top, w, h };
 }
 
-function text(x, y, content, anchor = "start", kind = "") {
-  const node = draw("text", { x, y, "text-anchor": anchor, class: kind });
-  node.textContent = content;
-  return node;
-}
-
 function marker(kind, x, y, fill, opacity = 1) {
   if (kind === "diamond") return draw("path", { d: `M${x} ${y - 4}l4 4l-4 4l-4 -4z`, fill, "fill-opacity": opacity });
   return draw("circle", { cx: x, cy: y, r: 3, fill, "fill-opacity": opacity });

@@ -1,11 +1,5 @@
 // Start: the state in the address first, then what listens to it, then the first selection and the charts.
 
-function redrawAll() {
-  tints.clear();
-  pictures.clear();
-  for (const redraw of charts) redraw();
-}
-
 function start() {
   startLink();
   startSwitches();

@@ -69,3 +69,34 @@ function placedNames(marks, { left, top, width, height }) {
     return { ...mark, from: box[0], to: box[1], at: spot[1] };
   });
 }
+
+function seriesStyle(i) {
+  return { color: studyColour(i), width: 1.8, dash: ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"][i % 6] };
+}
+
+function band(x, low, middle, high, tint, name) {
+  return [
+    { name: `${name}, least to greatest`, mode: "area", x, y: low, y2: high, fill: tint },
+    { name, mode: "lines", x, y: middle, line: { color: tint, width: 2.5 }, text: (i) => `${plain(name)}<br>${x[i]} evaluations: ${round(middle[i])}` },
+  ];
+}
+
+// Draws layers of lines or marks on axes that hold all of them.
+function plot(node, layers, x, y, { fromZero = [false, false], names = true } = {}) {
+  const span = (key, zero) => {
+    const [low, high] = extent(layers.flatMap((layer) => [...layer[key], ...(key === "y" ? layer.y2 ?? [] : [])]));
+    const room = 0.05 * (high - low) || 1;
+    return zero ? [0, high + room] : [low - room, high + room];
+  };
+  const chart = node.chart ?? new Chart(node);
+  chart.set(layers, { title: x, range: span("x", fromZero[0]) }, { title: y, range: span("y", fromZero[1]) });
+  if (names) legend(node, layers.filter((layer) => layer.mode !== "area" && layer.x.length));
+}
+
+function inUnit(name, values) { return values.map((value) => (value === null ? null : value * quantity[name].scale)); }
+
+function redrawAll() {
+  tints.clear();
+  pictures.clear();
+  for (const redraw of charts) redraw();
+}

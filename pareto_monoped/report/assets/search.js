@@ -1,28 +1,5 @@
 // Convergence, the stage 1 map and link mass.
 
-function seriesStyle(i) {
-  return { color: studyColour(i), width: 1.8, dash: ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"][i % 6] };
-}
-
-function band(x, low, middle, high, tint, name) {
-  return [
-    { name: `${name}, least to greatest`, mode: "area", x, y: low, y2: high, fill: tint },
-    { name, mode: "lines", x, y: middle, line: { color: tint, width: 2.5 }, text: (i) => `${plain(name)}<br>${x[i]} evaluations: ${round(middle[i])}` },
-  ];
-}
-
-// Draws layers of lines or marks on axes that hold all of them.
-function plot(node, layers, x, y, { fromZero = [false, false], names = true } = {}) {
-  const span = (key, zero) => {
-    const [low, high] = extent(layers.flatMap((layer) => [...layer[key], ...(key === "y" ? layer.y2 ?? [] : [])]));
-    const room = 0.05 * (high - low) || 1;
-    return zero ? [0, high + room] : [low - room, high + room];
-  };
-  const chart = node.chart ?? new Chart(node);
-  chart.set(layers, { title: x, range: span("x", fromZero[0]) }, { title: y, range: span("y", fromZero[1]) });
-  if (names) legend(node, layers.filter((layer) => layer.mode !== "area" && layer.x.length));
-}
-
 function drawConvergence(node) {
   const comparison = page.comparison;
   if (!page.studies.some((study) => study.history.evaluations.length)) {
@@ -62,8 +39,6 @@ function drawAttainment(node) {
   plot(node, list, titled(SECOND), `${quantity[FIRST].label} reached, ${quantity[FIRST].unit}`, { fromZero: [true, false] });
   describe(node, `Attainment surfaces: the ${quantity[FIRST].label} that the best, the median and the worst seed reached at each ${quantity[SECOND].label}`);
 }
-
-function inUnit(name, values) { return values.map((value) => (value === null ? null : value * quantity[name].scale)); }
 
 function drawMap(node) {
   const list = [];

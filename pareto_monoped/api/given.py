@@ -1,0 +1,81 @@
+"""Checks of plain values that scripts give."""
+
+import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from numbers import Integral, Real
+from typing import Any
+
+from pareto_monoped.errors import InputError, complaint
+
+
+def executor_of(given: Any) -> Any:
+    """Something that does calls elsewhere, or None where none is given.
+
+    Raises:
+        InputError: something else.
+    """
+    if given is None or isinstance(given, Executor):
+        return given
+    allowed = "a concurrent.futures.Executor, such as a ProcessPoolExecutor"
+    raise InputError(complaint("executor", given, allowed, "give one, or leave it out"))
+
+
+def seed_of(given: Any) -> int:
+    """The seed of a random generator.
+
+    Raises:
+        InputError: no whole number from 0 to 2**63 - 1.
+    """
+    if isinstance(given, bool) or not isinstance(given, Integral) or not 0 <= int(given) < 2**63:
+        raise InputError(complaint("seed", given, "a whole number from 0 to 2**63 - 1", "correct it"))
+    return int(given)
+
+
+def trial_of(given: Any) -> int:
+    """The number of a trial.
+
+    Raises:
+        InputError: no whole number of at least 0.
+    """
+    if isinstance(given, bool) or not isinstance(given, Integral) or given < 0:
+        raise InputError(complaint("trial", given, "the number of a trial, from 0", "give one"))
+    return int(given)
+
+
+def number_of(what: str, given: Any) -> float:
+    """A finite number.
+
+    Raises:
+        InputError: something else.
+    """
+    if isinstance(given, Real) and not isinstance(given, bool):
+        try:
+            number = float(given)
+        except OverflowError:  # a whole number beyond the greatest float
+            number = math.inf
+        if math.isfinite(number):
+            return number
+    raise InputError(complaint(what, given, "a finite number", "give one"))
+
+
+def numbers_of(what: str, given: Any) -> tuple[float, ...]:
+    """Finite numbers from a list.
+
+    Raises:
+        InputError: something else.
+    """
+    if isinstance(given, str | bytes | Mapping) or not isinstance(given, Sequence):
+        raise InputError(complaint(what, given, "a list of numbers", "give one"))
+    return tuple(number_of(what, value) for value in given)
+
+
+def table_of(what: str, given: Any) -> dict[str, float]:
+    """Finite numbers by name.
+
+    Raises:
+        InputError: something else.
+    """
+    if not isinstance(given, Mapping):
+        raise InputError(complaint(what, given, "a mapping of names to numbers", "give one"))
+    return {name: number_of(f"{what}[{name!r}]", value) for name, value in given.items()}

@@ -1,0 +1,271 @@
+"""Runs the studies of a campaign side by side over the cores, and sees to it that each ends or says why not."""
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Stored, is_ended, stored_state
+from pareto_monoped.campaign.processes import GRACE_S, WorkerProcess, dismiss, speakers
+from pareto_monoped.campaign.worker import Advanced, Ended, Failed, Noted, Said, Task
+from pareto_monoped.study.interrupt import Interrupt
+from pareto_monoped.study.lock import holder
+
+MOST_DEATHS = 2
+"""A study whose process was killed so often is given up: our own choice. Once may be chance, such as a full memory."""
+WORTH_S = 10.0
+"""Time left above which a study is stopped and continued with more threads: our own choice, ten times what it takes."""
+_LISTEN_S = 0.1
+_HELD_S = 3.0
+"""How long to wait for the workers of a coordinator that was killed a moment ago: our own choice."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Standing:
+    """How one study stands.
+
+    Attributes:
+        place: the study and its database.
+        state: ``failed`` studies have a ``reason``.
+        evaluations, budget: number of trials stored, and how many there shall be.
+        new_evaluations: trials stored since the campaign was started.
+        hypervolume, hypervolume_unit: of the front.
+        per_second, seconds_left: of a running study.
+        threads: of a running study.
+        seconds: running time that is stored, over all sessions.
+        front: number of designs on the front.
+        reason: why it failed.
+        deaths: how often its process was killed.
+    """
+
+    place: Place
+    state: State
+    evaluations: int
+    budget: int
+    hypervolume: float
+    hypervolume_unit: str
+    new_evaluations: int = 0
+    per_second: float = 0.0
+    seconds_left: float | None = None
+    threads: int = 0
+    seconds: float = 0.0
+    front: int = 0
+    reason: str = ""
+    deaths: int = 0
+
+    @classmethod
+    def of(cls, place: Place, stored: Stored) -> "Standing":
+        """The standing of a study that no worker has yet."""
+        return cls(
+            place=place,
+            state=stored.state,
+            evaluations=stored.evaluations,
+            budget=stored.budget,
+            hypervolume=stored.hypervolume,
+            hypervolume_unit=stored.hypervolume_unit,
+            seconds=stored.seconds,
+            front=stored.front,
+            reason=stored.reason,
+        )
+
+    @property
+    def name(self) -> str:
+        """Of the study in the campaign."""
+        return self.place.name
+
+    @property
+    def doing(self) -> str:
+        """The state in a word; the front of a study that has all its trials is being audited."""
+        return "auditing" if self.state == "running" and self.evaluations >= self.budget else self.state
+
+
+Changed = Callable[[Standing], object]
+"""Hears of a study whose standing has changed."""
+
+
+def run_campaign(
+    standings: Sequence[Standing],
+    *,
+    cores: int,
+    scheduler: str | None = None,
+    changed: Changed,
+    notify: Callable[[str], None],
+) -> bool:
+    """Run every study that has not ended; returns whether all could, rather than being interrupted.
+
+    A study that fails says so in its standing and does not stop the others. Results do not depend on ``cores``.
+
+    Args:
+        standings: of the studies, see ``standings_of``; they are brought up to date.
+        cores: threads of all studies together.
+        scheduler: address of a Dask scheduler whose workers simulate; then so many studies run at a time.
+        changed: called when a study has begun, stored a generation, or ended.
+        notify: called with a line for the user.
+    """
+    return _Coordinator(cores, scheduler, changed, notify).run([one for one in standings if _is_to_run(one)])
+
+
+def standings_of(places: Sequence[Place]) -> list[Standing]:
+    """How the studies of a campaign stand according to their databases."""
+    return [Standing.of(place, stored_state(place)) for place in places]
+
+
+def _is_to_run(standing: Standing) -> bool:
+    return not is_ended(standing.place, stored_state(standing.place))
+
+
+@dataclass(slots=True, kw_only=True)
+class _Job:
+    """A study that a worker is at."""
+
+    standing: Standing
+    worker: WorkerProcess
+    before: int
+    again_with: int | None = None
+    """Number of threads with which it goes on once it has stopped; None: it is not to stop."""
+
+
+@dataclass(slots=True)
+class _Coordinator:
+    cores: int
+    scheduler: str | None
+    changed: Changed
+    notify: Callable[[str], None]
+    waiting: deque[Standing] = field(default_factory=deque)
+    jobs: list[_Job] = field(default_factory=list)
+    idle: list[WorkerProcess] = field(default_factory=list)
+    slots: int = 1
+
+    def run(self, standings: Sequence[Standing]) -> bool:
+        """Run all of them; returns whether none was left out because of an interrupt."""
+        if not standings:
+            return True
+        # The longest first: what ends last then ends as early as it can.
+        self.waiting.extend(sorted(standings, key=lambda one: one.evaluations - one.budget))
+        self.slots = min(self.cores, len(standings))
+        for standing in standings:
+            _wait_for_release(standing)
+            standing.state, standing.reason = ("unfinished" if standing.evaluations else "waiting"), ""
+        stopped_s: float | None = None
+        try:
+            with Interrupt(lambda _: None) as interrupt:
+                while self.jobs or (self.waiting and stopped_s is None):
+                    if interrupt.asked and stopped_s is None:
+                        stopped_s = time.monotonic()
+                        self.notify("interrupted: ending after these generations; press Ctrl-C again to end at once")
+                        self._stop_all()
+                    if stopped_s is None:
+                        self._fill()
+                        self._widen()
+                    elif time.monotonic() - stopped_s > GRACE_S:
+                        break
+                    for worker in list(speakers([job.worker for job in self.jobs], _LISTEN_S)):
+                        self._hear(next(job for job in self.jobs if job.worker is worker))
+            return stopped_s is None
+        finally:
+            for job in self.jobs:
+                job.worker.kill()
+                self._release(job, "unfinished")
+            dismiss(self.idle)
+
+    def _fill(self) -> None:
+        """Begin waiting studies while there are cores: each has the same share of them, the first ones one more."""
+        while self.waiting and len(self.jobs) < self.slots:
+            share = 1 if self.scheduler else self.cores // self.slots
+            free = self.cores - sum(job.standing.threads for job in self.jobs)
+            others = self.slots - len(self.jobs) - 1
+            self._begin(self.waiting.popleft(), min(share + 1, free - others * share))
+
+    def _widen(self) -> None:
+        """Give idle cores to a study that still takes long: it stops, and goes on with twice as many threads or more.
+
+        Results do not depend on the number of threads. One at a time, so that no core is promised twice.
+        """
+        if self.scheduler or self.waiting or not self.jobs or any(job.again_with for job in self.jobs):
+            return
+        fair = self.cores // len(self.jobs)
+        slow = [job for job in self.jobs if (job.standing.seconds_left or 0.0) > WORTH_S]
+        slow = [job for job in slow if fair >= 2 * job.standing.threads]
+        if slow:
+            chosen = max(slow, key=lambda job: job.standing.seconds_left or 0.0)
+            chosen.again_with = fair
+            chosen.worker.stop()
+
+    def _begin(self, standing: Standing, threads: int, worker: WorkerProcess | None = None) -> None:
+        worker = worker or (self.idle.pop() if self.idle else WorkerProcess())
+        standing.state, standing.threads = "running", threads
+        self.jobs.append(_Job(standing=standing, worker=worker, before=standing.evaluations - standing.new_evaluations))
+        place = standing.place
+        worker.begin(Task(study=place.study, db=place.db, threads=threads, scheduler=self.scheduler))
+        self.changed(standing)
+
+    def _hear(self, job: _Job) -> None:
+        said = job.worker.said()
+        standing = job.standing
+        match said:
+            case Advanced():
+                standing.evaluations, standing.hypervolume = said.evaluations, said.hypervolume
+                standing.new_evaluations = said.evaluations - job.before
+                standing.per_second, standing.seconds_left = said.per_second, said.seconds_left
+                self.changed(standing)
+            case Noted() if standing.evaluations < standing.budget:  # else of the audit, which the state tells
+                self.notify(f"{standing.name}: {said.line}")
+            case Ended() | Failed():
+                self._end(job, said)
+            case None:
+                self._bury(job)
+
+    def _end(self, job: _Job, said: Said) -> None:
+        standing, again = job.standing, job.again_with
+        if isinstance(said, Failed):
+            standing.reason = said.line
+            self._release(job, "failed")
+        elif isinstance(said, Ended):
+            standing.evaluations, standing.hypervolume = said.evaluations, said.hypervolume
+            standing.new_evaluations, standing.front = said.evaluations - job.before, said.front_size
+            standing.seconds += said.seconds
+            if said.stop_reason == "interrupted":
+                self._release(job, "unfinished")
+                if again is not None:
+                    self._begin(standing, again, job.worker)
+                    return
+            elif said.front_size == 0:
+                standing.reason = said.remarks[0] if said.remarks else NO_FEASIBLE_DESIGN
+                self._release(job, "failed")
+            else:
+                self._release(job, "finished")
+        self.idle.append(job.worker)
+
+    def _bury(self, job: _Job) -> None:
+        """A worker has died: its study goes on later, unless that has happened before."""
+        standing, how = job.standing, job.worker.death()
+        job.worker.kill()
+        standing.deaths += 1
+        if standing.deaths < MOST_DEATHS:
+            self._release(job, "unfinished")
+            self.waiting.append(standing)
+            self.notify(f"{standing.name}: {how}; the study goes on later from what is stored")
+        else:
+            standing.reason = f"{how}, for the second time; run the campaign again, with fewer --workers if memory ends"
+            self._release(job, "failed")
+
+    def _release(self, job: _Job, state: State) -> None:
+        self.jobs = [other for other in self.jobs if other is not job]
+        standing = job.standing
+        standing.state, standing.threads, standing.per_second, standing.seconds_left = state, 0, 0.0, None
+        self.changed(standing)
+
+    def _stop_all(self) -> None:
+        for job in self.jobs:
+            job.again_with = None
+            job.worker.stop()
+
+
+def _wait_for_release(standing: Standing) -> None:
+    """Wait until the worker of a coordinator that was killed a moment ago has ended.
+
+    If another program holds the study for longer, running it says so.
+    """
+    end_s = time.monotonic() + _HELD_S
+    while holder(standing.place.db) is not None and time.monotonic() < end_s:
+        time.sleep(0.05)

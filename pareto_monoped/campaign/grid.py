@@ -1,0 +1,189 @@
+"""A campaign file: a base study, and axes whose values are combined; one study per combination."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import product
+from math import prod
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.campaign.naming import canonical, joined, names_of, slug
+from pareto_monoped.config import checked, read_toml
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.study.definition import Study, file_values, filled, with_objectives, with_paths
+
+MOST_STUDIES = 1000
+"""Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""
+
+Values = Annotated[list[Any], Field(min_length=1)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _File:
+    """Keys of a campaign file; the study and the axes are checked separately."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    description: Annotated[str, Field(max_length=2000)] = ""
+    study: Any = None
+    axes: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Axes:
+    """The axes that a campaign may have, each a list of values for one key of a study file."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    motors: Values | None = None
+    hip_motors: Values | None = None
+    knee_motors: Values | None = None
+    calibrations: Values | None = None
+    rules: Values | None = None
+    cases: Values | None = None
+    objectives: Values | None = None
+    variables: Values | None = None
+    constraints: Values | None = None
+    evaluations: Values | None = None
+    algorithms: Values | None = None
+    seeds: Values | None = None
+
+
+KEYS = {
+    "motors": "motor",
+    "hip_motors": "hip_motor",
+    "knee_motors": "knee_motor",
+    "calibrations": "calibration",
+    "cases": "case",
+    "algorithms": "algorithm",
+    "seeds": "seed",
+}
+"""Axis -> key of a study file, where it is not the same word."""
+_TABLES = ("variables", "constraints")
+"""Axes whose values are added to the base study's table; those of the others take the place of its value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """One study of a campaign.
+
+    Attributes:
+        name: of the study and of its database, without suffix.
+        study: its definition.
+        labels: axis that varies -> name of the study's value.
+    """
+
+    name: str
+    study: Study
+    labels: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Campaign:
+    """A grid of studies.
+
+    Attributes:
+        name, description: as the file gives them.
+        path: the file.
+        axes: names of the axes that vary, in the order of the file.
+        members: the studies, the last axis varying fastest.
+    """
+
+    name: str
+    description: str
+    path: Path
+    axes: tuple[str, ...]
+    members: tuple[Member, ...]
+
+    @property
+    def folder(self) -> Path:
+        """Where the databases are, unless the user names another folder: beside the file, named as it is."""
+        return self.path.with_suffix("")
+
+
+def load_campaign(path: Path) -> Campaign:
+    """The campaign in a TOML file; every study of it is checked.
+
+    Raises:
+        StudyError: no readable TOML, an unknown key, a wrong type, a value named twice, too many studies, or a
+            combination that no study file could have.
+    """
+    source = f"campaign file {str(path)!r}"
+    raw = read_toml(path, what="campaign file", error=StudyError)
+    file = checked(_File, raw, source=source, error=StudyError)
+    base = _base(file.study, path, source)
+    axes = _axes(file.axes, path, source)
+    count = prod(map(len, axes.values()))
+    if count > MOST_STUDIES:
+        made = " x ".join(f"{len(values)} {axis}" for axis, values in axes.items())
+        raise StudyError(
+            f"{source}: axes make {count} studies ({made}): must be {MOST_STUDIES} at most; name fewer values, or make "
+            "several campaigns"
+        )
+    named = {axis: names_of(axis, values) for axis, values in axes.items()}
+    varying = tuple(axis for axis, values in axes.items() if len(values) > 1)
+    members = []
+    for places in product(*(range(len(values)) for values in axes.values())):
+        labels = {axis: named[axis][place] for axis, place in zip(axes, places, strict=True) if axis in varying}
+        name = joined(list(labels.values())) or slug(file.name)
+        chosen = {axis: axes[axis][place] for axis, place in zip(axes, places, strict=True)}
+        values = _combined(base, chosen) | {"name": name}
+        study = filled(values, source=f"{source}, study {name!r}")
+        members.append(Member(name=name, study=study, labels=labels))
+    _refuse_equal_names([member.name for member in members], source)
+    return Campaign(name=file.name, description=file.description, path=path, axes=varying, members=tuple(members))
+
+
+def _refuse_equal_names(names: Sequence[str], source: str) -> None:
+    """Names of values may give the same name together, such as ``a_b`` with ``c`` and ``a`` with ``b_c``."""
+    name, count = Counter(name.casefold() for name in names).most_common(1)[0]
+    if count > 1:
+        raise StudyError(f"{source}: {count} studies would be named {name!r}; rename one of the files of their values")
+
+
+def _base(given: Any, path: Path, source: str) -> dict[str, Any]:
+    """The keys of the base study: of a file, or of a table in the campaign file."""
+    if isinstance(given, Mapping):
+        return with_paths(given, path.parent)
+    if isinstance(given, str) and given.endswith(".toml"):
+        return file_values(path.parent / given)
+    raise StudyError(
+        f"{source}: {complaint('study', given, 'the name of a study file (*.toml) or a table of its keys', 'give one')}"
+    )
+
+
+def _axes(given: Mapping[str, Any], path: Path, source: str) -> dict[str, list[Any]]:
+    """Axis -> values, in the order of the file, with full paths."""
+    table = checked(_Axes, given, source=f"{source}, table [axes]", error=StudyError)
+    known = {field.name: getattr(table, field.name) for field in fields(table)}
+    axes = {axis: known[axis] for axis in given if known[axis] is not None}
+    if not axes:
+        raise StudyError(f"{source}: axes: none is named; name one or more of {', '.join(known)}")
+    for axis, values in axes.items():
+        key = KEYS.get(axis, axis)
+        axes[axis] = [with_paths({key: value}, path.parent)[key] for value in values]
+        texts = [canonical(value) for value in axes[axis]]
+        text, count = Counter(texts).most_common(1)[0]
+        if count > 1:
+            value = values[texts.index(text)]
+            raise StudyError(f"{source}: axes.{axis}: {value!r} is named {count} times; name it once")
+    return axes
+
+
+def _combined(base: Mapping[str, Any], chosen: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a study: those of the base with a value of each axis."""
+    values = dict(base)
+    for axis, value in chosen.items():
+        key = KEYS.get(axis, axis)
+        before = values.get(key)
+        if axis == "objectives" and isinstance(value, list):
+            values = with_objectives(values, value)
+        elif axis in _TABLES and isinstance(value, Mapping) and isinstance(before, Mapping):
+            values[key] = {**before, **value}
+        else:
+            values[key] = value
+    return values

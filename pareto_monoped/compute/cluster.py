@@ -1,0 +1,150 @@
+"""The workers of a Dask scheduler.
+
+Dask sends tasks and results by pickle, between hosts that trust each other (``docs/scaling.md``).
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Mapping
+from concurrent.futures import CancelledError, Future
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from pareto_monoped.compute.staff import Member
+from pareto_monoped.errors import WorkerError
+from pareto_monoped.extras import require_extra
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_NEWS_S = 0.5
+"""Between two questions to the scheduler who its workers are."""
+_ANSWER_S = 5.0
+"""For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``."""
+_SILENT_S = 30.0
+"""Without news before the scheduler counts as lost: three times as long as a short cut of the network."""
+_CONNECT_S = 10.0
+"""For the first connection: then a wrong address is likelier than a slow scheduler."""
+
+
+class DaskWorkers:
+    """Workers that a scheduler knows, as they come and go.
+
+    Args:
+        address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
+
+    Raises:
+        InputError: Dask is not installed here.
+        WorkerError: no scheduler answers.
+    """
+
+    replaces = False
+    cure = "start scheduler and workers, then give the same command again"
+
+    def __init__(self, address: str) -> None:
+        self.label = f"scheduler {address}"
+        self._address = address
+        require_extra("cluster", self.label)
+        # What goes wrong is said in our own words, once.
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        self._client = self._first_connection()
+        self._members: dict[str, Member] = {}
+        self._state = "has no worker"
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._listen, name="scheduler", daemon=True)
+        self._thread.start()
+
+    def present(self) -> Mapping[str, Member]:
+        """The workers that the scheduler named last; none while there is no connection to it."""
+        return self._members if self._client.status == "running" else {}
+
+    def state(self) -> str:
+        """Why none may be there."""
+        return self._state
+
+    def is_loss(self, problem: BaseException) -> bool:
+        """Whether a task ended because worker, scheduler or connection did."""
+        from distributed.client import FutureCancelledError, FuturesCancelledError
+        from distributed.comm import CommClosedError
+        from distributed.scheduler import KilledWorker, NoValidWorkerError
+
+        lost = (FutureCancelledError, FuturesCancelledError, KilledWorker, NoValidWorkerError, CommClosedError)
+        return isinstance(problem, (CancelledError, *lost))
+
+    def dismiss(self, name: str) -> None:
+        """Nothing: workers belong to the scheduler."""
+
+    def close(self) -> None:
+        """Leave the scheduler; its workers stay."""
+        self._closed.set()
+        self._thread.join()
+        with suppress(Exception):
+            self._client.close(timeout=2)
+
+    def _first_connection(self) -> "Client":
+        end_s = time.monotonic() + _CONNECT_S
+        while True:
+            try:
+                return self._connected()
+            except (OSError, ValueError) as error:
+                # A relay, such as a tunnel of SSH, breaks a connection at once where the scheduler is about to start.
+                if time.monotonic() > end_s or isinstance(error, ValueError):
+                    raise WorkerError(
+                        f"{self.label}: does not answer within {_CONNECT_S:.0f} s ({_words(error)}); check the "
+                        "address, or start it with: dask scheduler"
+                    ) from None
+                time.sleep(_NEWS_S)
+
+    def _connected(self) -> "Client":
+        """A new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
+        found: Future[Client] = Future()
+        threading.Thread(target=self._connect, args=(found,), name="connecting", daemon=True).start()
+        return found.result(_CONNECT_S + _ANSWER_S)
+
+    def _connect(self, found: "Future[Client]") -> None:
+        import dask
+        from distributed import Client
+
+        try:
+            with dask.config.set({"distributed.comm.retry.count": 3, "distributed.comm.timeouts.connect": "10s"}):
+                found.set_result(Client(self._address, timeout=_CONNECT_S, set_as_default=False))
+        except Exception as problem:  # raised again where somebody waits for it
+            found.set_exception(problem)
+
+    def _listen(self) -> None:
+        heard_s = time.monotonic()
+        while not self._closed.wait(_NEWS_S):
+            try:
+                if self._client.status == "closed":
+                    self._client = self._connected()
+                threads: Mapping[str, int] = self._client.sync(
+                    self._client.scheduler.ncores, callback_timeout=_ANSWER_S
+                )
+            except Exception as problem:  # Dask, tornado and the operating system each have their own
+                cut = self._client.status == "running" and time.monotonic() - heard_s < _SILENT_S
+                if not cut:
+                    self._members, self._state = {}, f"does not answer ({_words(problem)})"
+                continue
+            heard_s = time.monotonic()
+            self._members = {name: self._member(name, count) for name, count in _named(threads).items()}
+            self._state = "has no worker"
+
+    def _member(self, name: str, threads: int) -> Member:
+        known = self._members.get(name)
+        if known is not None and known.slots == threads:
+            return known
+        where = [name.removeprefix(_WORKER)]
+        executor: Any = self._client.get_executor(workers=where, allow_other_workers=False, pure=False)
+        return Member(name=name, slots=threads, executor=executor)
+
+
+_WORKER = "worker "
+
+
+def _named(threads: Mapping[str, int]) -> dict[str, int]:
+    return {f"{_WORKER}{address}": count for address, count in threads.items()}
+
+
+def _words(problem: BaseException) -> str:
+    return " ".join(f"{type(problem).__name__}: {problem}".split())[:120].rstrip(": ")

@@ -1,0 +1,73 @@
+"""Who works for a ``Crew``: what it must know of workers, and how long it waits for them."""
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """A worker.
+
+    Attributes:
+        name: as the user knows it, such as ``worker tcp://10.0.0.7:40001``.
+        slots: tasks that it does at a time.
+        threads: that a task of it may use.
+        executor: does tasks on this worker and nowhere else.
+    """
+
+    name: str
+    executor: Executor
+    threads: int = 1
+    slots: int = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more.
+
+    Attributes:
+        task_s: least time after which a worker that does not answer counts as hung.
+        times: the same as a multiple of the longest task so far.
+        first_s: the same for a worker's first task, for which it may have to compile.
+        absent_s: how long to wait for scheduler and workers before giving up.
+    """
+
+    task_s: float = 60.0
+    times: float = 20.0
+    first_s: float = 300.0
+    absent_s: float = 60.0
+
+
+EXPORT_LIMITS = Limits(task_s=900.0)
+"""For tasks that are exports: each takes ten seconds to a minute, on a busy machine several. Our own choice."""
+
+
+class Staff(Protocol):
+    """Workers that come and go.
+
+    Attributes:
+        label: of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``.
+        replaces: whether a worker that is dismissed is ended and replaced.
+        cure: what the user can do if nobody is there.
+    """
+
+    label: str
+    replaces: bool
+    cure: str
+
+    def present(self) -> Mapping[str, Member]:
+        """Who is there now, by name; returns at once."""
+
+    def state(self) -> str:
+        """Why nobody may be there, in a few words."""
+
+    def is_loss(self, problem: BaseException) -> bool:
+        """Whether a task failed because its worker was lost, and not by itself."""
+
+    def dismiss(self, name: str) -> None:
+        """Forget a worker."""
+
+    def close(self) -> None:
+        """Let all of them go."""

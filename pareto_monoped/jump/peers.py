@@ -1,0 +1,149 @@
+"""Crews that jump: who may join is decided by versions, platform and the exact results of a few probe designs."""
+
+import hashlib
+import platform
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from importlib.metadata import version
+
+import numpy as np
+
+from pareto_monoped import __version__
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.compute.cluster import DaskWorkers
+from pareto_monoped.compute.crew import Crew
+from pareto_monoped.compute.local import LocalProcesses
+from pareto_monoped.compute.staff import Limits, Staff
+from pareto_monoped.compute.threads import cores, set_task_threads
+from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_MOTOR, UPPER, complete
+from pareto_monoped.jump.calibration import calibration_names, load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
+
+_DRAWN = 12
+"""Probe designs besides the paper's. Our own choice: some have no gearbox or fall, most jump."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Facts:
+    """What decides the numbers of a worker.
+
+    Attributes:
+        versions: of this package and of those that compute.
+        system, machine: operating system and processor.
+        numbers: digest of every measure of the probe designs under every shipped calibration, to the last bit.
+    """
+
+    versions: dict[str, str]
+    system: str
+    machine: str
+    numbers: str
+
+
+_lock = threading.Lock()
+
+
+def facts() -> Facts:
+    """The facts of this process; computed once."""
+    with _lock:
+        return _facts()
+
+
+@lru_cache(maxsize=1)
+def _facts() -> Facts:
+    packages = {"pareto-monoped": __version__} | {name: version(name) for name in ("mujoco", "numpy", "numba")}
+    return Facts(versions=packages, system=platform.system(), machine=platform.machine(), numbers=_numbers())
+
+
+def _numbers() -> str:
+    drawn = np.random.default_rng(20250101).uniform(LOWER, UPPER, size=(_DRAWN, len(LOWER)))
+    paper = np.array([case.design.as_array() for case in PAPER_CASES.values()])
+    designs, gearboxes = np.vstack((paper, complete(drawn))), map_for(PAPER_MOTOR)
+    found = hashlib.sha256()
+    for name in calibration_names():
+        jumps = Evaluator(gearboxes, load_calibration(name))(designs)
+        found.update("\n".join([*jumps.status, *jumps.reason]).encode())
+        for field in fields(jumps):
+            if field.name not in ("status", "reason"):
+                # NaN has many bit patterns, which mean the same.
+                found.update((getattr(jumps, field.name) + 0.0).tobytes())
+    return found.hexdigest()
+
+
+def greeting(threads: int) -> Facts:
+    """The first task of a worker: take note of its threads, warm up, and say who it is."""
+    set_task_threads(threads)
+    return facts()
+
+
+def complaint(theirs: Facts) -> str | None:
+    """What keeps a worker with these facts from working for this process; None if nothing does."""
+    ours = facts()
+    pairs = [(name, theirs.versions.get(name), here) for name, here in ours.versions.items()]
+    pairs += [("system", theirs.system, ours.system), ("machine", theirs.machine, ours.machine)]
+    different = [f"{name} {there}, here {here}" for name, there, here in pairs if there != here]
+    if different:
+        return "; ".join(different)
+    if theirs.numbers != ours.numbers:
+        return f"computes other jumps of the probe designs (digest {theirs.numbers[:8]}, here {ours.numbers[:8]})"
+    return None
+
+
+@contextmanager
+def crew_of(
+    staff: Staff, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
+) -> Iterator[Crew]:
+    """An executor over the workers of a staff who compute the same numbers; closed with the block.
+
+    Args:
+        staff: the workers.
+        tell: called with a line for the user when a worker is lost or refused.
+        limits: how long to wait for tasks and workers.
+    """
+    crew = Crew(staff, greeting=greeting, check=complaint, tell=tell, limits=limits)
+    try:
+        facts()  # while the workers do the same
+        yield crew
+    finally:
+        crew.shutdown()
+
+
+@contextmanager
+def processes(
+    count: int | None = None, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
+) -> Iterator[Crew]:
+    """An executor over fresh processes of this machine, which share its cores.
+
+    The script that calls it must be importable: its work starts under ``if __name__ == "__main__"``.
+
+    Args:
+        count: number of processes, one per core if None.
+        tell: called with a line for the user when a worker is lost or refused.
+        limits: how long to wait for tasks and workers.
+    """
+    number = count or cores()
+    with crew_of(LocalProcesses(number, max(cores() // number, 1)), tell=tell, limits=limits) as crew:
+        yield crew
+
+
+@contextmanager
+def cluster(
+    address: str, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
+) -> Iterator[Crew]:
+    """An executor over the workers of a Dask scheduler; needs the extra ``cluster``.
+
+    Dask sends tasks by pickle: only among hosts that trust each other.
+
+    Args:
+        address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
+        tell: called with a line for the user when a worker is lost or refused.
+        limits: how long to wait for tasks and workers.
+
+    Raises:
+        InputError: Dask is not installed here.
+        WorkerError: no scheduler answers.
+    """
+    with crew_of(DaskWorkers(address), tell=tell, limits=limits) as crew:
+        yield crew

@@ -1,0 +1,216 @@
+"""Objectives and constraints of the user's own: plain functions of a table of jumps, evaluated with every generation.
+
+A database stores a function's name and its values, never the function: who continues a study brings it again.
+"""
+
+import difflib
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from pareto_monoped.design import NAMES, complete
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.jump.evaluate import Evaluations
+from pareto_monoped.measures import MEASURE_NAMES, OWN, is_own
+from pareto_monoped.study.protocol import Floats
+
+OwnFunction = Callable[[Mapping[str, NDArray[Any]]], Any]
+"""A function of a table of jumps, to values of shape (n,)."""
+Functions = Mapping[str, OwnFunction]
+"""Name of an own measure, such as "own_landing_speed" -> its function."""
+
+_CHECKED = 8
+"""Stored trials that are computed anew before a study goes on; our own choice."""
+_SAME = 1e-9
+"""Relative difference up to which a value is the stored one: NumPy may round an array of another length otherwise."""
+
+
+class Jumps(dict[str, NDArray[Any]]):
+    """Name of each variable and measure -> values of n jumps, shape (n,), NaN where the jump failed."""
+
+    def __missing__(self, name: str) -> NDArray[Any]:
+        """Refuse an unknown name."""
+        near = difflib.get_close_matches(str(name), self, n=1)
+        cure = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(self)}"
+        raise StudyError(f"jumps: {name!r} is neither a variable nor a measure; {cure}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnEvaluations(Evaluations):
+    """Results of n designs, and what own functions make of them.
+
+    Attributes:
+        jumps: the results.
+        own: values of the functions by the names of their measures, each of shape (n,); NaN where the jump failed.
+    """
+
+    jumps: Evaluations
+    own: Mapping[str, Floats]
+
+    def of(self, name: str) -> Floats:
+        """The measure of that name, shape (n,)."""
+        return self.own[name] if name in self.own else self.jumps.of(name)
+
+    def as_columns(self) -> dict[str, NDArray[np.generic]]:
+        """Column name to values of shape (n,), ``status`` and ``reason`` first, own functions last."""
+        return self.jumps.as_columns() | dict(self.own)
+
+
+def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -> Callable[..., Evaluations]:
+    """What a study's trials are evaluated with, and its own functions after that."""
+    if not functions:
+        return evaluate
+
+    def evaluated(designs: ArrayLike, *motors: ArrayLike) -> Evaluations:
+        jumps = evaluate(designs, *motors)
+        columns = jumps.as_columns()
+        table = Jumps({name: columns[name] for name in MEASURE_NAMES})
+        table |= dict(zip(NAMES, np.atleast_2d(complete(designs)).T, strict=True))
+        failed = ~jumps.ok
+        own = {name: np.where(failed, np.nan, called(function, table, failed)) for name, function in functions.items()}
+        given = {name: getattr(jumps, name) for name in Evaluations.__dataclass_fields__}
+        return OwnEvaluations(**given, jumps=jumps, own=own)
+
+    return evaluated
+
+
+def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Floats:
+    """The values of an own function, shape (n,).
+
+    Raises:
+        StudyError: it fails, or returns something else than n numbers that are finite where the jump did not fail.
+    """
+    n, source = len(failed), f"own function {name_of(function)!r}"
+    try:
+        # A copy of the table: what a function changes must not reach the database.
+        given = np.asarray(function(Jumps({name: column.copy() for name, column in table.items()})))
+        if given.dtype.kind not in "biufO":  # complex numbers would lose their imaginary part, texts be read
+            raise StudyError(f"returns {given.dtype}; it must return {n} numbers that are real")
+        values = given.astype(np.float64)
+    except StudyError as error:
+        raise StudyError(f"{source}: {error}") from error
+    except Exception as error:
+        raise StudyError(f"{source}: {_one_line(error)}; {_cure(error, table, n)}") from error
+    if _has_truth(given):
+        raise StudyError(f"{source} = bool: must return numbers; a constraint holds where its value is <= 0")
+    if values.shape != (n,):
+        raise StudyError(complaint(f"shape of {source}", values.shape, f"({n},)", "return one value per jump"))
+    if not np.isfinite(values[~failed]).all():
+        raise StudyError(f"{source}: must be finite where the jump did not fail; correct it")
+    return values
+
+
+def _has_truth(given: NDArray[Any]) -> bool:
+    """Whether an answer has True or False in it, which as 1 or 0 would mean the opposite in a constraint."""
+    return given.dtype == np.bool_ or (given.dtype == object and any(isinstance(one, bool) for one in given.flat))
+
+
+def _cure(error: Exception, table: Jumps, n: int) -> str:
+    """What to do about an error of an own function."""
+    if isinstance(error, AttributeError) and isinstance(error.obj, Jumps):
+        near = difflib.get_close_matches(str(error.name), table, n=1)
+        return f'take measures by name: jumps["{near[0] if near else MEASURE_NAMES[0]}"]'
+    if "truth value of a" in str(error):
+        return "use numpy.where instead of if, and & and | instead of and and or"
+    return f"it must return {n} numbers"
+
+
+def name_of(function: object) -> str:
+    """What a function is called."""
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+def own_name(function: object) -> str:
+    """The name of the measure that a function is.
+
+    Raises:
+        StudyError: no function, or one whose name cannot be stored, such as a lambda.
+    """
+    if not callable(function) or isinstance(function, type):
+        allowed = "the name of a measure or a function of the jumps"
+        raise StudyError(complaint("objective or constraint", function, allowed, "give one of these"))
+    name = f"{OWN}{getattr(function, '__name__', '')}"
+    if not is_own(name):
+        shown = getattr(function, "__name__", type(function).__name__)
+        raise StudyError(
+            f"own function {shown!r}: its name is stored with the study, and must have letters, digits and '_' only; "
+            "define it with def"
+        )
+    return name
+
+
+def listed(what: str, given: Any) -> Sequence[Any]:
+    """Functions as a list; one alone is a list of one.
+
+    Raises:
+        StudyError: neither a list nor a function.
+    """
+    if callable(given):
+        return [given]
+    if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
+        raise StudyError(complaint(what, given, "a function of the jumps, or a list of these", "give one"))
+    return given
+
+
+def functions_of(given: Sequence[object]) -> dict[str, OwnFunction]:
+    """Functions by the names of their measures.
+
+    Raises:
+        StudyError: no function, one without a usable name, or two of the same name.
+    """
+    found: dict[str, OwnFunction] = {}
+    for function in given:
+        name = own_name(function)
+        others = {known.lower(): known for known in found}  # SQLite does not tell A from a in the names of columns
+        # Compared by value: a method is another object each time that it is asked for.
+        if found.get(others.get(name.lower(), ""), function) != function:
+            raise StudyError(f"own function {name_of(function)!r}: is the name of two functions; rename one")
+        found[name] = cast(OwnFunction, function)  # whether it can be called has been asked for its name
+    return found
+
+
+def require_functions(names: Sequence[str], functions: Functions, source: str) -> None:
+    """Refuse to go on without the functions that a study names, or with others.
+
+    Raises:
+        StudyError: the message says how to give them.
+    """
+    if lacking := [name.removeprefix(OWN) for name in names if name not in functions]:
+        raise StudyError(
+            f"{source}: needs {', '.join(lacking)}, which only your program has; go on from Python: "
+            f"pareto_monoped.resume(db, functions=[{_listed(names)}])"
+        )
+    if unknown := [name.removeprefix(OWN) for name in functions if name not in names]:
+        raise StudyError(f"{source}: knows no own function {unknown[0]!r}; it has {_listed(names)}")
+
+
+def refuse_other_functions(trials: pd.DataFrame, functions: Functions, source: str) -> None:
+    """Refuse functions that give other values than those stored, in some trials from the first to the last.
+
+    Raises:
+        StudyError: the message shows both values.
+    """
+    jumped = trials[trials["status"] == "ok"]
+    rows = jumped.iloc[np.unique(np.linspace(0, len(jumped) - 1, min(_CHECKED, len(jumped))).astype(int))]
+    table = Jumps({name: rows[name].to_numpy(dtype=np.float64) for name in (*NAMES, *MEASURE_NAMES)})
+    for name, function in functions.items() if len(rows) else ():
+        now = called(function, table, np.zeros(len(rows), dtype=bool))
+        stored = rows[name].to_numpy(dtype=np.float64)
+        for k in np.flatnonzero(~np.isclose(now, stored, rtol=_SAME, atol=0.0))[:1]:
+            raise StudyError(
+                f"{source}: own function {name_of(function)!r} gives {now[k]:.9g} for trial "
+                f"{int(rows['trial'].iloc[k])}, where {stored[k]:.9g} is stored; give the function that it began with"
+            )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(name.removeprefix(OWN) for name in names) or "none"
+
+
+def _one_line(error: Exception) -> str:
+    return re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")

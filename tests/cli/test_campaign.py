@@ -1,0 +1,147 @@
+"""The command ``campaign``: what it prints on a terminal, in a pipe and as JSON, its table and its exit codes."""
+
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from rich.console import Console
+
+from pareto_monoped.campaign.coordinator import standings_of
+from pareto_monoped.campaign.folder import places_of
+from pareto_monoped.campaign.grid import load_campaign
+from pareto_monoped.cli import cli
+from pareto_monoped.cli.campaign_table import _rows, clock, shortened
+from pareto_monoped.study.reader import read_study
+from tests.campaign.test_coordinator import SMALL
+from tests.campaign.test_grid import written
+
+ROOT = Path(__file__).parents[2]
+AXES = 'motors = ["VT8020", "Nope"]\nseeds = [1, 2]'
+
+
+def command(folder, *words):
+    line = [sys.executable, "-m", "pareto_monoped", "campaign", "grid.toml", *words]
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "80"}
+    return subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A campaign of two studies that can be run and two that cannot, and what it printed in a pipe."""
+    folder = tmp_path_factory.mktemp("campaign")
+    written(folder, AXES, SMALL.replace("40", "20"))
+    return folder, command(folder, "--workers", "2", "--csv", "table.csv", "--report", "page.html")
+
+
+def test_a_failing_study_is_told_in_one_line_and_by_the_exit_code(done):
+    _, ran = done
+    assert ran.returncode == 1
+    lines = ran.stderr.splitlines()
+    assert [line for line in lines if line.startswith("error: ")] == [
+        f"error: Nope_seed{seed}: motor = 'Nope': must be one of VT8020, U8, U10, U12, MN8014, MAD_M6C12, or a TOML "
+        "file; correct the name"
+        for seed in (1, 2)
+    ]
+    assert any(line.startswith("VT8020_seed1: 20 jumps, hypervolume") for line in lines)
+    assert "grid.toml: 4 studies, 2 finished, 2 failed" in lines
+
+
+def test_the_table_is_on_stdout_and_fits_into_80_columns(done):
+    _, ran = done
+    rows = [line.split() for line in ran.stdout.splitlines() if "seed" in line]
+    assert [(row[0], row[1], row[-1]) for row in rows] == [
+        ("VT8020_seed1", "20/20", "finished"), ("VT8020_seed2", "20/20", "finished"),
+        ("Nope_seed1", "0/20", "failed"), ("Nope_seed2", "0/20", "failed"),
+    ]  # fmt: skip
+    assert max(map(len, ran.stdout.splitlines())) <= 80
+
+
+def test_the_csv_has_a_row_per_study_with_the_numbers_of_its_database(done):
+    folder, _ = done
+    rows = list(csv.DictReader(io.StringIO((folder / "table.csv").read_text())))
+    assert [(row["study"], row["motors"], row["seeds"]) for row in rows][1] == ("VT8020_seed2", "VT8020", "seed2")
+    data = read_study(folder / "grid" / "VT8020_seed2.db")
+    front = data.front()
+    assert float(rows[1]["hypervolume"]) == pytest.approx(data.history["hypervolume"].iloc[-1], rel=1e-12)
+    assert int(rows[1]["front"]) == len(front)
+    assert float(rows[1]["best_height_m"]) == front["height_m"].max()
+    reached = front[front["height_m"] >= 0.8]["energy_j"]
+    assert rows[1]["energy_j_at_0_8_m"] == (str(reached.min()) if len(reached) else "")
+    assert float(rows[1]["knee_energy_j"]) in set(front["energy_j"])
+    assert (rows[2]["state"], rows[2]["hypervolume"], rows[2]["evaluations"]) == ("waiting", "", "0")
+
+
+def test_the_page_is_written_and_a_study_is_never_replaced(done):
+    folder, ran = done
+    text = (folder / "page.html").read_text()
+    assert "2 of 4 studies are finished" in text
+    assert "wrote page.html" in ran.stderr
+    refused = CliRunner().invoke(
+        cli, ["campaign", str(folder / "grid.toml"), "--report", str(folder / "grid" / "VT8020_seed1.db")]
+    )
+    assert "is a database, which no output replaces" in str(refused.exception)
+
+
+def test_status_runs_nothing_and_says_the_same_of_what_is_stored(done):
+    folder, _ = done
+    before = {path: path.stat().st_mtime_ns for path in (folder / "grid").iterdir()}
+    result = CliRunner().invoke(cli, ["campaign", str(folder / "grid.toml"), "--status", "--json"])
+    assert result.exit_code == 0
+    (line,) = result.stdout.splitlines()
+    studies = json.loads(line)["studies"]
+    assert [one["state"] for one in studies] == ["finished", "finished", "waiting", "waiting"]
+    assert {path: path.stat().st_mtime_ns for path in (folder / "grid").iterdir()} == before
+
+
+def test_json_is_a_line_per_generation_and_per_study(done):
+    folder, _ = done
+    ran = command(folder, "--json", "--folder", "other")
+    events = [json.loads(line) for line in ran.stdout.splitlines()]
+    of_one = [event for event in events if event.get("study") == "VT8020_seed1"]
+    stored = [event["evaluations"] for event in of_one if event["event"] == "generation" and event["per_second"]]
+    assert stored == [10, 20]
+    assert (of_one[-1]["event"], of_one[-1]["state"], of_one[-1]["evaluations"]) == ("study", "finished", 20)
+    assert events[-1]["event"] == "end"
+
+
+def shown(standings, height):
+    console = Console(width=80, height=height, file=io.StringIO())
+    for part in _rows(standings, height):
+        console.print(part)
+    return console.file.getvalue().splitlines()
+
+
+@pytest.fixture
+def many(tmp_path):
+    campaign = load_campaign(written(tmp_path, f"seeds = {list(range(90))}"))
+    return standings_of(places_of(campaign, campaign.folder))
+
+
+def test_the_live_table_shows_who_is_at_work_and_counts_the_others(many):
+    for k, state in {0: "finished", 1: "failed", 40: "running", 80: "running"}.items():
+        many[k].state = state
+    lines = shown(many, 24)
+    assert len(lines) <= 23
+    named = [line.split()[0] for line in lines if "seed" in line]
+    assert {"seed1", "seed40", "seed80"} < set(named)
+    assert "seed0" not in named
+    assert named == sorted(named, key=lambda name: int(name[4:]))
+    assert f"and {90 - len(named)} more: 1 finished, {89 - len(named)} waiting" in lines
+
+
+def test_eighteen_studies_fit_into_a_terminal_of_24_lines(many):
+    lines = shown(many[:18], 24)
+    assert len([line for line in lines if "seed" in line]) == 18
+    assert len(lines) <= 23
+    assert max(map(len, lines)) <= 80
+
+
+def test_long_names_lose_their_middle_and_times_are_clocks():
+    assert shortened("electrical_energy_j_VT8020_seed12", 16) == "electri…0_seed12"
+    assert [clock(seconds) for seconds in (5.4, 75.0, 3725.0)] == ["0:05", "1:15", "1:02:05"]

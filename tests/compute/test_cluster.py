@@ -1,0 +1,165 @@
+"""A crew of Dask workers that are real programs: what befalls them and their scheduler costs time, and one line."""
+
+import shutil
+import signal
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from pareto_monoped.compute.cluster import DaskWorkers
+from pareto_monoped.compute.crew import Crew
+from pareto_monoped.compute.staff import Limits
+from pareto_monoped.errors import WorkerError
+from pareto_monoped.jump.peers import cluster
+from tests.compute import tasks
+from tests.compute.dask_here import ROOT, DaskHere, free_port, until
+from tests.compute.proxy import Proxy
+
+pytest.importorskip("distributed")
+
+
+@contextmanager
+def crew(address, **limits):
+    """A crew with a greeting that costs nothing, and what it tells the user."""
+    told = []
+    made = Crew(
+        DaskWorkers(address),
+        greeting=tasks.greeting,
+        check=lambda _: None,
+        tell=told.append,
+        limits=Limits(**limits),
+    )
+    try:
+        yield made, told
+    finally:
+        made.shutdown()
+
+
+def numbers(futures):
+    return [future.result(timeout=180)[0] for future in futures]
+
+
+@pytest.fixture
+def two(tmp_path):
+    with DaskHere(tmp_path, workers=2) as dask:
+        yield dask
+
+
+def test_a_worker_is_killed_and_another_joins(two):
+    with crew(two.address) as (made, told):
+        futures = [made.submit(tasks.short, n) for n in range(200)]
+        until(lambda: sum(future.done() for future in futures) > 20)
+        told.clear()  # the workers may have been slow to start
+        two.workers[0].kill()
+        two.workers.append(two.add())
+        found = [future.result(timeout=180) for future in futures]
+    assert [number for number, _ in found] == list(range(200))
+    assert two.workers[2].pid in {process for _, process in found}
+    assert len(told) == 1
+    assert told[0].startswith("worker tcp://127.0.0.1:")
+    assert told[0].endswith("has gone; its work goes elsewhere")
+
+
+def test_no_scheduler_at_the_address(monkeypatch):
+    monkeypatch.setattr("pareto_monoped.compute.cluster._CONNECT_S", 1.0)
+    with pytest.raises(WorkerError, match=r"^scheduler 127.0.0.1:\d+: does not answer within 1 s .*dask scheduler$"):
+        DaskWorkers(f"127.0.0.1:{free_port()}")
+
+
+@pytest.mark.long
+def test_a_worker_hangs_and_answers_again(two):
+    with crew(two.address, task_s=4.0, times=3.0) as (made, told):
+        numbers([made.submit(tasks.short, n) for n in range(40)])
+        told.clear()  # the workers may have been slow to start
+        two.workers[0].send_signal(signal.SIGSTOP)
+        assert numbers([made.submit(tasks.short, n) for n in range(100)]) == list(range(100))
+        until(lambda: told)
+        two.workers[0].send_signal(signal.SIGCONT)
+        until(lambda: len(told) == 2)
+        found = [made.submit(tasks.short, n) for n in range(40)]
+        assert len({future.result(timeout=60)[1] for future in found}) == 2
+    assert "has not answered for 4 s; its work goes elsewhere" in told[0]
+    assert told[1].endswith("answers again")
+
+
+@pytest.mark.long
+def test_the_scheduler_is_restarted(two):
+    with crew(two.address) as (made, told):
+        futures = [made.submit(tasks.short, n) for n in range(300)]
+        until(lambda: sum(future.done() for future in futures) > 20)
+        told.clear()  # the workers may have been slow to start
+        two.restart()
+        two.workers += [two.add(), two.add()]
+        assert numbers(futures) == list(range(300))
+    assert len(told) <= 1
+    assert all("waiting up to 60 s" in line for line in told)
+
+
+@pytest.mark.long
+def test_the_scheduler_stays_away(two):
+    with crew(two.address, absent_s=6.0) as (made, told):
+        futures = [made.submit(tasks.short, n) for n in range(300)]
+        until(lambda: sum(future.done() for future in futures) > 20)
+        told.clear()  # the workers may have been slow to start
+        two.scheduler.kill()
+        problem = futures[-1].exception(timeout=180)
+    assert isinstance(problem, WorkerError)
+    assert "\n" not in str(problem)
+    assert str(problem).startswith(f"scheduler {two.address}: does not answer")
+    assert str(problem).endswith("for 6 s; start scheduler and workers, then give the same command again")
+    assert len(told) == 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("how", ["silent", "broken"])
+def test_the_network_is_cut_for_ten_seconds(tmp_path, how):
+    """Between this process and the scheduler: packets get lost, or connections break and nobody can connect."""
+    with DaskHere(tmp_path, workers=2) as dask, Proxy(dask.port) as proxy:
+        with crew(proxy.address) as (made, told):
+            futures = [made.submit(tasks.short, n) for n in range(400)]
+            until(lambda: sum(future.done() for future in futures) > 20)
+            told.clear()  # the workers may have been slow to start
+            threading.Thread(target=proxy.cut, args=(10.0, how)).start()
+            assert numbers(futures) == list(range(400))
+        assert len(told) <= 1
+
+
+def other_package(folder, path, before, after):
+    """A copy of the package in which a file differs."""
+    shutil.copytree(ROOT / "pareto_monoped", folder / "pareto_monoped", ignore=shutil.ignore_patterns("__pycache__"))
+    file: Path = folder / "pareto_monoped" / path
+    text = file.read_text()
+    assert before in text
+    file.write_text(text.replace(before, after))
+    return folder
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("path", "before", "after", "words"),
+    [
+        ("__init__.py", '__version__ = "', '__version__ = "9', "pareto-monoped 9"),
+        ("data/materials.toml", "density_kg_per_m3 = 2", "density_kg_per_m3 = 3", "computes other jumps"),
+    ],
+)
+def test_a_worker_with_another_version_or_other_data_is_refused(tmp_path, path, before, after, words):
+    folder = tmp_path / "other"
+    other = other_package(folder, path, before, after)
+    told = []
+    with DaskHere(tmp_path) as dask:
+        dask.workers += [dask.add(package=other)]
+        with cluster(dask.address, tell=told.append) as made:
+            until(lambda: any("refused" in line for line in told), 300)
+            problem = made.submit(tasks.short, 1).exception(timeout=300)
+            assert isinstance(problem, WorkerError)
+            assert "none of its 1 workers may be used" in str(problem)
+            assert words in str(problem)
+            dask.workers += [dask.add()]
+            until(lambda: len(made._able()) == 1, 300)
+            found = {made.submit(tasks.short, n).result(timeout=180)[1] for n in range(8)}
+    assert found == {dask.workers[1].pid}
+    (refusal,) = [line for line in told if "refused" in line]
+    assert refusal.startswith("worker tcp://127.0.0.1:")
+    assert words in refusal

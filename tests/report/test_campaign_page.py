@@ -1,0 +1,97 @@
+"""The page of a campaign: its tables as text, its charts in headless Chromium without a network."""
+
+import re
+
+import pytest
+
+from pareto_monoped.campaign.page import campaign_page
+from tests.campaign.support import made_campaign
+
+AXES = 'motors = ["U8", "U10"]\nrules = ["iso6336", "paper"]\nseeds = [1, 2, 3]'
+
+
+def fronts(number, place):
+    """Fronts that differ; one study is missing and one has no feasible design."""
+    if place.name == "U10_paper_seed3":
+        return None
+    if place.name == "U10_paper_seed2":
+        return [0.3], [5.0]
+    return [0.7, 0.85, 1.0], [10.0 + number, 20.0 + number, 30.0 + 2 * number]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    campaign, results = made_campaign(folder, AXES, fronts)
+    file = folder / "page.html"
+    file.write_text(campaign_page(campaign, results), encoding="utf-8")
+    return file, results
+
+
+def cells(text, title):
+    """Rows of the table under a heading, as lists of texts."""
+    table = text.split(f"<h3>{title}</h3>")[1].split("</table>")[0]
+    rows = re.findall(r"<tr>(.*?)</tr>", table.split("<tbody>")[1], re.S)
+    return [[re.sub(r"<small>|<[^>]+>", " ", cell).split() for cell in re.split(r"</t[hd]>", row)][:-1] for row in rows]
+
+
+def test_tables_have_a_row_per_group_per_value_and_per_seed(made):
+    text = made[0].read_text()
+    groups = cells(text, "By motor and gearbox rules")
+    assert [(" ".join(row[0]), row[1]) for row in groups] == [
+        ("U8, iso6336", ["3"]), ("U8, paper", ["3"]), ("U10, iso6336", ["3"]), ("U10, paper", ["1"]),
+    ]  # fmt: skip
+    # U8, iso6336 are the first three studies: 10, 11 and 12 J at 0.7 m.
+    at_0_7_m = next(cell for cell in groups[0] if cell[:1] == ["11.00"])
+    assert at_0_7_m == ["11.00", "10.00", "to", "12.00"]
+    assert [row[0] for row in cells(text, "By motor alone")] == [["U8"], ["U10"]]
+    assert [(row[0], row[1]) for row in cells(text, "By seed")] == [(["1"], ["4"]), (["2"], ["3"]), (["3"], ["3"])]
+
+
+def test_what_is_in_no_median_is_said_and_names_are_escaped(made):
+    text = made[0].read_text()
+    assert "U10_paper_seed2 failed: no feasible design" in text
+    assert "1 studies are not finished and in no median: U10_paper_seed3" in text
+    assert "made &lt;b&gt;" in text
+    assert "made <b>" not in text
+
+
+def test_a_campaign_without_a_finished_study_has_a_page(tmp_path):
+    campaign, results = made_campaign(tmp_path, AXES, lambda *_: None)
+    assert "0 of 12 studies are finished" in campaign_page(campaign, results)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (390, "dark")])
+def test_charts_are_drawn_offline_and_a_group_can_be_switched_off(made, browser, width, scheme):
+    file, _ = made
+    context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
+    context.set_offline(True)
+    tab = context.new_page()
+    complaints, requests = [], []
+    tab.on("console", lambda message: complaints.append(message.text))
+    tab.on("pageerror", lambda error: complaints.append(str(error)))
+    tab.on("request", lambda request: requests.append(request.url))
+    tab.goto(file.as_uri())
+    tab.wait_for_function("() => document.getElementById('attainment-0')?.data !== undefined")
+    names = "document.getElementById('attainment-0').data.map((layer) => layer.name)"
+    assert tab.evaluate(names) == [
+        "U8, iso6336, band", "U8, iso6336", "U8, paper, band", "U8, paper",
+        "U10, iso6336, band", "U10, iso6336", "U10, paper",
+    ]  # fmt: skip
+    tab.locator("#switches-0 input").first.click()
+    assert tab.evaluate(names)[0] == "U8, paper, band"
+    words = "document.getElementById('attainment-0').data.find((layer) => layer.name === 'U10, iso6336').text(0)"
+    assert "mechanical energy" not in tab.evaluate(words)
+    assert "band" in tab.evaluate(words)
+    tab.locator("#growth-0").scroll_into_view_if_needed()
+    tab.wait_for_function("() => document.getElementById('growth-0')?.data !== undefined")
+    ink = """(() => {
+        const canvas = document.querySelectorAll("#attainment-0 canvas")[1], { width, height } = canvas;
+        return canvas.getContext("2d").getImageData(0, 0, width, height).data.some((value) => value > 0);
+    })()"""
+    assert tab.evaluate(ink)
+    assert tab.evaluate("document.documentElement.scrollWidth") == width
+    assert complaints == []
+    assert [url for url in requests if not url.startswith("data:")] == [file.as_uri()]
+    context.close()

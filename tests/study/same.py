@@ -1,0 +1,17 @@
+"""When two databases hold the same study."""
+
+from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.robust_rows import read_robustness
+
+
+def assert_same_study(one, other):
+    """Both have the same trials, audits, front, state, settings and robustness, to the last bit."""
+    here, there = read_study(one), read_study(other)
+    assert there.trials.equals(here.trials)
+    assert there.audits.equals(here.audits)
+    assert there.front().equals(here.front())
+    assert there.checkpoint == here.checkpoint
+    assert there.meta.hash == here.meta.hash
+    assert there.meta.probe == here.meta.probe
+    assert there.history["hypervolume"].equals(here.history["hypervolume"])
+    assert read_robustness(one) == read_robustness(other)

@@ -1,0 +1,114 @@
+"""Without an extra: one line and how to install it, before anything else is done; all else works."""
+
+import os
+import subprocess
+import sys
+import textwrap
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pareto_monoped import extras
+from pareto_monoped.compute.cluster import DaskWorkers
+from pareto_monoped.errors import InputError
+from pareto_monoped.extras import EXTRAS
+
+ROOT = Path(__file__).parents[1]
+BLOCKED = textwrap.dedent(
+    """
+    import sys
+    from importlib.abc import MetaPathFinder
+
+    class Missing(MetaPathFinder):
+        def find_spec(self, name, path=None, target=None):
+            if name.partition(".")[0] in MODULES:
+                raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    sys.meta_path.insert(0, Missing())
+    import importlib.util
+    kept = importlib.util.find_spec
+    importlib.util.find_spec = lambda name: None if name in MODULES else kept(name)
+    """
+)
+
+
+def without_extras(code: str, folder: Path, lacks=tuple(EXTRAS)) -> "subprocess.CompletedProcess[str]":
+    """Run code in a process that has no modules of these extras, and no programs."""
+    modules = {module for extra in lacks for module in EXTRAS[extra]}
+    program = f"MODULES = {modules!r}\n{BLOCKED}\n{textwrap.dedent(code)}"
+    environment = os.environ | {"PATH": str(folder)}
+    return subprocess.run(
+        [sys.executable, "-c", program], cwd=folder, env=environment, capture_output=True, text=True, timeout=300
+    )
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_an_extra_names_these_packages(extra):
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = {line.partition(">")[0] for line in project["optional-dependencies"][extra]}
+    assert names == set(EXTRAS[extra].values())
+    assert not names & {line.partition(">")[0] for line in project["dependencies"]}
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"),
+    [
+        (["export", "--case", "C", "-o", "out"], "cad"),
+        (["pareto", "nothing.toml", "-o", "out"], "cad"),
+        (["simulate", "--gif", "jump.gif"], "cad"),
+        (["trials", "nothing.db", "--parquet", "t.parquet"], "parquet"),
+    ],
+    ids=lambda given: given[0] if isinstance(given, list) else given,
+)
+def test_a_command_says_what_to_install(words, extra, tmp_path):
+    run = without_extras(f"from pareto_monoped.cli import main; main({words!r})", tmp_path)
+    assert run.returncode == 2
+    assert f"not installed; install the extra: pip install 'pareto-monoped[{extra}]'" in run.stderr
+    assert len(run.stderr.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_video_without_an_encoder_says_what_to_install(tmp_path):
+    code = """
+    from pathlib import Path
+    from pareto_monoped.cad.write.film_files import require_video
+    from pareto_monoped.errors import InputError
+    try:
+        require_video(Path("jump.mp4"))
+    except InputError as error:
+        print(error)
+    """
+    run = without_extras(code, tmp_path, ["video"])
+    assert "--video: needs imageio-ffmpeg, which is not installed" in run.stdout, run.stderr
+    assert run.stdout.endswith("pip install 'pareto-monoped[video]', or install the program ffmpeg, or use --gif\n")
+
+
+def test_a_scheduler_without_dask_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(extras, "find_spec", lambda module: None)
+    with pytest.raises(InputError, match=r"scheduler tcp://x:1: needs distributed, .*'pareto-monoped\[cluster\]'"):
+        DaskWorkers("tcp://x:1")
+
+
+def test_all_packages_that_are_missing_are_named(monkeypatch):
+    monkeypatch.setattr(extras, "find_spec", lambda module: None)
+    with pytest.raises(InputError, match="needs cadquery-ocp-novtk and manifold3d and shapely, which are not"):
+        extras.require_extra("cad", "CAD")
+    monkeypatch.setattr(extras, "find_spec", lambda module: True)
+    extras.require_extra("cad", "CAD")
+
+
+def test_searching_choosing_and_reporting_need_no_cad(tmp_path):
+    code = """
+    import pareto_monoped as pm
+    from pareto_monoped.cli import _run
+    stored = pm.run(pm.Study.define(name="s", evaluations=40, algorithm="random"), "s.db")
+    stored.pick("knee")
+    pm.plot_front(stored)
+    assert _run(["report", "s.db", "-o", "s.html", "--figures", "figures"]) == 0
+    assert _run(["simulate", "--case", "C", "--audit", "--model", "c.xml"]) == 0
+    assert _run(["robust", "s.db", "--samples", "256"]) == 0
+    """
+    run = without_extras(code, tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / "s.html").stat().st_size > 0
