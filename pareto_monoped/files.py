@@ -4,9 +4,8 @@ No output replaces a study, and none replaces a file of another kind unless it i
 """
 
 import errno
-import os
+import secrets
 import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -62,19 +61,15 @@ def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path
         OutputError: the folder is missing or cannot be written to.
         DiskError: the disk is full or fails.
     """
-    try:
-        if temporary is None:
-            handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-            os.close(handle)
-            temporary = Path(name)
-        else:
+    if temporary is None:
+        # With 64 random bits it is nobody else's name.
+        temporary = path.parent / f".{path.stem}-{secrets.token_urlsafe(8)}{path.suffix}"
+    try:  # from here on, because an interrupt may come as soon as there is a file
+        try:
             temporary.unlink(missing_ok=True)
-            temporary.touch(0o600, exist_ok=False)
-    except OSError as error:
-        raise unwritable(path, error, "give a file in a writable folder") from error
-    try:
-        # mkstemp makes private files, but results should have the permissions of any other file of the user.
-        temporary.chmod(0o666 & ~current_umask())
+            temporary.touch(exist_ok=False)
+        except OSError as error:
+            raise unwritable(path, error, "give a file in a writable folder") from error
         yield temporary
     finally:
         for end in ("", *_BESIDE_A_DATABASE):
@@ -178,13 +173,6 @@ def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError
     if is_failure(error) or error.errno == errno.ENAMETOOLONG:
         cure = cure_of(error)
     return kind(f"output {str(path)!r}: cannot be written ({error.strerror or error}); {cure}")
-
-
-def current_umask() -> int:
-    """The permissions that this process withholds from new files; the system offers no way to only read them."""
-    umask = os.umask(0)
-    os.umask(umask)
-    return umask
 
 
 def write_text(path: Path, text: str, *, force: bool = False) -> None:

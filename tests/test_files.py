@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.errors import OutputError
-from pareto_monoped.files import current_umask, replacing, write_bytes, write_text
+from pareto_monoped.files import replacing, write_bytes, write_text
 from tests.study.support import made_database
 
 
@@ -47,13 +47,17 @@ def test_a_folder_in_the_way_is_one_clear_line_and_leaves_nothing(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_the_permissions_withheld_are_read_without_changing_them():
-    before = os.umask(0o027)
-    try:
-        assert current_umask() == 0o027
-        assert current_umask() == 0o027
-    finally:
-        os.umask(before)
+def test_an_interrupt_as_soon_as_the_temporary_file_is_made_leaves_nothing(tmp_path, monkeypatch):
+    touch = Path.touch
+
+    def interrupted(self, *args, **kwargs):
+        touch(self, *args, **kwargs)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "touch", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_text(tmp_path / "a.txt", "")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.fixture
@@ -107,6 +111,6 @@ def test_a_pipe_is_not_read(tmp_path):
 
 @pytest.mark.parametrize("force", [False, True])
 def test_a_device_is_not_replaced(tmp_path, monkeypatch, force):
-    monkeypatch.setattr("pareto_monoped.files.tempfile.mkstemp", lambda **_: pytest.fail("a file beside a device"))
+    monkeypatch.setattr(Path, "touch", lambda *_, **_2: pytest.fail("a file beside a device"))
     with pytest.raises(OutputError, match="'/dev/null': is a device; give the name of a file"):
         write_text(Path("/dev/null"), "x", force=force)

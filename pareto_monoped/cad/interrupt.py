@@ -58,6 +58,10 @@ def ending_at(number: signal.Signals, *, grace_s: float = GRACE_S) -> Iterator[N
         raise
     finally:
         left.set()
+        if signal.getsignal(number) is signal.SIG_IGN:
+            # The interrupt may have come where a ``with`` statement is entered: its block is then never left.
+            with without_unfinished():
+                pass
         # After a signal the process still has to tidy up, beyond this block.
         if signal.getsignal(number) is end:
             signal.signal(number, before)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cad.write.folder import move_in, write
+from pareto_monoped.cad.write.folder import beside, move_in, write
 from pareto_monoped.cad.write.unbroken import noted, unbroken, without_unfinished
 
 EXPORT = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "-o"]
@@ -162,6 +162,41 @@ def test_a_folder_to_which_a_thread_still_writes_is_deleted_and_stays_away(tmp_p
         with without_unfinished():
             assert refused.wait(PATIENCE_S)
             assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_as_soon_as_the_folder_is_made_leaves_nothing(tmp_path, monkeypatch):
+    """The folder was noted only after it had been made, and stayed there if the signal came in between."""
+    mkdir = Path.mkdir
+
+    def interrupted(self, *args, **kwargs):
+        mkdir(self, *args, **kwargs)
+        if self.name.startswith(".c-"):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "mkdir", interrupted)
+    with pytest.raises(KeyboardInterrupt), beside(tmp_path / "c"):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_before_the_block_is_entered_leaves_nothing(tmp_path):
+    """Between a context manager's beginning and its block an exception leaves the manager suspended."""
+    code = f"""
+import signal
+from pathlib import Path
+from pareto_monoped.cad.interrupt import ending_at
+from pareto_monoped.cad.write.folder import beside
+manager = beside(Path({str(tmp_path / "c")!r}))
+try:
+    with ending_at(signal.SIGINT, grace_s={PATIENCE_S}):
+        manager.__enter__()
+        print(len(list(Path({str(tmp_path)!r}).iterdir())))
+        signal.raise_signal(signal.SIGINT)
+except KeyboardInterrupt:
+    print(len(list(Path({str(tmp_path)!r}).iterdir())))
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.stdout.split() == ["1", "0"]
 
 
 def test_unfinished_folders_can_be_deleted_from_outside_but_not_while_one_is_moved(tmp_path):

@@ -4,7 +4,7 @@ A file is foreign unless the record of an earlier export lists it, under a name 
 """
 
 import re
-import tempfile
+import secrets
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +13,7 @@ from pareto_monoped.cad.write.formats import ALWAYS, FILES, RECORD
 from pareto_monoped.cad.write.unbroken import noted, unbroken
 from pareto_monoped.config import read_json
 from pareto_monoped.errors import OutputError
-from pareto_monoped.files import current_umask, unwritable
+from pareto_monoped.files import unwritable
 
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
 
@@ -67,18 +67,19 @@ def files_in(folder: Path) -> list[str]:
 @contextmanager
 def beside(out_dir: Path) -> Iterator[Path]:
     """A temporary folder beside the target; what is still in it when the block ends is deleted."""
-    try:
-        out_dir.parent.mkdir(parents=True, exist_ok=True)
-        folder = Path(tempfile.mkdtemp(prefix=f".{out_dir.name}-", dir=out_dir.parent))
-    except OSError as error:
-        raise unwritable(out_dir, error, "give a writable folder") from error
-    try:
-        with noted(folder):
-            # mkdtemp makes private folders, but an export should have the permissions of any other folder of the user.
-            folder.chmod(0o777 & ~current_umask())
+    # The name is noted before there is a folder, because an interrupt may come as soon as it has been made. With 64
+    # random bits it is nobody else's.
+    folder = out_dir.parent / f".{out_dir.name}-{secrets.token_hex(8)}"
+    with noted(folder):
+        try:
+            out_dir.parent.mkdir(parents=True, exist_ok=True)
+            folder.mkdir()
+        except OSError as error:
+            raise unwritable(out_dir, error, "give a writable folder") from error
+        try:
             yield folder
-    except OSError as error:
-        raise unwritable(out_dir, error, "make room or give another") from error
+        except OSError as error:
+            raise unwritable(out_dir, error, "make room or give another") from error
 
 
 def move_in(folder: Path, out_dir: Path) -> None:
