@@ -34,7 +34,8 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study import session
 from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM, OwnSettings
 from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import Bounds, Study
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.motor_choice import AnyCoordinates
 from pareto_monoped.study.protocol import Algorithm, Proposal, Scores
 from pareto_monoped.study.reader import read_study

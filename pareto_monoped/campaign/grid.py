@@ -13,7 +13,8 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.campaign.naming import canonical, joined, names_of, slug
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.study.definition import Study, file_values, filled, with_objectives, with_paths
+from pareto_monoped.study.definition import Study, filled
+from pareto_monoped.study.study_file import file_values, with_objectives, with_paths
 
 MOST_STUDIES = 1000
 """Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""

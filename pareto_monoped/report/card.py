@@ -34,7 +34,7 @@ from pareto_monoped.report.trials import (
 )
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.algorithm_settings import WeightedSettings
-from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.remarks import bound_lines
 from pareto_monoped.study.robust_rows import Stored

@@ -15,7 +15,8 @@ from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.design import NAMES, RATIOS
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.definition import Bounds, Study
+from pareto_monoped.study.definition import Study
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.protocol import Floats, Gear, Space
 
 

@@ -1,101 +1,39 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
 
-from pareto_monoped.config import checked, read_toml
-from pareto_monoped.design import DEFAULTS, LENGTHS, NAMES, PAPER_CASES, VARIABLES, RuleSet
-from pareto_monoped.errors import StudyError, complaint, unknown_name
+from pareto_monoped.config import checked
+from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
+from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.strength.groups import GROUP_MEASURES
-from pareto_monoped.study.algorithm_settings import (
-    ALGORITHMS,
-    DEFAULT_ALGORITHM,
-    OWN_ALGORITHM,
-    AlgorithmSettings,
-    OwnSettings,
-    WeightedSettings,
-)
+from pareto_monoped.study.algorithm_settings import AlgorithmSettings
+from pareto_monoped.study.free_variables import Bounds, variables_of
 from pareto_monoped.study.goals import (
     LEAST_SAFETY,
     Constraints,
     constraints_of,
     corner_of,
-    flattened,
     objectives_of,
     stored_objectives,
 )
 from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, text_of
+from pareto_monoped.study.study_file import Stop, StudyFile, algorithm_of, file_values, with_objectives
 from pareto_monoped.study.weighted_budget import within_budget
 from pareto_monoped.uncertainty.settings import Sampling, sampling_of
 
 NO_STRENGTH = "strength was not asked for: designs may not hold"
 """What every output says of a study without ``Study.strength``; those of earlier versions are among them."""
-
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
-    """Range of a free variable."""
-
-    lower: float
-    upper: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stop:
-    """Conditions that end a study before its budget is used up.
-
-    Attributes:
-        wall_time_s: longest running time, over all sessions.
-        plateau_evaluations, plateau_growth: end when the hypervolume has grown by less than the share
-            ``plateau_growth`` during the last ``plateau_evaluations`` evaluations.
-    """
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    wall_time_s: Positive | None = None
-    plateau_evaluations: Annotated[int, Field(ge=1)] | None = None
-    plateau_growth: Annotated[float, Field(ge=0.0, le=1.0)] = 0.001
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _File:
-    """Keys of a study file; its tables but ``stop``, the motors and the objectives are checked separately."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    name: Annotated[str, Field(min_length=1, max_length=200)]
-    description: Annotated[str, Field(max_length=2000)] = ""
-    case: Literal["A", "B", "C"] | None = None
-    motor: Any = None
-    hip_motor: Any = None
-    knee_motor: Any = None
-    calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
-    rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
-    evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
-    variables: dict[str, Any] = field(default_factory=dict)
-    objectives: Any = None
-    constraints: dict[str, Any] = field(default_factory=dict)
-    reference_point: dict[str, Any] = field(default_factory=dict)
-    stop: Stop = field(default_factory=Stop)
-    audit: bool = True
-    strength: bool = False  # of a stored study; a file without it takes the default of ``strength_for``
-    gear_list: bool = False  # of a stored study; a file without it searches the list
-    uncertainty: dict[str, Any] | None = None
-    algorithm: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -299,38 +237,6 @@ def load_study(
     return filled(values, source=f"study file {str(path)!r}")
 
 
-def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dict[str, Any]:
-    """The keys of a study file with other objectives; what its reference point says of others is left out."""
-    changed = dict(values) | {"objectives": list(objectives)}
-    if isinstance(corner := values.get("reference_point"), dict):
-        changed["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
-    return changed
-
-
-def file_values(path: Path) -> dict[str, Any]:
-    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved.
-
-    Raises:
-        StudyError: no readable TOML.
-    """
-    return with_paths(read_toml(path, what="study file", error=StudyError), path.parent)
-
-
-def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Keys of a study file with the files of motors and calibrations, named relative to ``folder``, as full paths."""
-
-    def resolved(name: Any) -> Any:
-        file = isinstance(name, str) and name.endswith(".toml")
-        return str((folder / name).resolve()) if file else name
-
-    changed = dict(values)
-    for key in (*MOTOR_KEYS, "calibration"):
-        if key in changed:
-            given = changed[key]
-            changed[key] = [resolved(name) for name in given] if isinstance(given, list) else resolved(given)
-    return changed
-
-
 def filled(values: dict[str, Any], *, source: str) -> Study:
     """The study of a file's keys, with the defaults of a file where they say nothing.
 
@@ -357,7 +263,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     Raises:
         StudyError: an unknown key, a wrong type, or impossible bounds.
     """
-    file = checked(_File, values, source=source, error=StudyError)
+    file = checked(StudyFile, values, source=source, error=StudyError)
     rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
     objectives = objectives_of(file.objectives, source=source)
     corner = corner_of(file.reference_point, objectives, source=source)
@@ -373,7 +279,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         rules=rules,
         evaluations=file.evaluations,
         seed=file.seed,
-        variables=_variables(file, source),
+        variables=variables_of(file.variables, file.case, source),
         objectives=objectives,
         constraints=constraints,
         reference_point=corner,
@@ -382,118 +288,5 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         strength=file.strength,
         gear_list=file.gear_list,
         uncertainty=None if table is None else sampling_of(table, source=source),
-        algorithm=_algorithm(file, corner, source),
+        algorithm=algorithm_of(file, corner, source),
     )
-
-
-def _algorithm(file: _File, corner: ReferencePoint, source: str) -> AlgorithmSettings:
-    table = file.algorithm
-    if not table:
-        return DEFAULT_ALGORITHM
-    name = table.get("name")
-    kind: type[AlgorithmSettings] | None = ALGORITHMS.get(name) if isinstance(name, str) else None
-    if isinstance(name, str) and name.startswith(OWN_ALGORITHM):
-        kind = OwnSettings
-    if kind is None:
-        raise StudyError(f"{source}: {unknown_name('algorithm.name', name, ALGORITHMS)}")
-    settings: AlgorithmSettings = checked(kind, table, source=f"{source}, table [algorithm]", error=StudyError)
-    if isinstance(settings, WeightedSettings):
-        for key, value in settings.start.items():
-            if key not in NAMES:
-                raise StudyError(f"{source}: {unknown_name('variable in algorithm.start', key, NAMES)}")
-            _number(f"{source}: algorithm.start.{key}", key, value)
-        _check_weighted(file, corner, source)
-    return settings
-
-
-def _check_weighted(file: _File, corner: ReferencePoint, source: str) -> None:
-    """Refuse what the weighted search cannot do: a choice of motor, three objectives, or a scale of zero."""
-    for key in MOTOR_KEYS:
-        if isinstance(named := getattr(file, key), list | tuple):
-            raise StudyError(
-                f"{source}: {key} = {list(named)}: weighted_cmaes searches with one motor, because a normal "
-                "distribution has no place for a choice; name one, or choose another algorithm"
-            )
-    if len(corner.values) != 2:
-        raise StudyError(
-            f"{source}: objectives: weighted_cmaes weighs two, {len(corner.values)} are named; drop one, or choose "
-            "another algorithm"
-        )
-    for name, value in corner.as_dict().items():
-        if value == 0.0 and corner.objectives != HEIGHT_AND_ENERGY:
-            raise StudyError(
-                f"{source}: reference_point.{name} = 0: weighted_cmaes divides {name} by it; give a number above 0"
-            )
-
-
-def _variables(file: _File, source: str) -> dict[str, Bounds | float]:
-    for name in file.variables:
-        if name not in NAMES:
-            raise StudyError(f"{source}: {unknown_name('variable', name, NAMES)}")
-    chosen: dict[str, Bounds | float] = {}
-    for variable in VARIABLES:
-        given = file.variables.get(variable.name)
-        if given is not None:
-            chosen[variable.name] = _variable(variable.name, given, source)
-        elif variable.default is not None:
-            chosen[variable.name] = variable.default
-        elif file.case is None or variable.name in PAPER_CASES[file.case].free:
-            chosen[variable.name] = Bounds(lower=variable.lower, upper=variable.upper)
-        else:
-            chosen[variable.name] = getattr(PAPER_CASES[file.case].design, variable.name)
-    if not any(isinstance(value, Bounds) for value in chosen.values()):
-        raise StudyError(f"{source}: variables: all are fixed, at least one must be free; give one bounds")
-    longest = sum(v.upper if isinstance(v, Bounds) else v for v in (chosen[name] for name in LENGTHS))
-    start = chosen["start_height_m"]
-    lowest = start.lower if isinstance(start, Bounds) else start
-    if longest <= lowest:
-        raise StudyError(
-            f"{source}: thigh_length_m + shank_length_m = {longest:g} at most: must exceed the start height of "
-            f"{lowest:g} m; allow longer links"
-        )
-    return chosen
-
-
-def _variable(name: str, given: Any, source: str) -> Bounds | float:
-    key = f"{source}: variables.{name}"
-    if isinstance(given, Mapping):
-        if set(given) != {"lower", "upper"}:
-            raise StudyError(f"{key} has the keys {sorted(map(str, given))}; must be lower and upper; correct them")
-        bounds = Bounds(
-            lower=_number(f"{key}.lower", name, given["lower"]), upper=_number(f"{key}.upper", name, given["upper"])
-        )
-        if bounds.lower >= bounds.upper:
-            raise StudyError(
-                f"{key}: lower = {bounds.lower:g}, upper = {bounds.upper:g}: lower must be below upper; "
-                "correct them, or fix the variable to a number"
-            )
-        return bounds
-    if not isinstance(given, int | float):
-        low, high = _limits(name)
-        allowed = f"a number from {low:g} to {high:g}, or a range such as {_range_example(name)}"
-        raise StudyError(complaint(key, given, allowed, "correct it"))
-    return _number(key, name, given)
-
-
-def _range_example(name: str) -> str:
-    bounds = next(variable for variable in VARIABLES if variable.name == name)
-    return f'{{"lower": {bounds.lower:g}, "upper": {bounds.upper:g}}}'
-
-
-_LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
-"""Unit -> allowed range. Values beyond it are typing errors; controller gains may be any number from 0."""
-_REST_LENGTHS_M = (0.5, 100.0)  # longer than any leg; a longer spring acts by its product with K alone
-
-
-def _limits(name: str) -> tuple[float, float]:
-    """Least and greatest value of a variable."""
-    unit = next(variable.unit for variable in VARIABLES if variable.name == name)
-    return _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
-
-
-def _number(key: str, name: str, given: Any) -> float:
-    low, high = _limits(name)
-    allowed = f"a number from {low:g} to {high:g}"
-    if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
-        raise StudyError(complaint(key, given, allowed, "correct it"))
-    return float(given)

@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.design import LENGTHS, RATIOS, VARIABLES
-from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.protocol import MOTOR_OF
 from pareto_monoped.study.reader import StudyData
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.measures import measure
 from pareto_monoped.study.algorithm_settings import WeightedSettings
-from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.goals import Limit
 from pareto_monoped.study.motor_choice import MotorCoordinates
 from pareto_monoped.study.reader import StudyData

@@ -12,7 +12,7 @@ from pareto_monoped.errors import InputError, SelectionError, complaint
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import nominal
 from pareto_monoped.study.coordinates import gear_list
-from pareto_monoped.study.definition import Bounds
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import strict_json
 from pareto_monoped.study.reader import StudyData, read_study

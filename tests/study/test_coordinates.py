@@ -13,7 +13,8 @@ from pareto_monoped.design import NAMES, RULE_SETS
 from pareto_monoped.errors import StudyError
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.coordinates import coordinates_of, gear_list, plain_coordinates
-from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
+from pareto_monoped.study.definition import load_study, study_from_dict
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.protocol import Scores
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run

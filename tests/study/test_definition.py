@@ -8,7 +8,8 @@ from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
 from pareto_monoped.errors import StudyError
 from pareto_monoped.jump import calibration_defaults
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
-from pareto_monoped.study.definition import Bounds, load_study, study_from_dict
+from pareto_monoped.study.definition import load_study, study_from_dict
+from pareto_monoped.study.free_variables import Bounds
 from tests.study.support import assert_refused
 from tests.study.support import study_of as made
 

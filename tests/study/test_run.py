@@ -19,13 +19,15 @@ from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
-from pareto_monoped.study.definition import Bounds, Stop, study_from_dict
+from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.goals import constraints_of
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
 from pareto_monoped.study.status import status
 from pareto_monoped.study.store import Store
+from pareto_monoped.study.study_file import Stop
 from tests.study.support import UNSEALED, change
 
 ROOT = Path(__file__).parents[2]
