@@ -100,7 +100,10 @@ class DaskWorkers:
         """A new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
         found: Future[Client] = Future()
         threading.Thread(target=self._connect, args=(found,), name="connecting", daemon=True).start()
-        return found.result(_CONNECT_S + _ANSWER_S)
+        try:
+            return found.result(_CONNECT_S + _ANSWER_S)
+        finally:
+            found.cancel()  # a connection that comes too late is nobody's
 
     def _connect(self, found: "Future[Client]") -> None:
         import dask
@@ -108,15 +111,22 @@ class DaskWorkers:
 
         try:
             with dask.config.set({"distributed.comm.retry.count": 3, "distributed.comm.timeouts.connect": "10s"}):
-                found.set_result(Client(self._address, timeout=_CONNECT_S, set_as_default=False))
+                client = Client(self._address, timeout=_CONNECT_S, set_as_default=False)
         except Exception as problem:  # raised again where somebody waits for it
-            found.set_exception(problem)
+            if found.set_running_or_notify_cancel():
+                found.set_exception(problem)
+            return
+        if found.set_running_or_notify_cancel():
+            found.set_result(client)
+        else:
+            client.close(timeout=_NEWS_S)
 
     def _listen(self) -> None:
         heard_s = time.monotonic()
         while not self._closed.wait(_NEWS_S):
             try:
                 if self._client.status == "closed":
+                    self._members = {}  # their executors are of the connection that is no more
                     self._client = self._connected()
                 threads: Mapping[str, int] = self._client.sync(
                     self._client.scheduler.ncores, callback_timeout=_ANSWER_S

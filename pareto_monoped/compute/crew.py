@@ -97,7 +97,8 @@ class Crew(Executor):
         self._alone_since_s: float | None = None
         self._said_alone = False
         self._news: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._ended = threading.Event()
+        self._door = threading.Lock()
+        self._closed = self._ended = False
         self._thread = threading.Thread(target=self._work, name="crew", daemon=True)
         self._thread.start()
 
@@ -105,37 +106,44 @@ class Crew(Executor):
         """Have a task done; see ``concurrent.futures.Executor``. Named arguments are not taken."""
         if named:
             raise TypeError("tasks of a crew take positional arguments only")
-        if self._ended.is_set():
-            raise RuntimeError("cannot schedule new futures after shutdown")
         task = _Task(function, arguments, Future())
-        self._news.put(lambda: self._waiting.append(task))
+        with self._door:
+            if self._closed:
+                raise RuntimeError("cannot schedule new futures after shutdown")
+            self._news.put(lambda: self._waiting.append(task))
         return task.future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Let the workers go; tasks that have no result yet are cancelled."""
-        self._ended.set()
+        with self._door:
+            self._closed = True
+        # Behind the last task in the queue, so that each task is known when what is open is called off.
+        self._news.put(self._end)
         if self._thread is not threading.current_thread():
             self._thread.join()
-        for task in self._open():
-            if not task.future.cancel():
-                task.future.set_exception(CancelledError())
         self._staff.close()
 
     # Everything below runs in the crew's thread.
 
+    def _end(self) -> None:
+        self._ended = True
+
     def _work(self) -> None:
-        while not self._ended.is_set():
-            with suppress(queue.Empty):
-                self._news.get(timeout=_TICK_S)()
-                while True:
-                    self._news.get_nowait()()
+        while not self._ended:
             try:
+                with suppress(queue.Empty):
+                    self._news.get(timeout=_TICK_S)()
+                    while not self._ended:
+                        self._news.get_nowait()()
                 self._meet()
                 self._watch()
                 self._give()
                 self._give_up_alone()
             except Exception as problem:  # a fault of ours must not leave callers waiting forever
                 self._fail(problem)
+        for task in self._open():
+            if not task.future.cancel():
+                task.future.set_exception(CancelledError())
 
     def _meet(self) -> None:
         """Greet who has come, and take back the tasks of who has gone."""
@@ -155,8 +163,14 @@ class Crew(Executor):
     def _greeted(self, name: str, answer: "Future[Any]") -> None:
         if (post := self._posts.get(name)) is None or answer.cancelled():
             return
-        problem = answer.exception()
-        text = f"{type(problem).__name__}: {problem}" if problem is not None else self._check(answer.result())
+        problem, text = answer.exception(), None
+        if problem is None:
+            try:
+                text = self._check(answer.result())
+            except Exception as error:  # the answer of another version may have another form
+                problem = error
+        if problem is not None:
+            text = f"{type(problem).__name__}: {problem}"
         if text is None:
             post.accepted, self._stillborn = True, 0
             return
@@ -206,8 +220,8 @@ class Crew(Executor):
     def _lose(self, name: str, how: str, *, say: bool = True) -> None:
         """Take back what a worker was given, and forget the worker; if it is still there, it is greeted anew."""
         post = self._posts.pop(name)
-        self._staff.dismiss(name)
         self._take_back(post)
+        self._staff.dismiss(name)
         if not post.accepted:
             self._stillborn += self._staff.replaces
         elif say:

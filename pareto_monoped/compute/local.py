@@ -7,7 +7,6 @@ import threading
 from collections.abc import Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
 from multiprocessing.connection import wait
 
 from pareto_monoped.compute.staff import Member
@@ -69,8 +68,10 @@ class LocalProcesses:
         pool, process, _ = self._pools.pop(name)
         # It keeps nothing, so nobody waits for it.
         if process.done() and process.exception() is None:
-            with suppress(ProcessLookupError):
-                os.kill(process.result(), signal.SIGKILL)
+            # By way of our children: the number of a process that has ended may be another program's by now.
+            for child in multiprocessing.active_children():
+                if child.pid == process.result():
+                    child.kill()
         pool.shutdown(wait=False, cancel_futures=True)
 
 
