@@ -1,6 +1,8 @@
 """Work cut into chunks: whatever the cuts and the order of the answers, every row counts once and in its place."""
 
+import gc
 import time
+import weakref
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 
 import numpy as np
@@ -92,6 +94,54 @@ def test_the_first_task_is_small_and_shows_the_pace():
         spread(pool, pace, 1000, slow, lambda rows: [values[rows]])
     assert sizes[0] == 64
     assert sum(sizes) == 1000
+
+
+class Noting(Pace):
+    def __init__(self):
+        super().__init__()
+        self.noted = []
+
+    def note(self, rows, seconds):
+        self.noted.append((rows, seconds))
+        super().note(rows, seconds)
+
+
+def test_the_pace_is_told_how_many_rows_took_how_long():
+    def slow(first, count):
+        time.sleep(0.001 * count)
+        return first
+
+    pace, began_s = Noting(), time.perf_counter()
+    with ThreadPoolExecutor(1) as pool:
+        spread(pool, pace, 500, slow, lambda rows: (rows.start, rows.stop - rows.start))
+    taken_s = time.perf_counter() - began_s
+    assert sum(rows for rows, _ in pace.noted) == 500
+    assert all(seconds >= 0.001 * rows for rows, seconds in pace.noted)
+    assert sum(seconds for _, seconds in pace.noted) <= taken_s
+
+
+def test_one_slow_task_does_not_decide_and_old_ones_are_forgotten():
+    def cuts(*row_seconds):
+        pace = Pace()
+        for seconds in row_seconds:
+            pace.note(10, 10 * seconds)
+        return pace.cuts(0, 10_000)
+
+    usual = cuts(0.001)
+    assert len(usual) == 41
+    assert cuts(*[0.001] * 4, 9.0, *[0.001] * 4) == usual
+    assert cuts(*[0.001] * 8, 9.0) == usual
+    assert cuts(*[9.0] * 50, *[0.001] * 9) == usual
+
+
+def test_no_executor_is_kept_for_its_pace():
+    pool = ThreadPoolExecutor(1)
+    pace_of(pool, double, "a")
+    pool.shutdown()
+    kept = weakref.ref(pool)
+    del pool
+    gc.collect()
+    assert kept() is None
 
 
 def test_the_pace_of_some_work_is_remembered_by_executor_and_by_work():
