@@ -39,10 +39,18 @@ class DaskHere:
         with socket.socket() as tried:
             return tried.connect_ex(("127.0.0.1", self.port)) == 0
 
-    def add(self, *, package=ROOT, address=None):
-        """One more worker, a single process with one thread, which imports the package from a folder."""
-        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", "--local-directory", str(self.folder))
-        return self._start("worker", address or self.address, *options, package=package)
+    def add(self, *, package=ROOT, threads=1):
+        """One more worker, a single process, which imports the package from a folder."""
+        options = (
+            "--nthreads",
+            str(threads),
+            "--no-nanny",
+            "--host",
+            "127.0.0.1",
+            "--local-directory",
+            str(self.folder),
+        )
+        return self._start("worker", self.address, *options, package=package)
 
     def _start(self, program, *options, package=ROOT):
         command = [sys.executable, "-m", f"distributed.cli.dask_{program}", *options, "--no-dashboard"]

@@ -54,3 +54,13 @@ def slow_once(flag, seconds):
         time.sleep(seconds)
         return "slow"
     return "fast"
+
+
+def meets(folder, own, other):
+    """Waits for another task that waits for this one."""
+    Path(folder, own).touch()
+    for _ in range(600):
+        if Path(folder, other).exists():
+            return own, os.getpid()
+        time.sleep(0.1)
+    raise TimeoutError(f"{other} has not come")

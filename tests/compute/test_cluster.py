@@ -2,7 +2,9 @@
 
 import shutil
 import signal
+import socket
 import threading
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -66,6 +68,26 @@ def test_no_scheduler_at_the_address(monkeypatch):
     monkeypatch.setattr("pareto_monoped.compute.cluster._CONNECT_S", 1.0)
     with pytest.raises(WorkerError, match=r"^scheduler 127.0.0.1:\d+: does not answer within 1 s .*dask scheduler$"):
         DaskWorkers(f"127.0.0.1:{free_port()}")
+
+
+def test_who_accepts_a_connection_and_stays_silent_is_no_scheduler(monkeypatch):
+    for name, seconds in (("_CONNECT_S", 1.0), ("_ANSWER_S", 1.0)):
+        monkeypatch.setattr(f"pareto_monoped.compute.cluster.{name}", seconds)
+    began_s = time.monotonic()
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(WorkerError, match=rf"^scheduler {address}: does not answer within 1 s"):
+            DaskWorkers(address)
+    assert time.monotonic() - began_s < 60.0
+
+
+def test_a_worker_with_two_threads_has_two_tasks_at_a_time(tmp_path):
+    with DaskHere(tmp_path) as dask:
+        dask.workers.append(dask.add(threads=2))
+        with crew(dask.address) as (made, _):
+            tasks_of_two = [made.submit(tasks.meets, str(tmp_path), own, other) for own, other in ("ab", "ba")]
+            assert numbers(tasks_of_two) == ["a", "b"]
+            assert [post.member.slots for post in made._posts.values()] == [2]
 
 
 @pytest.mark.long

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
@@ -13,6 +15,7 @@ from pareto_monoped.compute.local import LocalProcesses
 from pareto_monoped.compute.staff import Limits
 from pareto_monoped.errors import WorkerError
 from tests.compute import tasks
+from tests.compute.dask_here import ROOT, until
 
 
 @contextmanager
@@ -144,3 +147,68 @@ def test_ctrl_c_is_for_the_parent_alone(sound):
     process = sound.submit(tasks.short, 1).result(timeout=60)[1]
     os.kill(process, signal.SIGINT)
     assert sound.submit(tasks.square, 4).result(timeout=60) == 16
+
+
+SCRIPT = """
+from pareto_monoped.compute.crew import Crew
+from pareto_monoped.compute.local import LocalProcesses
+from tests.compute import tasks
+
+def work():
+    crew = Crew(LocalProcesses(1, 1), greeting=tasks.greeting, check=lambda _: None)
+    try:
+        print(crew.submit(tasks.short, 1).result()[1], flush=True)
+        input()
+    finally:
+        crew.shutdown()
+
+"""
+
+
+@contextmanager
+def script(folder, last_lines):
+    """A program of its own that has a crew of one process."""
+    file = folder / "script.py"
+    file.write_text(SCRIPT + last_lines)
+    program = subprocess.Popen(
+        [sys.executable, str(file)],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    with program:
+        try:
+            yield program
+        finally:
+            program.kill()
+
+
+def ended(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+def test_processes_end_with_a_parent_that_is_killed(tmp_path):
+    with script(tmp_path, 'if __name__ == "__main__":\n    work()\n') as program:
+        process = int(program.stdout.readline())
+        assert not ended(process)
+        program.kill()
+        until(lambda: ended(process), 60)
+
+
+def test_a_script_without_a_guard_is_told_what_it_lacks(tmp_path):
+    """Each of its processes begins the whole script again, and ends with an error."""
+    with script(tmp_path, "work()\n") as program:
+        out, err = program.communicate(timeout=120)
+    assert (program.returncode, out) == (1, "")
+    words = (
+        "WorkerError: 1 processes: 6 ended before they did anything; call it from a file that starts its work under "
+        "\"if __name__ == '__main__'\""
+    )
+    # Among what the processes say of themselves.
+    assert any(words in line for line in err.splitlines())
