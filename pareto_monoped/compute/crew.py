@@ -219,13 +219,14 @@ class Crew(Executor):
 
     def _lose(self, name: str, how: str, *, say: bool = True) -> None:
         """Take back what a worker was given, and forget the worker; if it is still there, it is greeted anew."""
-        post = self._posts.pop(name)
-        self._take_back(post)
-        self._staff.dismiss(name)
+        post = self._posts[name]
         if not post.accepted:
             self._stillborn += self._staff.replaces
         elif say:
             self._tell(f"{name} {how}; its work goes elsewhere")
+        del self._posts[name]
+        self._take_back(post)
+        self._staff.dismiss(name)
 
     def _take_back(self, post: _Post) -> None:
         given, post.given = post.given, deque()

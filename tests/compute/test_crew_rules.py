@@ -101,11 +101,17 @@ def test_two_answers_to_a_task_are_one_result():
     with crew(StaffHere(workers)) as (made, told):
         late = made.submit(slow)
         until(lambda: all(worker.kept for worker in workers.values()), 30)
-        for worker in workers.values():
-            worker.tell()
+        workers["one"].tell()
         assert late.result(timeout=30) == "slow"
         # The crew fails what is open if the second answer upsets it.
-        assert [made.submit(plain).result(timeout=30) for _ in range(9)] == ["plain"] * 9
+        others = [made.submit(slow) for _ in range(4)]
+        until(lambda: len(workers["one"].kept) == 2, 30)
+        workers["two"].tell()
+        assert made.submit(plain).result(timeout=30) == "plain"
+        while not all(other.done() for other in others):
+            for worker in workers.values():
+                worker.tell()
+        assert [other.result() for other in others] == ["slow"] * 4
     assert told == []
 
 
@@ -119,6 +125,17 @@ def test_a_late_task_is_given_to_one_more_worker_only():
         for worker in workers.values():
             worker.tell()
         assert late.result(timeout=30) == "slow"
+
+
+def test_each_task_goes_to_who_has_least_to_do():
+    workers = {name: Worker(later=(slow,)) for name in ("one", "two", "three")}
+    with crew(StaffHere(workers)) as (made, _):
+        until(lambda: len(made._able()) == 3, 30)
+        for count in (1, 2):
+            for _ in workers:
+                made.submit(slow)
+            until(lambda wanted=3 * count: sum(len(worker.kept) for worker in workers.values()) == wanted, 30)
+            assert [len(worker.kept) for worker in workers.values()] == [count] * 3
 
 
 def test_a_worker_with_more_slots_has_more_tasks_at_a_time():
@@ -191,6 +208,23 @@ def test_a_staff_that_cannot_replace_a_worker_fails_the_tasks_rather_than_the_cr
         with pytest.raises(OSError, match="no more processes"):
             made.submit(slow).result(timeout=30)
         assert made.submit(plain).result(timeout=30) == "plain"
+
+
+def test_a_line_that_cannot_be_told_fails_the_tasks_rather_than_the_crew():
+    lines = []
+
+    def tell(line):
+        lines.append(line)
+        raise OSError("no terminal")
+
+    made = Crew(
+        StaffHere({"one": Worker(lost=(slow,))}, replaces=True), greeting=hello, check=lambda _: None, tell=tell
+    )
+    with pytest.raises(OSError, match="no terminal"):
+        made.submit(slow).result(timeout=30)
+    assert made.submit(plain).result(timeout=30) == "plain"
+    made.shutdown()
+    assert lines == ["one was lost; its work goes elsewhere"]
 
 
 def test_a_task_that_comes_just_before_the_end_is_called_off():

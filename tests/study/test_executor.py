@@ -4,6 +4,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 
 import pytest
 
+from pareto_monoped.jump import audit, screen, shared
 from pareto_monoped.jump.peers import cluster, processes
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robustness import robust
@@ -16,25 +17,41 @@ from tests.study.support import study_of
 UNCERTAINTY = load_uncertainty()
 TRIALS = 80
 STUDY = study_of(name="s", evaluations=TRIALS, algorithm={"name": "nsga2", "population": 40}, rules="iso6336")
-"""Small, with an audit at its end, of which at least one design is not clear after the screen."""
+"""Small, with an audit at its end."""
 
 
 def whole(db, executor=None):
-    """The study, begun, continued to its end and made robust."""
+    """The study, begun, continued to its end and made robust: the executor is asked each time."""
+    before = 0
+    for step in (_begin, _continue, _make_robust):
+        step(db, executor)
+        if isinstance(executor, Counting):
+            assert executor.tasks > before, step
+            before = executor.tasks
+
+
+def _begin(db, executor):
     run(STUDY, db, workers=2, evaluations=30, executor=executor)
+
+
+def _continue(db, executor):
     resume(db, workers=2, evaluations=TRIALS, executor=executor)
+
+
+def _make_robust(db, executor):
     front = read_study(db).front()["trial"].tolist()
     robust(db, UNCERTAINTY, trials=front[:2], workers=2, executor=executor)
 
 
 class Counting(Executor):
-    """Counts what it hands on."""
+    """Counts what it hands on, and knows which functions they are."""
 
     def __init__(self, inner):
-        self.inner, self.tasks = inner, 0
+        self.inner, self.tasks, self.functions = inner, 0, set()
 
     def submit(self, *arguments):
         self.tasks += 1
+        self.functions.add(arguments[1])
         return self.inner.submit(*arguments)
 
 
@@ -58,7 +75,19 @@ def test_on_an_executor_of_threads(on_threads, tmp_path):
         counting = Counting(pool)
         whole(tmp_path / "s.db", counting)
     assert counting.tasks > 6
+    assert counting.functions == {shared.jumps_of, screen._screened_of}
     assert_same_study(on_threads, tmp_path / "s.db")
+
+
+def test_audits_after_the_screen_are_done_by_the_executor(tmp_path):
+    """Under the paper's calibration the screen clears no design."""
+    study = study_of(name="s", evaluations=40, algorithm={"name": "nsga2", "population": 20}, calibration="paper")
+    run(study, tmp_path / "threads.db", workers=2)
+    with ThreadPoolExecutor(2) as pool:
+        counting = Counting(pool)
+        run(study, tmp_path / "s.db", workers=2, executor=counting)
+    assert counting.functions == {shared.jumps_of, screen._screened_of, audit._balances_of}
+    assert_same_study(tmp_path / "threads.db", tmp_path / "s.db")
 
 
 @pytest.mark.long
