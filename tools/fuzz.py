@@ -5,7 +5,7 @@ one process that has imported everything, some in a fresh interpreter. A call mu
 without a traceback or warning, and with one line that says why; it must neither hang, nor leave temporary or
 half-written files, nor change a file that it was not told to write, nor any study that it does not continue.
 
-    python tools/fuzz.py --calls 10000 --seed 1 [--mount] [--only N] [--keep DIR]
+    python tools/fuzz.py --calls 10000 --seed 1 [--mount] [--only N] [--keep DIR] [--command NAME]
 """
 
 import argparse
@@ -33,7 +33,7 @@ from typing import Any
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # no thread may run when a call is forked
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from fuzz_calls import Call, call_of
+from fuzz_calls import WEIGHTS, Call, call_of
 from fuzz_checks import Result, findings, snapshot
 
 ROOT = Path(__file__).parents[1]
@@ -75,6 +75,20 @@ name = "random"
 population = 10
 """
 
+CAMPAIGN = """\
+name = "grid"
+
+[study]
+evaluations = 20
+audit = false
+stop = { wall_time_s = 20.0 }
+algorithm = { name = "nsga2", population = 10 }
+
+[axes]
+motors = ["VT8020", "m.toml"]
+seeds = [1]
+"""
+
 
 def basis(folder: Path) -> None:
     """Files that every call finds; made by the package itself, so that all of it is imported when calls are forked."""
@@ -82,6 +96,7 @@ def basis(folder: Path) -> None:
 
     folder.mkdir()
     (folder / "study.toml").write_text(STUDY)
+    (folder / "grid.toml").write_text(CAMPAIGN)
     for name, source in {"old.db": "plain.db", "own.db": "own_files.db", "m.toml": "my_motor.toml"}.items():
         shutil.copy(STORED / source, folder / name)
     shutil.copy(STORED / "my_calibration.toml", folder / "cal.toml")
@@ -100,7 +115,7 @@ def basis(folder: Path) -> None:
         ["run", study, "--db", db, "--workers", "1"], ["report", db, "-o", warm / "r.html", "--figures", warm],
         ["table1"], ["actuators", "--figure", warm / "a.svg"], ["actuators", "--rules", "paper"], ["verify", db],
         ["pick", db, "--knee", "--alternatives", "2"], ["robust", db, "--trial", "0", "--samples", "64"],
-        ["status", db],
+        ["status", db], ["trials", db], ["campaign", folder / "grid.toml", "--status", "--report", warm / "c.html"],
         ["robust", folder / "own.db", "--trial", "0", "--samples", "64"], ["front", folder / "own.db"],
     ):  # fmt: skip
         with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
@@ -244,7 +259,7 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
     from pareto_monoped.cli import cli
 
     dice = random.Random(f"{seed}:{number}")
-    call = call_of(dice, cli)
+    call = call_of(dice, cli, given.command)
     for name in given.without:
         call.options.pop(name, None)
     disk = place.parent / "disk"
@@ -287,6 +302,7 @@ def main() -> int:
     parser.add_argument("--only", type=int, help="make this call alone")
     parser.add_argument("--keep", type=Path, help="keep the folders of calls that went wrong")
     parser.add_argument("--without", action="append", default=[], help="an option of calls, such as signal")
+    parser.add_argument("--command", action="append", default=[], choices=WEIGHTS, help="call this one and no other")
     parser.add_argument("--mount", action="store_true", help="also calls on a full disk; needs root")
     given = parser.parse_args()
     print(f"seed {given.seed}", flush=True)

@@ -1,7 +1,7 @@
 """Random calls of the command line for ``fuzz.py``: words, files that are damaged before, environment, limits."""
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,11 +27,15 @@ MOTORS = ("VT8020", "vt8020", "U8", "m.toml", "no.toml", "VT", "", ".", "/dev/ze
 CALIBRATIONS = (
     "reference", "paper", "ideal", "reference-1", "cal.toml", "no.toml", "", "../x", "/dev/zero", "loop.toml",
 )  # fmt: skip
-OUTPUT_NAMES = ("csv_file", "output", "trace", "model", "figure_file", "figures")
+PROCESSES = ("1", "2", "0", "-1", "x", "1e400", "999")
+SCHEDULERS = ("tcp://127.0.0.1:1", "127.0.0.1", "tcp://", "http://x:1", "tcp://127.0.0.1:99999", "", "nonsense", EVIL)
+"""Addresses at which no scheduler answers."""
+OUTPUT_NAMES = ("csv_file", "output", "trace", "model", "figure_file", "figures", "page", "table")
 """Parameters of commands that name an output."""
 WEIGHTS = {
     "status": 12, "front": 14, "pick": 14, "verify": 8, "repair": 5, "robust": 4, "report": 3, "run": 9, "resume": 8,
     "simulate": 8, "actuators": 7, "table1": 1, "export": 6, "pareto": 4, "nonsense": 2, "sensitivity": 2, "init": 2,
+    "campaign": 6, "trials": 6, "dashboard": 2,
 }  # fmt: skip
 
 
@@ -52,9 +56,10 @@ class Call:
     options: dict[str, object] = field(default_factory=dict)
 
 
-def call_of(dice: random.Random, commands: click.Group) -> Call:
-    """A random call."""
-    command = dice.choices(list(WEIGHTS), list(WEIGHTS.values()))[0]
+def call_of(dice: random.Random, commands: click.Group, names: Collection[str] = ()) -> Call:
+    """A random call, of one of the commands of these names if there are any."""
+    weights = {name: weight for name, weight in WEIGHTS.items() if not names or name in names}
+    command = dice.choices(list(weights), list(weights.values()))[0]
     call = Call([command, *_words(dice, command, commands)])
     if dice.random() < 0.6:
         call.harm = [harm(dice) for _ in range(dice.choice((1, 1, 1, 2, 3)))]
@@ -64,6 +69,12 @@ def call_of(dice: random.Random, commands: click.Group) -> Call:
     for name, odd in OPTIONS.items():
         if dice.random() < (0.01 if name == "fresh" else 0.04):
             call.options[name] = odd(dice)
+    if command == "campaign" or "--processes" in call.words:  # in a fork, handlers at the end come in another order
+        call.options["fresh"] = True
+    if command == "campaign" or "--processes" in call.words:  # in a fork, handlers at the end come in another order
+        call.options["fresh"] = True
+    if command == "dashboard":  # which ends in no other way where it is installed
+        call.options["signal"] = ("SIGINT", 1.0)
     return call
 
 
@@ -126,7 +137,7 @@ LIMITED = {"evaluations": ("20", "30", "5", "0", "x"), "samples": ("64", "0", "6
 def _argument(dice: random.Random, command: str) -> str:
     if command == "pareto":  # a whole one makes an export, which takes a minute
         return dice.choice(("no.toml", "notes.txt", *ODD_PATHS, "m.toml"))
-    good = ("study.toml",) if command == "run" else STUDIES
+    good = {"run": ("study.toml",), "campaign": ("grid.toml",)}.get(command, STUDIES)
     return dice.choice(good) if dice.random() < 0.85 else dice.choice((*ODD_PATHS, *TEXTS, *STUDIES, "notes.txt"))
 
 
@@ -139,6 +150,9 @@ def _option(dice: random.Random, option: click.Option, command: str) -> list[str
     if name in OUTPUT_NAMES:
         # An export that begins takes a minute: its folder is one that it refuses.
         return [flag, dice.choice(("busy", "notes.txt", "s.db", "/proc/x") if command == "export" else OUTPUTS)]
+    if name in ("processes", "scheduler"):  # each takes seconds to start or to fail
+        odd = PROCESSES if name == "processes" else SCHEDULERS
+        return [flag, dice.choice(odd)] if dice.random() < 0.5 else []
     if name == "db":
         return [flag, dice.choice((*STUDIES, "new.db", "notes.txt", *ODD_PATHS))]
     if isinstance(option.type, click.Choice):

@@ -18,7 +18,7 @@ Snapshot = dict[str, tuple[str, str]]
 """Path of each file -> kind and digest of its content."""
 Result = tuple[int | None, str, str]
 """Exit code, None for a call that hangs; output; messages."""
-WRITERS = {"run", "resume", "robust", "repair", "pareto"}
+WRITERS = {"run", "resume", "robust", "repair", "pareto", "campaign"}
 """Commands that continue a study."""
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u2028\u2029]")
 _STYLE = re.compile("\x1b\\[[0-9;]*m")
@@ -68,7 +68,7 @@ def findings(call: Call, folder: Path, before: Snapshot, result: Result) -> Iter
     if code == 0 and "--json" in call.words and "--help" not in call.words and not {"stdout", "signal"} & set(options):
         with contextlib.suppress(IndexError):
             try:
-                for text in out.splitlines() if call.words[0] in ("run", "resume") else [out]:
+                for text in out.splitlines() if call.words[0] in ("run", "resume", "campaign") else [out]:
                     json.loads(text, parse_constant=lambda name: 1 / 0)
             except (ValueError, ZeroDivisionError):
                 if call.environment.get("PYTHONIOENCODING") != "utf-16":

@@ -10,7 +10,7 @@ from typing import Any
 
 STUDIES = ("s.db", "old.db", "own.db")
 """Studies in every folder: of today's format, of version 0.1.0, and of that with files of the user's own."""
-TEXTS = ("study.toml", "m.toml", "cal.toml", "unc.toml", "design.json")
+TEXTS = ("study.toml", "grid.toml", "m.toml", "cal.toml", "unc.toml", "design.json")
 EVIL = "e\u001b[31m\u202e\n[/]"
 WEIRD = (
     "nan", "-inf", "1e400", "-1", "10" * 20, '""', "[]", "{}", "true", "1979-05-27", '"\\u001b[2J"', "[" * 2000,

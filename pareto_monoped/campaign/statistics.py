@@ -134,15 +134,14 @@ def growth(group: Group) -> tuple[Floats, Floats]:
     if not histories:
         return np.zeros(0), np.zeros((3, 0))
     last = max(float(history[-1, 0]) for history in histories)
-    first = max(float(history[0, 0]) for history in histories)
-    at = np.unique(np.linspace(min(first, last), last, POINTS).round())
+    first = max(float(history[0, 0]) for history in histories)  # from there on all of them have a value
+    at = np.unique(np.linspace(first, last, POINTS).round())
     return at, quantiles(np.stack([_held(history, at) for history in histories]))
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The latest value at each number of evaluations, 0 before the first."""
-    place = np.searchsorted(history[:, 0], at, side="right") - 1
-    return np.where(place >= 0, history[np.maximum(place, 0), 1], 0.0)
+    """The latest value at each number of evaluations, none of them before the first."""
+    return np.asarray(history[np.searchsorted(history[:, 0], at, side="right") - 1, 1])
 
 
 def relative(section: Section) -> dict[str, float]:

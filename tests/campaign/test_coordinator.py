@@ -35,6 +35,7 @@ def test_equal_to_studies_run_alone_also_with_other_shares_and_after_being_stopp
         several, cores=2, changed=lambda one: seen.append((one.name, one.threads)), notify=lambda _: None
     )
     assert set(states(several).values()) == {"finished"}
+    assert seen[0] == ("jumps240", 1)  # the longest begins first
     threads = {name: {count for other, count in seen if other == name} - {0} for name, _ in seen}
     assert threads == {"jumps20": {1}, "jumps240": {1, 2}}
     for one in several:

@@ -2,12 +2,15 @@
 
 import os
 import shutil
+from dataclasses import replace
 
 import pytest
 
-from pareto_monoped.campaign.folder import held, places_of, stored_state, strangers
+from pareto_monoped.campaign.folder import held, is_ended, places_of, stored_state, strangers
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.errors import DatabaseError, StudyError
+from pareto_monoped.study.lock import locked
+from pareto_monoped.study.store import Store
 from tests.campaign.test_grid import written
 from tests.study.support import made_database
 
@@ -86,6 +89,40 @@ def test_a_database_that_cannot_be_read_fails_alone(tmp_path):
     first, second = (stored_state(place) for place in places_of(campaign, folder))
     assert (first.state, second.state) == ("failed", "unfinished")
     assert "seed1.db" in first.reason
+
+
+def test_a_study_that_another_program_holds_is_running(tmp_path):
+    folder, campaign = tmp_path / "grid", load_campaign(written(tmp_path, "seeds = [1, 2]"))
+    begun(campaign, folder)
+    with locked(folder / "seed1.db"):
+        assert [stored_state(place).state for place in places_of(campaign, folder)] == ["running", "unfinished"]
+
+
+def test_a_finished_study_that_shall_have_more_jumps_is_unfinished(tmp_path):
+    """One that stopped because it found nothing better stays finished, but is not ended as its file says today."""
+    head = 'name = "grid"\n[study]\nevaluations = 100\nstrength = false\n'
+    campaign = load_campaign(written(tmp_path, "seeds = [1, 2]", head))
+    begun(campaign, tmp_path / "grid")
+    places = places_of(campaign, tmp_path / "grid")
+    done = stored_state(places[0]).evaluations
+    small = [replace(place, study=replace(place.study, evaluations=done)) for place in places]
+    for place, reason in zip(small, ("budget", "plateau"), strict=True):
+        with Store(place.db, place.study) as store:
+            store.set_meta({"study": place.study.as_dict(), "finished": True, "stop_reason": reason})
+    assert [stored_state(place).state for place in small] == ["finished", "finished"]
+    assert [is_ended(place, stored_state(place)) for place in small] == [True, True]
+    assert [stored_state(place).state for place in places] == ["unfinished", "finished"]
+    assert [is_ended(place, stored_state(place)) for place in places] == [False, False]
+
+
+def test_a_finished_study_with_a_motor_of_a_file_is_run_again_to_see_whether_it_has_changed(tmp_path):
+    campaign = load_campaign(written(tmp_path, 'motors = ["mine.toml", "U8"]'))
+    begun(campaign, tmp_path / "grid")
+    places = places_of(campaign, tmp_path / "grid")
+    for place in places:
+        with Store(place.db, place.study) as store:
+            store.set_meta({"study": place.study.as_dict(), "finished": True, "stop_reason": "plateau"})
+    assert [is_ended(place, stored_state(place)) for place in places_of(campaign, tmp_path / "grid")] == [False, True]
 
 
 def test_one_coordinator_at_a_time(tmp_path):

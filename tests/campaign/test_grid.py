@@ -106,6 +106,13 @@ def test_a_file_that_is_wrong_elsewhere_is_refused(tmp_path, head, words):
         assert word in str(caught.value)
 
 
+def test_names_that_are_alike_only_together_are_refused(tmp_path):
+    """The values of each axis have different names."""
+    axes = 'motors = ["a_b.toml", "a.toml"]\ncalibrations = ["c.toml", "b_c.toml"]'
+    with pytest.raises(StudyError, match="2 studies would be named 'a_b_c'; rename one of the files"):
+        load_campaign(written(tmp_path, axes))
+
+
 def test_too_many_studies_are_counted_and_refused_before_any_is_made(tmp_path):
     seeds = list(range(400_000 // 3))
     with pytest.raises(StudyError, match=f"make 266666 studies .2 motors x 133333 seeds.: must be {MOST_STUDIES} at"):

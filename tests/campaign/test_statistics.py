@@ -65,12 +65,23 @@ def test_attainment_is_what_runs_need_for_each_height(tmp_path):
 
 def test_more_is_better_of_a_second_objective_that_is_maximised(tmp_path):
     """The band then begins at the run with the most."""
+    axes = 'objectives = [["height_m", "sustained_jumps_per_minute"]]\nseeds = [1, 2, 3]'
+    campaign, results = made_campaign(tmp_path, axes, lambda *_: ([0.8], [9.0]))
+    fronts = [[[0.7, 10.0 * k], [0.9, 5.0 * k]] for k in (1, 2, 3)]
+    results = [replace(result, front=np.array(front)) for result, front in zip(results, fronts, strict=True)]
+    (section,) = sections_of(results, campaign.axes)
+    found = attainment(section.groups[0], np.array([0.7, 0.8, 0.9, 0.95]))
+    np.testing.assert_array_equal(found[:, :3], [[20.0, 10.0, 10.0], [30.0, 15.0, 15.0], [10.0, 5.0, 5.0]])
+    assert np.isnan(found[:, 3]).all()
+
+
+def test_the_height_comes_first_wherever_it_is_an_objective(tmp_path):
     head = 'name = "made"\n[study]\nevaluations = 40\nstrength = false\n'
     axes = 'objectives = [["energy_j", "height_m"]]\nseeds = [1, 2, 3]'
     campaign, results = made_campaign(tmp_path, axes, lambda number, _: ([0.7 + 0.1 * number], [10.0]), head)
     (section,) = sections_of(results, campaign.axes)
     assert [result.most for result in results] == pytest.approx([0.7, 0.8, 0.9])
-    # The height comes first wherever it is an objective, so the energy is what each height costs.
+    # The energy is what each height costs.
     assert attainment(section.groups[0], np.array([0.65]))[:, 0].tolist() == [10.0, 10.0, 10.0]
 
 

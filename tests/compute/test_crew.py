@@ -76,12 +76,13 @@ def test_a_process_that_is_killed_is_replaced_and_nothing_is_lost(tmp_path):
 
 def test_a_process_that_hangs_is_given_up_and_its_tasks_are_done_elsewhere(tmp_path):
     with crew(1, task_s=3.0, times=3.0) as (made, told):
-        made.submit(tasks.square, 1).result(timeout=60)
+        process = made.submit(tasks.short, 1).result(timeout=60)[1]
         futures = [made.submit(tasks.stops_once, str(tmp_path / "flag"))]
         futures += [made.submit(tasks.short, n) for n in range(6)]
         found = results(futures)
     assert [number for number, _ in found[1:]] == list(range(6))
     assert told == ["process 1 has not answered for 3 s; its work goes elsewhere"]
+    until(lambda: ended(process), 30)
 
 
 def test_a_slow_task_is_also_given_to_who_has_nothing_to_do(tmp_path):
