@@ -51,10 +51,12 @@ def test_all_cores_are_given_and_none_twice(several, cores, count):
     assert list(made.waiting) == several[len(threads) : count]
 
 
-def test_with_a_scheduler_each_study_has_one_thread(several):
-    made = coordinator(4, several[:3], scheduler="tcp://x:1")
+@pytest.mark.parametrize(("cores", "count"), [(4, 4), (2, 2), (6, 6)])
+def test_with_a_scheduler_as_many_studies_run_as_there_are_cores(several, cores, count):
+    """The cores are those of its workers; a study's own process hardly has any work."""
+    made = coordinator(cores, several, scheduler="tcp://x:1")
     made._fill()
-    assert [job.standing.threads for job in made.jobs] == [1 + 1, 1, 1][: len(made.jobs)]
+    assert [job.standing.threads for job in made.jobs] == [1] * count
 
 
 @pytest.mark.parametrize(
