@@ -36,6 +36,7 @@ class Standing:
         behind: how far each design is behind the front as a share of its extent, plus its violation, shape (n,).
         order: rows of the designs that jumped, the nearest to the front first.
         low, extent: of the front's costs, each of shape (m,).
+        line: the front's costs as shares of its extent, in the order that ``shortfall`` wants, shape (k, m).
     """
 
     costs: Floats
@@ -45,6 +46,7 @@ class Standing:
     order: NDArray[np.intp]
     low: Floats
     extent: Floats
+    line: Floats
 
     def scaled(self, costs: Floats) -> Floats:
         """Costs as shares of the front's extent, shape (n, m)."""
@@ -110,6 +112,7 @@ class Archive:
         front = front[np.argsort(costs[front, 0], kind="stable")]
         low, extent = np.zeros(costs.shape[1]), np.ones(costs.shape[1])
         posts, behind = np.zeros(0, dtype=np.intp), self._violation.copy()
+        line = np.zeros((0, costs.shape[1]))
         if len(front):
             low = costs[front].min(axis=0)
             span = costs[front].max(axis=0) - low
@@ -117,11 +120,19 @@ class Archive:
             scaled = (costs[front] - low) / extent
             posts = _posts(scaled)
             points = (np.where(jumped[:, None], costs, low) - low) / extent
-            behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
+            behind += np.maximum(shortfall(points, along(scaled[posts])), 0.0)
+            line = along(scaled)
         # Of equals the newest first: a long front is known best where the search is now.
         order = len(behind) - 1 - np.argsort(behind[::-1], kind="stable")
         return Standing(
-            costs=costs, front=front, posts=posts, behind=behind, order=order[jumped[order]], low=low, extent=extent
+            costs=costs,
+            front=front,
+            posts=posts,
+            behind=behind,
+            order=order[jumped[order]],
+            low=low,
+            extent=extent,
+            line=line,
         )
 
     def _feasible_front(self) -> NDArray[np.intp]:
@@ -164,14 +175,13 @@ def shortfall(points: Floats, front: Floats) -> Floats:
 
     Args:
         points: objectives, less is better, shape (n, m).
-        front: shape (k, m), k at least 1.
+        front: shape (k, m), k at least 1, in the order of ``along``.
 
     Returns:
         Shape (n,).
     """
     if front.shape[1] == 2:
-        # Along a front, a point falls ever less short in the first objective and ever more in the second.
-        return shortfall_of_two(points, front[np.lexsort((-front[:, 1], front[:, 0]))])
+        return shortfall_of_two(points, front)
     result = np.empty(len(points))
     for first in range(0, len(points), _CHUNK):
         rows = slice(first, first + _CHUNK)
@@ -181,6 +191,14 @@ def shortfall(points: Floats, front: Floats) -> Floats:
             np.minimum(least, points[rows, k : k + 1] - front[:, k], out=least)
         result[rows] = least.max(axis=1)
     return result
+
+
+def along(front: Floats) -> Floats:
+    """A front of two objectives from end to end, shape (k, 2); any other as it is.
+
+    Along it, a point falls ever less short in the first objective and ever more in the second.
+    """
+    return front[np.lexsort((-front[:, 1], front[:, 0]))] if front.shape[1] == 2 else front
 
 
 def _posts(front: Floats) -> NDArray[np.intp]:

@@ -13,6 +13,8 @@ from pareto_monoped.study.protocol import Floats
 
 _TOGETHER = 64
 """Points that are corrected at once, so that all their sums stay in the first cache. Our own choice."""
+_AT_ONCE = 8
+"""Numbers that a processor takes at once, or a multiple: loops over fewer points than ``_TOGETHER`` are so long."""
 
 
 @compiled
@@ -39,38 +41,13 @@ def _alike(squares: Floats, scale: float) -> None:
 
 
 @compiled
-def _solved(matrix: Floats, targets: Floats) -> Floats:
-    """Solution of equations with a positive definite matrix, shape (n, n) and (n, k) -> (n, k).
+def kriging_factors(points: Floats, ends: NDArray[np.intp], scale: float, nugget: float) -> Floats:
+    """The equations of each group: upper triangular factors of their kernel matrices, row after row, shape (numbers,).
 
-    Raises:
-        numpy.linalg.LinAlgError: the matrix is not positive definite.
-    """
-    count, width = targets.shape
-    factor = np.linalg.cholesky(matrix)
-    solution = targets.copy()
-    for i in range(count):
-        for k in range(i):
-            for t in range(width):
-                solution[i, t] -= factor[i, k] * solution[k, t]
-        for t in range(width):
-            solution[i, t] /= factor[i, i]
-    rows = solution.T.copy()
-    for i in range(count - 1, -1, -1):
-        for t in range(width):
-            rows[t, i] /= factor[i, i]
-            value = rows[t, i]
-            for k in range(i):
-                rows[t, k] -= factor[i, k] * value
-    return rows.T.copy()
-
-
-@compiled
-def kriging_shares(points: Floats, errors: Floats, ends: NDArray[np.intp], scale: float, nugget: float) -> Floats:
-    """How much each point counts where values are interpolated, shape (n, k).
+    They need no values, so they can be had while these are still being computed.
 
     Args:
         points: of all groups, one group after the other, shape (n, f).
-        errors: what is interpolated, known at these points, shape (n, k).
         ends: number of points up to the end of each group, shape (groups,).
         scale: of squared distances, see ``_alike``.
         nugget: share of an error that its neighbours do not have.
@@ -78,8 +55,12 @@ def kriging_shares(points: Floats, errors: Floats, ends: NDArray[np.intp], scale
     Raises:
         numpy.linalg.LinAlgError: points of a group are equal, and the nugget is 0.
     """
-    shares = np.empty_like(errors)
-    start = 0
+    start, numbers = 0, 0
+    for end in ends:
+        numbers += (end - start) * (end - start)
+        start = end
+    factors = np.empty(numbers)
+    start, place = 0, 0
     for end in ends:
         columns = points[start:end].T.copy()
         count = end - start
@@ -95,7 +76,42 @@ def kriging_shares(points: Floats, errors: Floats, ends: NDArray[np.intp], scale
             near[n] += nugget
             matrix[n, : n + 1] = near[: n + 1]
             matrix[: n + 1, n] = near[: n + 1]
-        shares[start:end] = _solved(matrix, errors[start:end])
+        # Numba has the lower factor by columns, so its transpose is by rows.
+        factors[place : place + count * count] = np.linalg.cholesky(matrix).T.ravel()
+        place += count * count
+        start = end
+    return factors
+
+
+@compiled
+def kriging_shares(factors: Floats, errors: Floats, ends: NDArray[np.intp]) -> Floats:
+    """How much each point counts where values are interpolated, shape (n, k).
+
+    Args:
+        factors: what ``kriging_factors`` returned.
+        errors: what is interpolated, known at the points, shape (n, k).
+        ends: number of points up to the end of each group, shape (groups,).
+    """
+    shares = np.empty_like(errors)
+    start, place = 0, 0
+    for end in ends:
+        count = end - start
+        factor = factors[place : place + count * count].reshape(count, count)
+        rows = errors[start:end].T.copy()
+        for t in range(rows.shape[0]):
+            row = rows[t]
+            for k in range(count):
+                value = row[k] / factor[k, k]
+                row[k] = value
+                for i in range(k + 1, count):
+                    row[i] -= factor[k, i] * value
+            for i in range(count - 1, -1, -1):
+                value = row[i] / factor[i, i]
+                row[i] = value
+                for k in range(i):
+                    row[k] -= factor[k, i] * value
+        shares[start:end] = rows.T
+        place += count * count
         start = end
     return shares
 
@@ -109,10 +125,10 @@ def kriging_values(
     Args:
         wanted: these points, shape (m, f).
         groups: the group that each is interpolated in, shape (m,).
-        points: see ``kriging_shares``.
-        shares: what that returned.
-        ends: see ``kriging_shares``.
-        scale: see ``kriging_shares``.
+        points: see ``kriging_factors``.
+        shares: what ``kriging_shares`` returned.
+        ends: see ``kriging_factors``.
+        scale: see ``kriging_factors``.
     """
     count, width = wanted.shape
     values = np.zeros((count, shares.shape[1]))
@@ -128,17 +144,18 @@ def kriging_values(
         for n in range(size):
             for f in range(width):
                 columns[f, n] = wanted[order[first + n], f]
+        filled = (size + _AT_ONCE - 1) // _AT_ONCE * _AT_ONCE
         sums[:] = 0.0
         for known in range(0 if group == 0 else ends[group - 1], ends[group]):
-            near[:] = 0.0
+            near[:filled] = 0.0
             for f in range(width):
                 value, column = points[known, f], columns[f]
-                for n in range(_TOGETHER):
+                for n in range(filled):
                     near[n] += (column[n] - value) * (column[n] - value)
-            _alike(near, scale)
+            _alike(near[:filled], scale)
             for t in range(sums.shape[0]):
                 share, row = shares[known, t], sums[t]
-                for n in range(_TOGETHER):
+                for n in range(filled):
                     row[n] += share * near[n]
         for n in range(size):
             for t in range(sums.shape[0]):

@@ -1,6 +1,6 @@
 """What a search expects of designs that it has not simulated: a polynomial, corrected by its errors near by."""
 
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor
 from functools import cached_property
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.study.archive import Archive, Standing
 from pareto_monoped.study.cubic import cubic_values
 from pareto_monoped.study.distances import nearest_places, squared_distances
-from pareto_monoped.study.kriging import kriging_shares, kriging_values
+from pareto_monoped.study.kriging import kriging_factors, kriging_shares, kriging_values
 from pareto_monoped.study.protocol import Floats
 from pareto_monoped.study.response_surface import Features, fitted
 
@@ -40,6 +40,10 @@ _SCALE = 3.0 / _REACH**2
 _NUGGET = 1e-4
 """Share of an error that its neighbours do not have: jumps are smooth to that degree, and equations stay regular."""
 
+_SHARED = 100
+"""Designs of half a table that are worth a thread of their own: they take it a tenth of a millisecond. Our own choice.
+"""
+
 
 class Prediction:
     """Expected costs and missed constraints of designs, from all that have been simulated.
@@ -50,19 +54,41 @@ class Prediction:
     tell most: a promise that was not kept is not made again.
     """
 
-    def __init__(self, archive: Archive, standing: Standing, features: Features) -> None:
-        self._features = features
+    def __init__(
+        self, archive: Archive, standing: Standing, features: Features, helper: Executor | None = None
+    ) -> None:
+        """A model of what an archive knows.
+
+        Args:
+            archive: the simulated designs.
+            standing: how they stand.
+            features: of their space.
+            helper: takes half of the designs of ``fine``; it must be idle then.
+        """
+        self._features, self._helper = features, helper
         self._points = archive.points
-        weights = np.exp(-standing.behind / _NEARNESS) + _LEAST_WEIGHT
         missed = archive.constraints
         # In the order of the trials, whatever the weights: a sum in another order has other last digits.
-        rows = np.sort(_training(standing.order))
-        missed = np.clip(missed[:, (missed[rows] > 0.0).any(axis=0)], -_WORST_SHARE, _WORST_SHARE)
+        self._rows = np.sort(_training(standing.order))
+        missed = np.clip(missed[:, (missed[self._rows] > 0.0).any(axis=0)], -_WORST_SHARE, _WORST_SHARE)
         self._targets = np.hstack((standing.costs, missed))
-        self._mean = self._targets[rows].mean(axis=0)
+        self._mean = self._targets[self._rows].mean(axis=0)
         self._objectives = standing.costs.shape[1]
-        self._coefficients = fitted(archive.points[rows], self._targets[rows] - self._mean, weights[rows])
         self._standing = standing
+
+    def fit(self) -> None:
+        """Fit the cubic, which otherwise is done when it is first needed."""
+        _ = self._coefficients
+
+    def look_around(self) -> None:
+        """Find the designs that correct the cubic, which needs no cubic; else done when they are first needed."""
+        _ = self._neighbours
+
+    @cached_property
+    def _coefficients(self) -> Floats:
+        rows = self._rows
+        weights = np.exp(-self._standing.behind / _NEARNESS) + _LEAST_WEIGHT
+        return fitted(self._points[rows], self._targets[rows] - self._mean, weights[rows])
 
     @property
     def determined(self) -> bool:
@@ -75,12 +101,19 @@ class Prediction:
 
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
         """The same with the cubic's errors corrected, in the part of the front that the cubic sees a design in."""
-        points = self._features.scaled(values)
+        points, half = self._features.scaled(values), len(values) // 2
+        if self._helper is None or half < _SHARED:
+            return self._split(self._corrected(points))
+        _ = self._shares  # both threads need them
+        later = self._helper.submit(self._corrected, points[half:])
+        return self._split(np.vstack((self._corrected(points[:half]), later.result())))
+
+    def _corrected(self, points: Floats) -> Floats:
         predicted = self._cubic(points)
         parts = self._standing.parts(predicted[:, : self._objectives])
-        known = self._corrections
-        predicted += kriging_values(points, parts, known.points, known.shares, known.ends, _SCALE)
-        return self._split(predicted)
+        known = self._neighbours
+        predicted += kriging_values(points, parts, known.points, self._shares, known.ends, _SCALE)
+        return predicted
 
     def _cubic(self, points: Floats) -> Floats:
         predicted: Floats = cubic_values(points, self._coefficients) + self._mean
@@ -91,13 +124,18 @@ class Prediction:
         return costs, np.maximum(missed, 0.0).sum(axis=1)
 
     @cached_property
-    def _corrections(self) -> "_Corrections":
+    def _neighbours(self) -> "_Neighbours":
         """What corrects the cubic in each part of the front; without a front, there is one part."""
         groups = [np.sort(self._latest(part)) for part in range(max(len(self._standing.posts), 1))]
         rows, ends = np.concatenate(groups), np.cumsum([len(group) for group in groups])
         points = self._points[rows]
-        shares = _shares(points, self._targets[rows] - self._cubic(points), ends)
-        return _Corrections(points, shares, ends)
+        return _Neighbours(rows, points, ends, kriging_factors(points, ends, _SCALE, _NUGGET))
+
+    @cached_property
+    def _shares(self) -> Floats:
+        """How much the error of each of ``_neighbours`` counts, shape (n, targets)."""
+        known = self._neighbours
+        return kriging_shares(known.factors, self._targets[known.rows] - self._cubic(known.points), known.ends)
 
     def _latest(self, part: int) -> NDArray[np.intp]:
         """Rows of the latest designs in a part of the front and close behind it; the nearest others if too few."""
@@ -115,7 +153,7 @@ class Prediction:
     @cached_property
     def _known(self) -> NDArray[np.intp]:
         """Rows of the designs that jumped, in the order of the trials."""
-        return np.sort(self._standing.order)
+        return np.flatnonzero(np.isfinite(self._standing.costs).all(axis=1))
 
     @cached_property
     def _places(self) -> Floats:
@@ -151,25 +189,17 @@ def _least(values: Floats, count: int) -> NDArray[np.intp]:
     return candidates[np.argsort(values[candidates], kind="stable")[:count]]
 
 
-class _Corrections(NamedTuple):
-    """Points of all parts of a front, one part after the other.
+class _Neighbours(NamedTuple):
+    """Designs in all parts of a front, one part after the other.
 
     Attributes:
+        rows: of the archive, shape (n,).
         points: their features, shape (n, f).
-        shares: how much the error of each counts, shape (n, targets).
         ends: number of points up to the end of each part, shape (parts,).
+        factors: of the parts' equations, see ``kriging_factors``.
     """
 
+    rows: NDArray[np.intp]
     points: Floats
-    shares: Floats
     ends: NDArray[np.intp]
-
-
-def _shares(points: Floats, errors: Floats, ends: NDArray[np.intp]) -> Floats:
-    """See ``_Corrections``. Two threads take half of the parts each; a part's shares do not depend on the others."""
-    half = len(ends) // 2
-    first, later = (ends[:half], ends[half:] - ends[half - 1]) if half else (ends, ends[:0])
-    middle = first[-1]
-    with ThreadPoolExecutor(1) as helper:
-        others = helper.submit(kriging_shares, points[middle:], errors[middle:], later, _SCALE, _NUGGET)
-        return np.vstack((kriging_shares(points[:middle], errors[:middle], first, _SCALE, _NUGGET), others.result()))
+    factors: Floats

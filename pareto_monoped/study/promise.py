@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.jump.compiled import compiled
 from pareto_monoped.study.archive import Standing, shortfall
 from pareto_monoped.study.distances import nearest_squared
 from pareto_monoped.study.protocol import Floats
@@ -33,11 +34,25 @@ def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.i
         return np.argsort(violation, kind="stable")
     gain = gains(costs, violation, standing)
     order = np.argsort(-gain, kind="stable")
-    part = standing.parts(costs)[order]
-    by_part = np.argsort(part, kind="stable")
-    place = np.empty(len(costs), dtype=np.intp)
-    place[by_part] = np.arange(len(costs)) - np.searchsorted(part[by_part], part[by_part])
-    return order[np.argsort(place, kind="stable")]
+    return order[_in_turns(standing.parts(costs)[order], max(len(standing.posts), 1))]
+
+
+@compiled
+def _in_turns(parts: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """The first row of each of ``count`` parts, then the second of each, and so on, shape (n,) -> (n,)."""
+    lengths, turns = np.zeros(count, dtype=np.intp), np.empty(len(parts), dtype=np.intp)
+    for n in range(len(parts)):
+        turns[n] = lengths[parts[n]]
+        lengths[parts[n]] += 1
+    first = np.zeros(len(parts) + 1, dtype=np.intp)
+    for n in range(len(parts)):
+        first[turns[n] + 1] += 1
+    first = np.cumsum(first)
+    rows = np.empty(len(parts), dtype=np.intp)
+    for n in range(len(parts)):
+        rows[first[turns[n]]] = n
+        first[turns[n]] += 1
+    return rows
 
 
 def unlike(
@@ -76,8 +91,7 @@ def gains(costs: Floats, violation: Floats, standing: Standing, penalty: float =
         standing: of the simulated designs; it has a front.
         penalty: what a violation of 1 costs.
     """
-    front = standing.scaled(standing.costs[standing.front])
-    return -shortfall(standing.scaled(costs), front) - penalty * violation
+    return -shortfall(standing.scaled(costs), standing.line) - penalty * violation
 
 
 def _nearest(points: Floats, others: Floats) -> Floats:

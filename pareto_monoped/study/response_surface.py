@@ -38,7 +38,12 @@ class Features:
 
     def scaled(self, values: Floats) -> Floats:
         """Features of n points from -1 to 1, shape (n, d) -> (n, f)."""
-        return 2.0 * (_raw(self.space, self.tables, values) - self.lower) / self.extent - 1.0
+        scaled = _raw(self.space, self.tables, values)
+        scaled -= self.lower
+        scaled *= 2.0
+        scaled /= self.extent
+        scaled -= 1.0
+        return scaled
 
     def terms(self, values: Floats) -> Floats:
         """Terms of n points, shape (n, d) -> (n, t); the constant is the first."""

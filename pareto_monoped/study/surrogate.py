@@ -1,6 +1,6 @@
 """Surrogate-assisted search: many offspring, ranked by a cheap model; the most promising are simulated."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -129,12 +129,15 @@ class SurrogateSearch:
         """The most promising of many new designs; all of them if they are no more than a generation has."""
         with one_thread(), ThreadPoolExecutor(1) as helper:
             # The model needs no offspring, and offspring no model: each has a core.
-            model = helper.submit(Prediction, self._archive, standing, self._features)
+            prediction = Prediction(self._archive, standing, self._features, helper)
+            fitting = helper.submit(prediction.fit)
             values = offspring(self._archive, standing, self._settings, generator)
             values = values[self._seen.new(values)]
             if len(values) <= self._size:
                 return values
-            return self._most_promising(values, model.result(), standing, generator)
+            prediction.look_around()
+            fitting.result()
+            return self._most_promising(values, prediction, standing, generator)
 
     def _most_promising(
         self, values: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
@@ -155,14 +158,17 @@ class SurrogateSearch:
         if len(standing.front):
             known = self._archive.points
             anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
+            expected = prediction.rough(anywhere)
             if prediction.determined:
-                climbed = self._climbs(anywhere, prediction, standing, generator)
+                promising = anywhere[ranked(*expected, standing)[: self._times * _CLIMBS]]
+                climbed = self._climbs(promising, prediction, standing, generator)
                 values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
                 violation = np.concatenate((violation, climbed.violation))
-                ends = climbed.values[climbed.ends]
-                explorers = self._afar(ends, prediction.fine, standing, known, count // 2)
+                ends = climbed.ends
+                expected_there = climbed.costs[ends], climbed.violation[ends]
+                explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
                 known = np.vstack((known, self._features.scaled(explorers)))
-            others = self._afar(anywhere, prediction.rough, standing, known, count - len(explorers))
+            others = self._afar(anywhere, expected, standing, known, count - len(explorers))
             explorers = np.vstack((explorers, others))
             # A climb from anywhere may have ended where it began.
             explorers = explorers[self._seen.new(explorers)]
@@ -173,24 +179,19 @@ class SurrogateSearch:
         return np.vstack((chosen, explorers))
 
     def _climbs(
-        self, anywhere: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
+        self, promising: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
     ) -> Climbs:
         """Climbs from promising designs anywhere, from the front and close behind it, and from exchanged designs."""
         count, exchanged = self._times * _CLIMBS, self._times * _EXCHANGED
         front = self._archive.values[generator.permutation(standing.front)[:count]]
         close = self._archive.values[generator.permutation(standing.order[:_CLOSE])[: count // 2]]
-        promising = anywhere[ranked(*prediction.rough(anywhere), standing)[:count]]
         start = np.vstack((promising, exchanges(self._space, front[:exchanged]), front[exchanged:], close))
         return climbs(self._space, start, prediction, standing, generator)
 
     def _afar(
-        self,
-        values: Floats,
-        predict: Callable[[Floats], tuple[Floats, Floats]],
-        standing: Standing,
-        known: Floats,
-        count: int,
+        self, values: Floats, expected: tuple[Floats, Floats], standing: Standing, known: Floats, count: int
     ) -> Floats:
         """``count`` of n designs, shape (n, d), that promise much and are far from points that are known."""
-        values = values[self._seen.new(values)]
-        return values[unlike(*predict(values), standing, self._features.scaled(values), known, count)]
+        new = self._seen.new(values)
+        values, costs, violation = values[new], expected[0][new], expected[1][new]
+        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count)]

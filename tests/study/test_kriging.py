@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.study.kriging import _alike, kriging_shares, kriging_values
+from pareto_monoped.study.kriging import _alike, kriging_factors, kriging_shares, kriging_values
 
 SCALE, NUGGET = 3.0, 1e-4
 
@@ -11,6 +11,10 @@ SCALE, NUGGET = 3.0, 1e-4
 def kernel(points, others):
     r = np.sqrt(SCALE * np.square(points[:, None] - others).sum(axis=2))
     return (1.0 + r) * np.exp(-r)
+
+
+def shares_of(points, errors, ends, nugget=NUGGET):
+    return kriging_shares(kriging_factors(points, ends, SCALE, nugget), errors, ends)
 
 
 def groups_of(sizes, features=9, seed=1):
@@ -29,7 +33,7 @@ def test_the_kernel_is_exact_up_to_the_distance_of_opposite_corners_in_15_featur
 @pytest.mark.parametrize("sizes", [[40], [1, 30, 7], [150, 150]])
 def test_values_are_those_of_each_group_alone(sizes):
     points, errors, ends = groups_of(sizes)
-    shares = kriging_shares(points, errors, ends, SCALE, NUGGET)
+    shares = shares_of(points, errors, ends)
     generator = np.random.default_rng(2)
     wanted, groups = generator.uniform(-1.0, 1.0, (200, 9)), generator.integers(0, len(sizes), 200)
     got = kriging_values(wanted, groups, points, shares, ends, SCALE)
@@ -43,8 +47,8 @@ def test_values_are_those_of_each_group_alone(sizes):
 def test_a_result_depends_on_no_other_group_and_no_other_point():
     """To the last bit: this is what lets threads share groups out."""
     points, errors, ends = groups_of([20, 60, 33])
-    shares = kriging_shares(points, errors, ends, SCALE, NUGGET)
-    alone = kriging_shares(points[20:80].copy(), errors[20:80].copy(), np.array([60]), SCALE, NUGGET)
+    shares = shares_of(points, errors, ends)
+    alone = shares_of(points[20:80].copy(), errors[20:80].copy(), np.array([60]))
     assert np.array_equal(shares[20:80], alone)
     wanted, groups = np.random.default_rng(3).uniform(-1.0, 1.0, (150, 9)), np.arange(150) % 3
     together = kriging_values(wanted, groups, points, shares, ends, SCALE)
@@ -55,4 +59,4 @@ def test_a_result_depends_on_no_other_group_and_no_other_point():
 def test_equal_points_without_a_nugget_have_no_solution():
     points = np.zeros((2, 3))
     with pytest.raises(np.linalg.LinAlgError):
-        kriging_shares(points, np.ones((2, 1)), np.array([2]), SCALE, 0.0)
+        shares_of(points, np.ones((2, 1)), np.array([2]), 0.0)

@@ -19,10 +19,10 @@ def slow(before, values):
     return fresh
 
 
-@pytest.mark.parametrize("most_recent", [0, 70, 4096])
-def test_as_a_set_of_rows(monkeypatch, most_recent):
-    """Drawn from few values, so that many are equal; added in parts, old and recent."""
-    monkeypatch.setattr(module, "_MOST_RECENT", most_recent)
+@pytest.mark.parametrize("least_places", [1, 64, 4096])
+def test_as_a_set_of_rows(monkeypatch, least_places):
+    """Drawn from few values, so that many are equal; added in parts, to tables that grow and one that need not."""
+    monkeypatch.setattr(module, "_LEAST_PLACES", least_places)
     generator, seen, added = np.random.default_rng(1), Seen(), np.zeros((0, 3))
     for _ in range(20):
         part = generator.integers(-3, 4, (30, 3)) / 2.0
@@ -45,8 +45,26 @@ def test_designs_on_a_grid_have_different_digests():
     assert len(np.unique(module._digests(grid))) == len(grid) == 64**3
 
 
+def test_a_digest_is_that_of_the_finaliser_and_never_that_of_a_free_place():
+    """Against Python's whole numbers; the digest of zeros alone would be 0."""
+
+    def mixed(word):
+        for multiplier in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53):
+            word = ((word ^ (word >> 33)) * multiplier) % 2**64
+        return word ^ (word >> 33)
+
+    values = np.vstack((np.zeros((1, 3)), np.random.default_rng(3).standard_normal((20, 3))))
+    for row, digest in zip(values, module._digests(values).tolist(), strict=True):
+        expected = 0
+        for word in row.view(np.uint64).tolist():
+            expected = mixed((expected + mixed(word)) % 2**64)
+        assert digest == max(expected, 1)
+    seen = Seen()
+    assert seen.new(values[[0, 0, 1]]).tolist() == [True, False, True]
+
+
 def test_a_long_search_needs_little_memory():
-    """Eight bytes per design, and what the recent ones take."""
+    """Eight bytes per place of a table that is a quarter to half full."""
     generator = np.random.default_rng(2)
     tracemalloc.start()
     try:
@@ -57,4 +75,4 @@ def test_a_long_search_needs_little_memory():
         grown = tracemalloc.get_traced_memory()[0] - before
     finally:
         tracemalloc.stop()
-    assert grown < 100_000 * 8 + 1_000_000  # a set of the rows' bytes takes 17 MB
+    assert grown < 100_000 * 32  # a set of the rows' bytes takes 17 MB

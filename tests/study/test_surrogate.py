@@ -1,5 +1,6 @@
 """The parts of the surrogate-assisted search against plain versions of them, and the search on a known function."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -7,11 +8,11 @@ import pytest
 
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
-from pareto_monoped.study.archive import Archive, shortfall
+from pareto_monoped.study.archive import Archive, along, shortfall
 from pareto_monoped.study.climb import climbs
 from pareto_monoped.study.cubic import cubic_terms
 from pareto_monoped.study.prediction import Prediction, _training
-from pareto_monoped.study.promise import unlike
+from pareto_monoped.study.promise import ranked, unlike
 from pareto_monoped.study.protocol import Gear, MotorChoice, MotorKind, Scores, Space
 from pareto_monoped.study.response_surface import features_of, fitted
 from pareto_monoped.study.surrogate import SurrogateSearch
@@ -110,7 +111,7 @@ def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
         front = np.array([p for p in front if not any((q <= p).all() and (q < p).any() for q in front)])
         front = np.vstack((front, front[:1]))
         plain = [max(min(p[k] - f[k] for k in range(objectives)) for f in front) for p in points]
-        assert shortfall(points, front) == pytest.approx(plain, rel=1e-14)
+        assert shortfall(points, along(front)) == pytest.approx(plain, rel=1e-14)
 
 
 def test_the_standing_of_an_archive():
@@ -301,6 +302,38 @@ def test_near_simulated_designs_the_prediction_is_many_times_as_good_as_the_cubi
     assert missed.mean() > 0.95
 
 
+def test_two_threads_predict_what_one_does():
+    """To the last bit, whatever the number of designs, and whether the model's parts were asked for before or not."""
+    archive = archive_of(600, limit=5.5)
+    standing, features = archive.standing(), features_of(SPACE)
+    alone = Prediction(archive, standing, features)
+    values = spread(SPACE, 801, np.random.default_rng(17))
+    with ThreadPoolExecutor(1) as helper:
+        both = Prediction(archive, standing, features, helper)
+        both.look_around()
+        both.fit()
+        for count in (0, 1, 199, 200, 801):
+            for one, two in zip(alone.fine(values[:count]), both.fine(values[:count]), strict=True):
+                assert np.array_equal(one, two)
+
+
+def test_the_best_of_each_part_comes_first_then_the_second_best():
+    """Against a plain loop over the parts, with gains that are equal and parts of different sizes."""
+    standing = archive_of(300, limit=5.0).standing()
+    generator = np.random.default_rng(18)
+    places = generator.integers(0, len(standing.front), 200)
+    costs = standing.costs[standing.front[places]] - generator.integers(0, 4, (200, 1)) * 0.01 * standing.extent
+    violation = np.zeros(200)
+    gain = -shortfall(standing.scaled(costs), standing.line)
+    left, expected = {}, []
+    for row in sorted(range(200), key=lambda row: -gain[row]):
+        left.setdefault(part_of(costs[row], standing), []).append(row)
+    while any(left.values()):
+        heads = [rows.pop(0) for rows in left.values() if rows]
+        expected += sorted(heads, key=lambda row: (-gain[row], row))
+    assert ranked(costs, violation, standing).tolist() == expected
+
+
 def test_explorers_are_far_from_what_is_known_and_from_each_other():
     archive = archive_of(200)
     standing, features = archive.standing(), features_of(SPACE)
@@ -406,7 +439,7 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
     standing = truth.standing()
     asked = scored(algorithm.ask().values, limit=limit)
     costs = np.column_stack((-np.log(asked.values[:, 0]), np.log(asked.values[:, 1])))
-    behind = shortfall(standing.scaled(costs), standing.scaled(standing.costs[standing.front]))
+    behind = shortfall(standing.scaled(costs), standing.line)
     assert (asked.violation == 0.0).mean() > 0.9
     assert (behind < 0.01).mean() > 0.9
 
