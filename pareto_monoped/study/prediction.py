@@ -1,5 +1,6 @@
 """What a search expects of designs that it has not simulated: a polynomial, corrected by its errors near by."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import cached_property
 from typing import NamedTuple
@@ -63,7 +64,7 @@ class Prediction:
             archive: the simulated designs.
             standing: how they stand.
             features: of their space.
-            helper: takes half of the designs of ``fine``; it must be idle then.
+            helper: takes half of the designs of ``rough`` and ``fine``; it must be idle then.
         """
         self._features, self._helper = features, helper
         self._points = archive.points
@@ -97,16 +98,20 @@ class Prediction:
 
     def rough(self, values: Floats) -> tuple[Floats, Floats]:
         """Costs, shape (n, m), as ``Standing`` has them, and sum of missed constraints, shape (n,), by the cubic."""
-        return self._split(self._cubic(self._features.scaled(values)))
+        return self._split(self._halved(self._cubic, values))
 
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
         """The same with the cubic's errors corrected, in the part of the front that the cubic sees a design in."""
+        _ = self._shares  # which both threads need
+        return self._split(self._halved(self._corrected, values))
+
+    def _halved(self, predict: Callable[[Floats], Floats], values: Floats) -> Floats:
+        """What ``predict`` makes of the features of designs, shape (n, d); the helper does half if there are many."""
         points, half = self._features.scaled(values), len(values) // 2
         if self._helper is None or half < _SHARED:
-            return self._split(self._corrected(points))
-        _ = self._shares  # both threads need them
-        later = self._helper.submit(self._corrected, points[half:])
-        return self._split(np.vstack((self._corrected(points[:half]), later.result())))
+            return predict(points)
+        later = self._helper.submit(predict, points[half:])
+        return np.vstack((predict(points[:half]), later.result()))
 
     def _corrected(self, points: Floats) -> Floats:
         predicted = self._cubic(points)
