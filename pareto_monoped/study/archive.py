@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.study.distances import farthest_first, nearest_places, shortfall_of_two
+from pareto_monoped.study.distances import farthest_first, nearest_places, shortfall_of_more, shortfall_of_two
 from pareto_monoped.study.protocol import Floats, Scores, Space
 from pareto_monoped.study.response_surface import features_of
 
@@ -19,8 +19,6 @@ _MOST = 12_000
 design stays what it is there, however long a search goes on."""
 _KEPT = 8_000
 """Designs that stay when there are more."""
-_CHUNK = 256
-"""Points that are compared with a front at once, which keeps the tables in the processor's cache."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,15 +180,7 @@ def shortfall(points: Floats, front: Floats) -> Floats:
     """
     if front.shape[1] == 2:
         return shortfall_of_two(points, front)
-    result = np.empty(len(points))
-    for first in range(0, len(points), _CHUNK):
-        rows = slice(first, first + _CHUNK)
-        # One objective after the other: a reduction over an axis of two or three is many times as slow.
-        least = points[rows, :1] - front[:, 0]
-        for k in range(1, points.shape[1]):
-            np.minimum(least, points[rows, k : k + 1] - front[:, k], out=least)
-        result[rows] = least.max(axis=1)
-    return result
+    return shortfall_of_more(points, front)
 
 
 def along(front: Floats) -> Floats:

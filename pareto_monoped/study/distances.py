@@ -112,3 +112,20 @@ def shortfall_of_two(points: Floats, front: Floats) -> Floats:
             min(first - front[after, 0], second - front[after, 1]),
         )
     return result
+
+
+@compiled
+def shortfall_of_more(points: Floats, front: Floats) -> Floats:
+    """The same for any number of objectives and any order of the front, shape (n, m) and (k, m) -> (n,)."""
+    columns = points.T.copy()
+    result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
+    # The points are the innermost loop: a processor takes several of them at once.
+    for k in range(front.shape[0]):
+        least[:] = np.inf
+        for m in range(columns.shape[0]):
+            value, column = front[k, m], columns[m]
+            for n in range(least.shape[0]):
+                least[n] = min(least[n], column[n] - value)
+        for n in range(least.shape[0]):
+            result[n] = max(result[n], least[n])
+    return result
