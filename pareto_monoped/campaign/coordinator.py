@@ -223,7 +223,7 @@ class _Coordinator:
         elif isinstance(said, Ended):
             standing.evaluations, standing.hypervolume = said.evaluations, said.hypervolume
             standing.new_evaluations, standing.front = said.evaluations - job.before, said.front_size
-            standing.seconds += said.seconds
+            standing.seconds = stored_state(standing.place).seconds
             if said.stop_reason == "interrupted":
                 self._release(job, "unfinished")
                 if again is not None:

@@ -1,5 +1,6 @@
 """The databases of a campaign: which study is in which file, how far each is, and what stands in the way."""
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
@@ -79,6 +80,10 @@ def held(folder: Path) -> Iterator[None]:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise unwritable(folder, error, "give another --folder") from None
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise OutputError(
+            f"campaign folder {str(folder)!r}: cannot be written to; give another --folder, or look only, with --status"
+        )
     marker = folder / "campaign"
     with ExitStack() as stack:
         try:

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from pareto_monoped import __version__
 from pareto_monoped.campaign.grid import Campaign
 from pareto_monoped.campaign.results import Result, pair_of
-from pareto_monoped.campaign.statistics import Group, Section, attainment, growth, levels_of_section, sections_of
+from pareto_monoped.campaign.statistics import (
+    Group,
+    Section,
+    attainment,
+    growth,
+    levels_of_section,
+    sections_of,
+    spread_of,
+)
 from pareto_monoped.campaign.tables import failures, section_tables, studies_table
 from pareto_monoped.report.page import asset, embedded_json, fingerprint
 from pareto_monoped.report.quantities import label_of, quantities_of
@@ -21,6 +29,8 @@ from pareto_monoped.report.tables import safe
 
 SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
 """Scripts of the report of a study that this page has, too; its own one follows."""
+MOST_CURVES = 8
+"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
 
 
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
@@ -61,8 +71,11 @@ def _own(name: str) -> str:
 def _summary(results: Sequence[Result], sections: Sequence[Section]) -> str:
     finished = sum(result.finished for result in results)
     jumps = sum(result.stored.evaluations for result in results)
-    hours = sum(result.stored.seconds for result in results) / 3600.0
-    time = f"{60.0 * hours:.0f} minutes" if hours < 2.0 else f"{hours:.1f} hours"
+    seconds = sum(result.stored.seconds for result in results)
+    minutes, hours = seconds / 60.0, seconds / 3600.0
+    time = (
+        f"{seconds:.0f} seconds" if minutes < 2.0 else f"{minutes:.0f} minutes" if hours < 2.0 else f"{hours:.1f} hours"
+    )
     words = f"{finished} of {len(results)} studies are finished: {jumps:,} jumps in {time} of running time."
     if len(sections) > 1:
         words += (
@@ -86,6 +99,10 @@ def _section(section: Section, k: int, count: int) -> str:
         if seeds > 1
         else "One study each: there are no bands."
     )
+    if any(len(group.results) % 2 == 0 for group in section.groups):
+        bands += " A median is always the value of one study: of an even number, one of the middle two."
+    if len(section.groups) > MOST_CURVES:
+        bands += f" The charts begin with the {MOST_CURVES} groups of most hypervolume; the switches show others."
     return f"""<section id="section-{k}" class="card" aria-labelledby="title-{k}">
 <h2 id="title-{k}">{safe(_title(section))}</h2>
 <p class="small">{bands}</p>
@@ -121,7 +138,15 @@ def _curves(section: Section) -> dict[str, Any]:
         "unit": section.objectives.volume_unit,
         "levels": _numbers(levels),
         "groups": [_group(group, levels) for group in section.groups],
+        "first": _first(section.groups),
     }
+
+
+def _first(groups: Sequence[Group]) -> list[int]:
+    """Positions of the groups that the charts show at first: those of most hypervolume, in their order."""
+    volumes = [spread_of([result.stored.hypervolume for result in group.results]).middle for group in groups]
+    best = sorted(range(len(groups)), key=lambda k: -volumes[k])[:MOST_CURVES]
+    return sorted(best)
 
 
 def _group(group: Group, levels: NDArray[np.float64]) -> dict[str, Any]:

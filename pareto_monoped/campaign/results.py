@@ -1,7 +1,7 @@
 """What the studies of a campaign found: the part of each database that tables and charts compare."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,17 +94,23 @@ def levels_of(objectives: Objectives) -> tuple[float, ...]:
     return LEVELS_M if is_height(pair_of(objectives)[0]) else ()
 
 
-def results_of(places: Sequence[Place]) -> list[Result]:
+def results_of(places: Sequence[Place], failed: Mapping[str, str] | None = None) -> list[Result]:
     """What each study found; those that have not begun or cannot be read found nothing.
+
+    Args:
+        places: of the studies.
+        failed: name -> reason of studies that could not be run just now, which their databases do not say.
 
     Raises:
         DatabaseError: a database does not match its running hash.
     """
-    return [_result(place) for place in places]
+    return [_result(place, (failed or {}).get(place.name)) for place in places]
 
 
-def _result(place: Place) -> Result:
+def _result(place: Place, reason: str | None) -> Result:
     stored = stored_state(place)
+    if reason is not None:
+        stored = replace(stored, state="failed", reason=reason)
     if stored.summary is None:
         nothing = np.zeros((0, len(place.study.objectives.names)))
         empty = np.zeros((0, 2))

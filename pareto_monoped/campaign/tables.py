@@ -57,7 +57,8 @@ def failures(results: Sequence[Result]) -> str:
     open_ones = [one.place.name for one in results if one.stored.state in ("waiting", "running", "unfinished")]
     if open_ones:
         some = ", ".join(open_ones[:6]) + (", ..." if len(open_ones) > 6 else "")
-        notes.append(f"{len(open_ones)} studies are not finished and in no median: {some}")
+        those = "1 study is" if len(open_ones) == 1 else f"{len(open_ones)} studies are"
+        notes.append(f"{those} not finished and in no median: {some}")
     return "".join(f'<p class="note" role="note">{safe(note)}</p>' for note in notes)
 
 

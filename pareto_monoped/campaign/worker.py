@@ -64,7 +64,6 @@ class Ended:
     new_evaluations: int
     front_size: int
     hypervolume: float
-    seconds: float
     stop_reason: str
     remarks: tuple[str, ...]
 
@@ -150,7 +149,6 @@ def _done(task: Task, connection: Connection, stop: threading.Event) -> Ended | 
         new_evaluations=summary.new_evaluations,
         front_size=summary.front_size,
         hypervolume=summary.hypervolume,
-        seconds=summary.seconds,
         stop_reason=summary.stop_reason,
         remarks=summary.remarks,
     )

@@ -65,7 +65,7 @@ def campaign(
     from pareto_monoped.campaign.coordinator import run_campaign, standings_of
     from pareto_monoped.campaign.folder import held, places_of
     from pareto_monoped.campaign.grid import load_campaign
-    from pareto_monoped.cli.campaign_table import as_values, counted, print_table, reports
+    from pareto_monoped.cli.campaign_table import as_values, counted, print_table, reports, studies
     from pareto_monoped.extras import require_extra
     from pareto_monoped.files import refuse_database
     from pareto_monoped.study.run import default_workers
@@ -93,10 +93,10 @@ def campaign(
         echo(json.dumps({"event": "end", "studies": [as_values(one) for one in standings]}))
     else:
         print_table(standings)
-        echo(f"{grid.path}: {len(standings)} studies, {counted(standings)}", err=True)
+        echo(f"{grid.path}: {studies(len(standings))}, {counted(standings)}", err=True)
     _tell(standings, place, places)
     if complete:
-        _write(grid, places, page, table, force)
+        _write(grid, standings, page, table, force)
     if not complete:
         return 130
     return 1 if any(one.state == "failed" for one in standings) else 0
@@ -111,10 +111,13 @@ def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place
             echo(f"error: {name(one.name)}: {name(one.reason)}", err=True)
     if others := strangers(folder, places):
         some = ", ".join(name(db.name) for db in others[:3]) + (", ..." if len(others) > 3 else "")
-        echo(f"note: {len(others)} databases in {folder} are of no study of this grid: {some}", err=True)
+        those = "a database" if len(others) == 1 else f"{len(others)} databases"
+        echo(f"note: no study of this grid has {those} in {folder}: {some}", err=True)
 
 
-def _write(grid: "Campaign", places: "Sequence[Place]", page: Path | None, table: Path | None, force: bool) -> None:
+def _write(
+    grid: "Campaign", standings: "Sequence[Standing]", page: Path | None, table: Path | None, force: bool
+) -> None:
     """Write the outputs that are asked for."""
     from pareto_monoped.files import write_text
 
@@ -122,7 +125,8 @@ def _write(grid: "Campaign", places: "Sequence[Place]", page: Path | None, table
         return
     from pareto_monoped.campaign.results import results_of
 
-    results = results_of(places)
+    failed = {one.name: one.reason for one in standings if one.state == "failed"}
+    results = results_of([one.place for one in standings], failed)
     if table is not None:
         from pareto_monoped.campaign.table import csv_text
 

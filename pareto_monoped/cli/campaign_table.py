@@ -55,6 +55,11 @@ def print_table(standings: "Sequence[Standing]") -> None:
     new_console(width=80).print(table)
 
 
+def studies(count: int) -> str:
+    """So many studies, in words."""
+    return "1 study" if count == 1 else f"{count} studies"
+
+
 def counted(standings: "Sequence[Standing]") -> str:
     """How many studies are in which state."""
     return ", ".join(f"{count} {state}" for state, count in Counter(one.doing for one in standings).items())
@@ -199,4 +204,4 @@ def _all(standings: "Sequence[Standing]", seconds: float) -> str:
     left = sum(one.budget - one.evaluations for one in standings if one.state != "failed")
     rate = sum(one.new_evaluations for one in standings) / max(seconds, 1e-9)
     pace = f", {rate:.0f}/s, {clock(left / rate)} left" if rate > 0.0 else ""
-    return f"{ended} of {len(standings)} studies ended, {done} of {budget} jumps{pace}"
+    return f"{ended} of {studies(len(standings))} ended, {done} of {budget} jumps{pace}"

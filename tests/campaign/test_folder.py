@@ -8,7 +8,7 @@ import pytest
 
 from pareto_monoped.campaign.folder import held, is_ended, places_of, stored_state, strangers
 from pareto_monoped.campaign.grid import load_campaign
-from pareto_monoped.errors import DatabaseError, StudyError
+from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.store import Store
 from tests.campaign.test_grid import written
@@ -139,3 +139,14 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path):
     (tmp_path / "grid").write_text("")
     with pytest.raises(Exception, match="give another --folder"), held(tmp_path / "grid"):
         pass
+
+
+def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(tmp_path, monkeypatch):
+    """Root may write anywhere but to a file system for reading only, so the system's answer is put in its mouth."""
+    folder = tmp_path / "grid"
+    monkeypatch.setattr(os, "access", lambda path, mode: not (path == folder and mode & os.W_OK))
+    with pytest.raises(OutputError) as caught, held(folder):
+        pass
+    assert str(caught.value) == (
+        f"campaign folder {str(folder)!r}: cannot be written to; give another --folder, or look only, with --status"
+    )

@@ -74,13 +74,15 @@ def test_the_csv_has_a_row_per_study_with_the_numbers_of_its_database(done):
     reached = front[front["height_m"] >= 0.8]["energy_j"]
     assert rows[1]["energy_j_at_0_8_m"] == (str(reached.min()) if len(reached) else "")
     assert float(rows[1]["knee_energy_j"]) in set(front["energy_j"])
-    assert (rows[2]["state"], rows[2]["hypervolume"], rows[2]["evaluations"]) == ("waiting", "", "0")
+    assert (rows[2]["state"], rows[2]["hypervolume"], rows[2]["evaluations"]) == ("failed", "", "0")
+    assert "must be one of VT8020" in rows[2]["reason"]
 
 
 def test_the_page_is_written_and_a_study_is_never_replaced(done):
     folder, ran = done
     text = (folder / "page.html").read_text()
     assert "2 of 4 studies are finished" in text
+    assert "Nope_seed1 failed: motor = &#x27;Nope&#x27;" in text
     assert "wrote page.html" in ran.stderr
     refused = CliRunner().invoke(
         cli, ["campaign", str(folder / "grid.toml"), "--report", str(folder / "grid" / "VT8020_seed1.db")]
@@ -97,6 +99,14 @@ def test_status_runs_nothing_and_says_the_same_of_what_is_stored(done):
     studies = json.loads(line)["studies"]
     assert [one["state"] for one in studies] == ["finished", "finished", "waiting", "waiting"]
     assert {path: path.stat().st_mtime_ns for path in (folder / "grid").iterdir()} == before
+
+
+def test_the_table_at_the_end_says_the_time_that_is_stored(done):
+    folder, ran = done
+    later = CliRunner().invoke(cli, ["campaign", str(folder / "grid.toml"), "--status"])
+    times = [[line.split()[-3] for line in out.splitlines() if "VT8020" in line] for out in (ran.stdout, later.stdout)]
+    assert times[0] == times[1]
+    assert len(times[0]) == 2
 
 
 def test_json_is_a_line_per_generation_and_per_study(done):

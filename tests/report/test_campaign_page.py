@@ -51,7 +51,8 @@ def test_tables_have_a_row_per_group_per_value_and_per_seed(made):
 def test_what_is_in_no_median_is_said_and_names_are_escaped(made):
     text = made[0].read_text()
     assert "U10_paper_seed2 failed: no feasible design" in text
-    assert "1 studies are not finished and in no median: U10_paper_seed3" in text
+    assert "1 study is not finished and in no median: U10_paper_seed3" in text
+    assert "of an even number, one of the middle two" not in text
     assert "made &lt;b&gt;" in text
     assert "made <b>" not in text
 
@@ -59,6 +60,46 @@ def test_what_is_in_no_median_is_said_and_names_are_escaped(made):
 def test_a_campaign_without_a_finished_study_has_a_page(tmp_path):
     campaign, results = made_campaign(tmp_path, AXES, lambda *_: None)
     assert "0 of 12 studies are finished" in campaign_page(campaign, results)
+
+
+@pytest.fixture(scope="module")
+def wide(tmp_path_factory):
+    """Twelve groups of two studies; the later ones need less energy."""
+    folder = tmp_path_factory.mktemp("wide")
+    axes = 'motors = ["U8", "U10", "VT8020"]\nrules = ["iso6336", "paper"]\n'
+    axes += "variables = [{ knee_ratio = 5.0 }, { knee_ratio = 6.0 }]\nseeds = [1, 2]"
+    campaign, results = made_campaign(folder, axes, lambda n, _: ([0.7, 1.0], [30.0 - n / 2.0, 40.0 - n / 2.0]))
+    file = folder / "wide.html"
+    file.write_text(campaign_page(campaign, results), encoding="utf-8")
+    return file
+
+
+def test_a_median_of_two_studies_is_one_of_them_and_the_page_says_so(wide):
+    text = wide.read_text()
+    assert "of an even number, one of the middle two" in text
+    first = cells(text, "By motor and gearbox rules and variables")[0]
+    assert first[2][0] == first[2][1]
+
+
+@pytest.mark.browser
+def test_of_many_groups_the_best_are_shown_first_and_buttons_show_all_or_none(wide, browser):
+    assert "The charts begin with the 8 groups of most hypervolume" in wide.read_text()
+    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab.goto(wide.as_uri())
+    tab.wait_for_function("() => document.getElementById('attainment-0')?.data !== undefined")
+    lines = """document.getElementById('attainment-0').data.filter((layer) => layer.mode === 'lines')
+        .map((layer) => `${layer.line.color} ${layer.line.dash}`)"""
+    boxes = tab.locator("#switches-0 input")
+    assert [boxes.nth(k).is_checked() for k in range(12)] == [False] * 4 + [True] * 8
+    shown = tab.evaluate(lines)
+    assert len(shown) == len(set(shown)) == 8
+    tab.get_by_role("button", name="All").click()
+    assert len(set(tab.evaluate(lines))) == 12
+    tab.get_by_role("button", name="None").click()
+    assert tab.evaluate(lines) == []
+    boxes.first.click()
+    assert len(tab.evaluate(lines)) == 1
+    tab.close()
 
 
 @pytest.mark.browser

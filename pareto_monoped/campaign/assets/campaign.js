@@ -1,16 +1,17 @@
 // The charts of a campaign: what groups of studies need for each level of the first objective, and how they got there.
 
-const hidden = page.sections.map(() => new Set());
+const hidden = page.sections.map(({ groups, first }) => new Set([...groups.keys()].filter((i) => !first.includes(i))));
 
-// Colours repeat after six groups; dashes then are others.
-function groupStyle(i) {
+// Colours repeat after six groups; dashes then are others. Groups that are shown at first have the first styles.
+function groupStyle({ groups, first }, group) {
+  const i = [...first, ...[...groups.keys()].filter((k) => !first.includes(k))].indexOf(group);
   return { color: studyColour(i), width: 2.2, dash: ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"][(i + Math.floor(i / 6)) % 6] };
 }
 
 function grouped(section, k, x, of, words) {
   return section.groups.flatMap((group, i) => {
     if (hidden[k].has(i)) return [];
-    const { median, low, high } = of(group), at = x(group), style = groupStyle(i);
+    const { median, low, high } = of(group), at = x(group), style = groupStyle(section, i);
     const line = { name: group.label, mode: "lines", x: at, y: median, line: style, text: (n) => (median[n] === null ? "" : words(group, at[n], median[n], low[n], high[n])) };
     return group.studies > 1 ? [{ name: `${group.label}, band`, mode: "area", x: at, y: low, y2: high, fill: style.color }, line] : [line];
   });
@@ -39,15 +40,22 @@ function drawGrowth(section, k) {
 function startSection(section, k) {
   const again = [lazily(`attainment-${k}`, drawNeeds(section, k)), lazily(`growth-${k}`, drawGrowth(section, k))];
   if (section.groups.length < 2) return;
-  byId(`switches-${k}`).append(...section.groups.map((group, i) => {
-    const box = make("input", { type: "checkbox", checked: "" });
-    box.addEventListener("change", () => {
-      if (box.checked) hidden[k].delete(i);
-      else hidden[k].add(i);
-      for (const redraw of again) redraw();
+  const boxes = section.groups.map((_, i) => make("input", { type: "checkbox", ...(hidden[k].has(i) ? {} : { checked: "" }) }));
+  const update = () => {
+    boxes.forEach((box, i) => (box.checked ? hidden[k].delete(i) : hidden[k].add(i)));
+    for (const redraw of again) redraw();
+  };
+  for (const box of boxes) box.addEventListener("change", update);
+  const forAll = (words, checked) => {
+    const button = make("button", { type: "button" }, words);
+    button.addEventListener("click", () => {
+      for (const box of boxes) box.checked = checked;
+      update();
     });
-    return make("label", {}, box, group.label);
-  }));
+    return button;
+  };
+  const labels = section.groups.map((group, i) => make("label", {}, boxes[i], group.label));
+  byId(`switches-${k}`).append(...labels, ...(labels.length > section.first.length ? [forAll("All", true), forAll("None", false)] : []));
 }
 
 requestAnimationFrame(() => setTimeout(() => {
