@@ -107,6 +107,11 @@ def killed(file, folder, delay, what):
         time.sleep(delay)
         if run.process.poll() is None:
             os.kill(run.process.pid, signal.SIGKILL)
+    return {"what": what} | left_behind(run, workers, folder)
+
+
+def left_behind(run, workers, folder):
+    """What is there once a killed command has ended: its exit code, processes, trials, and studies that are held."""
     code = run.code()
     began = time.monotonic()
     while not all(map(gone, workers)) and time.monotonic() - began < 30.0:
@@ -115,12 +120,11 @@ def killed(file, folder, delay, what):
     stored = {db.stem: len(read_study(db).trials) for db in sorted(Path(folder).glob("*.db"))}
     lost = {name: count for name, count in run.acknowledged.items() if count > stored.get(name, 0)}
     return {
-        "what": what,
         "code": code,
         "workers": len(workers),
         "orphans": orphans,
         "workers_gone_s": round(time.monotonic() - began, 2),
-        "stored": sum(stored.values()),
+        "stored": stored,
         "lost": lost,
         "held": [db.stem for db in Path(folder).glob("*.db") if holder(db) is not None],
     }

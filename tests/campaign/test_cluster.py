@@ -1,9 +1,5 @@
 """A campaign whose jumps are simulated by the workers of a real Dask scheduler."""
 
-import socket
-import subprocess
-import sys
-import time
 from importlib.util import find_spec
 
 import pytest
@@ -12,6 +8,7 @@ from pareto_monoped.campaign.coordinator import run_campaign
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
 from tests.campaign.test_coordinator import SMALL, standings
+from tests.compute.dask_here import DaskHere
 
 pytestmark = pytest.mark.skipif(
     find_spec("distributed") is None, reason="Dask is not installed; pip install 'pareto-monoped[cluster]'"
@@ -20,31 +17,9 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture
 def scheduler(tmp_path):
-    """The address of a scheduler with one worker; both are ended."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    port = address.rpartition(":")[2]
-    program = [sys.executable, "-m", "dask"]
-    words = (
-        ["scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"],
-        ["worker", address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(tmp_path)],
-    )
-    started = [
-        subprocess.Popen([*program, *line], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for line in words
-    ]
-    try:
-        end = time.monotonic() + 60.0
-        while time.monotonic() < end:
-            with socket.socket() as trial:
-                if trial.connect_ex(("127.0.0.1", int(port))) == 0:
-                    break
-            time.sleep(0.1)
-        yield address
-    finally:
-        for process in reversed(started):
-            process.terminate()
-            process.wait(60.0)
+    """The address of a scheduler with one worker."""
+    with DaskHere(tmp_path, workers=1) as here:
+        yield here.address
 
 
 def test_equal_to_studies_run_alone(tmp_path, scheduler):
