@@ -26,6 +26,7 @@ _SILENT_S = 30.0
 """Without news before the scheduler counts as lost: three times as long as a short cut of the network."""
 _CONNECT_S = 10.0
 """For the first connection: then a wrong address is likelier than a slow scheduler."""
+_NO_WORKER = "has no worker"
 
 
 class DaskWorkers:
@@ -50,7 +51,7 @@ class DaskWorkers:
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         self._client = self._first_connection()
         self._members: dict[str, Member] = {}
-        self._state = "has no worker"
+        self._state = _NO_WORKER
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._listen, name="scheduler", daemon=True)
         self._thread.start()
@@ -61,7 +62,8 @@ class DaskWorkers:
 
     def state(self) -> str:
         """Why none may be there."""
-        return self._state
+        broken = self._client.status != "running" and self._state == _NO_WORKER
+        return "does not answer (the connection has ended)" if broken else self._state
 
     def is_loss(self, problem: BaseException) -> bool:
         """Whether a task ended because worker, scheduler or connection did."""
@@ -138,7 +140,7 @@ class DaskWorkers:
                 continue
             heard_s = time.monotonic()
             self._members = {name: self._member(name, count) for name, count in _named(threads).items()}
-            self._state = "has no worker"
+            self._state = _NO_WORKER
 
     def _member(self, name: str, threads: int) -> Member:
         known = self._members.get(name)

@@ -119,6 +119,20 @@ def test_the_scheduler_is_restarted(two):
     assert all("waiting up to 60 s" in line for line in told)
 
 
+def test_a_scheduler_that_has_just_ended_is_not_said_to_lack_workers(tmp_path):
+    """The next question to it is half a second away, and its answer several seconds."""
+    with DaskHere(tmp_path) as here:
+        staff = DaskWorkers(here.address)
+        try:
+            assert staff.state() == "has no worker"
+            here.scheduler.kill()
+            until(lambda: staff._client.status != "running")
+            assert staff.state().startswith("does not answer")
+            assert staff.present() == {}
+        finally:
+            staff.close()
+
+
 @pytest.mark.long
 def test_the_scheduler_stays_away(two):
     with crew(two.address, absent_s=6.0) as (made, told):
