@@ -22,9 +22,11 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.run import run
 
@@ -32,6 +34,8 @@ ROOT = Path(__file__).parents[1]
 _SWITCH, _NETWORK = "pmtry", "198.18.77"
 """Addresses for tests of networks (RFC 2544)."""
 _CUT_S = 10.0
+_WHEN = 0.7
+"""Share of a host's work after which something happens to it; before, workers start and say who they are."""
 _TICKS = os.sysconf("SC_CLK_TCK")
 
 
@@ -114,6 +118,14 @@ class Host:
         call(f"ip netns del {self.name}", must=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Event:
+    """What happens after the last host has had some processor time."""
+
+    happens: Callable[[], None]
+    after_s: float
+
+
 @contextmanager
 def hosts(folder: Path) -> Iterator[list[Host]]:
     """Two hosts, and the switch to which this process is connected, too."""
@@ -134,52 +146,61 @@ def hosts(folder: Path) -> Iterator[list[Host]]:
         call(f"ip link del {_SWITCH}", must=False)
 
 
-def robust_on(where: list[Host], db: Path, workers: int, event: Callable[[], None] | None) -> str:
-    """Robust evaluation of a study by the recipe, with an event after the first designs are stored; a line about it."""
-    recipe = [sys.executable, str(ROOT / "recipes" / "ssh_hosts.py"), "--workers", str(workers)]
-    command = [*recipe, ",".join(host.address for host in where), "robust", str(db)]
-    began_s, spent_s, happened = time.monotonic(), [0.0 for _ in where], False
+def robust_on(where: list[Host], command: list[str], db: Path, event: Event | None) -> list[float]:
+    """Robust evaluation of a study by the recipe, during which something may happen; processor time of each host."""
+    began_s, spent_s, happened = time.monotonic(), [0.0 for _ in where], event is None
     with (db.parent / f"{db.stem}.log").open("w") as log:
         process = subprocess.Popen(command, stdout=log, stderr=log, env=os.environ | {"HOME": str(db.parent)})
+    try:
         while process.poll() is None:
             time.sleep(0.2)
             spent_s = [max(before, host.processor_s()) for before, host in zip(spent_s, where, strict=True)]
-            if event and not happened and read_robustness(db):
+            if event and not happened and spent_s[-1] > event.after_s:
                 happened = True
-                event()
+                event.happens()
+    finally:
+        process.terminate()
     text = Path(log.name).read_text()
-    if process.returncode or min(spent_s) < 1.0 or (event and not happened):
-        raise SystemExit(f"{' '.join(command)}: code {process.returncode}, processor time {spent_s} s\n{text}")
+    if process.returncode or min(spent_s) < 1.0 or not happened:
+        raise SystemExit(f"{shlex.join(command)}: code {process.returncode}, processor time {spent_s} s\n{text}")
     print("".join(f"  {line}\n" for line in text.splitlines() if line.startswith(("worker ", "scheduler "))), end="")
-    times = ", ".join(f"{host.name} {host_s:.0f} s" for host, host_s in zip(where, spent_s, strict=True))
-    return f"{time.monotonic() - began_s:.0f} s; processor time of the hosts: {times}"
+    times = ", ".join(f"{host.name} {host_s:.1f} s" for host, host_s in zip(where, spent_s, strict=True))
+    print(f"  {time.monotonic() - began_s:.0f} s; processor time: {times}", flush=True)
+    return spent_s
 
 
 def main() -> None:
     """Try all; fails if anything differs."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--evaluations", type=int, default=300)
+    parser.add_argument("--designs", type=int, default=24)
     parser.add_argument("--workers", type=int, default=1, help="per host")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as place, hosts(Path(place)) as (one, other):
         study, folder = Path(place) / "study.db", Path(place)
-        run(study_from_dict({"name": "s", "evaluations": asked.evaluations, "audit": False}, source="try"), study)
+        run(study_from_dict({"name": "s", "evaluations": 6 * asked.designs, "audit": False}, source="try"), study)
+        every = max(len(read_study(study).front()) // asked.designs, 1)
+        robust = ["robust", "--every", str(every)]
         threads = Path(shutil.copy(study, folder / "threads.db"))
-        robust = [sys.executable, "-m", "pareto_monoped", "robust", str(threads)]
-        subprocess.run(robust, check=True, capture_output=True)
+        subprocess.run([sys.executable, "-m", "pareto_monoped", *robust, str(threads)], check=True, capture_output=True)
         expected = read_robustness(threads)
-        print(f"{len(expected)} designs x 256 jumps, {asked.workers} workers on each of two hosts")
-        events: dict[str, Callable[[], None] | None] = {
+        print(f"{len(expected)} designs x 256 jumps, workers on each of two hosts: {asked.workers}", flush=True)
+        events = {
             "undisturbed": None,
-            "cable pulled": other.cut,
+            "cable pulled for 10 s": other.cut,
             "worker killed": lambda: other.kill("spawn_main", most=1),
             "host killed": lambda: other.kill("python"),
         }
-        for name, event in events.items():
+        after_s = 0.0
+        for name, happens in events.items():
+            print(name, flush=True)
             db = Path(shutil.copy(study, folder / f"{name.replace(' ', '_')}.db"))
-            said = robust_on([one, other], db, asked.workers, event)
-            assert read_robustness(db) == expected, f"{name}: other numbers than on threads"
-            print(f"{name}: the same numbers; {said}", flush=True)
+            recipe = [sys.executable, str(ROOT / "recipes" / "ssh_hosts.py"), "--workers", str(asked.workers)]
+            command = [*recipe, f"{one.address},{other.address}", *robust, str(db)]
+            spent_s = robust_on([one, other], command, db, Event(happens, after_s) if happens else None)
+            after_s = after_s or _WHEN * spent_s[-1]
+            if read_robustness(db) != expected:
+                raise SystemExit(f"{name}: other numbers than on threads")
+            print("  the same numbers as on threads", flush=True)
 
 
 if __name__ == "__main__":

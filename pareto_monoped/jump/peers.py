@@ -10,6 +10,7 @@ from functools import lru_cache
 from importlib.metadata import version
 
 import numpy as np
+from threadpoolctl import threadpool_info
 
 from pareto_monoped import __version__
 from pareto_monoped.actuator.search import map_for
@@ -36,12 +37,15 @@ class Facts:
         versions: of this package and of those that compute.
         system, machine: operating system and processor.
         numbers: digest of every measure of the probe designs under every shipped calibration, to the last bit.
+        linear_algebra: kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is
+            not compared, but is the likeliest reason of other numbers between hosts.
     """
 
     versions: dict[str, str]
     system: str
     machine: str
     numbers: str
+    linear_algebra: str
 
 
 _lock = threading.Lock()
@@ -56,7 +60,19 @@ def facts() -> Facts:
 @lru_cache(maxsize=1)
 def _facts() -> Facts:
     packages = {"pareto-monoped": __version__} | {name: version(name) for name in ("mujoco", "numpy", "numba")}
-    return Facts(versions=packages, system=platform.system(), machine=platform.machine(), numbers=_numbers())
+    return Facts(
+        versions=packages,
+        system=platform.system(),
+        machine=platform.machine(),
+        numbers=_numbers(),
+        linear_algebra=_linear_algebra(),
+    )
+
+
+def _linear_algebra() -> str:
+    """Kind of processor that numpy's linear algebra was chosen for; empty if it does not say."""
+    kinds = {library.get("architecture") for library in threadpool_info() if library["user_api"] == "blas"}
+    return ", ".join(sorted(kind for kind in kinds if kind))
 
 
 def _numbers() -> str:
@@ -90,7 +106,11 @@ def complaint(theirs: Facts) -> str | None:
     if different:
         return "; ".join(different)
     if theirs.numbers != ours.numbers:
-        return f"computes other jumps of the probe designs (digest {theirs.numbers[:8]}, here {ours.numbers[:8]})"
+        digests = f"digest {theirs.numbers[:8]}, here {ours.numbers[:8]}"
+        if theirs.linear_algebra != ours.linear_algebra:
+            kinds = f"linear algebra for {theirs.linear_algebra}, here {ours.linear_algebra}"
+            digests += f"; {kinds}: set OPENBLAS_CORETYPE=Haswell where each process starts"
+        return f"computes other jumps of the probe designs ({digests})"
     return None
 
 

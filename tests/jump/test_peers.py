@@ -1,5 +1,9 @@
 """Who may jump for this process: the versions, the platform and every bit of the probe designs decide."""
 
+import os
+import platform
+import subprocess
+import sys
 import threading
 from dataclasses import fields, replace
 
@@ -36,6 +40,25 @@ def test_everything_that_differs_is_named_and_the_digest_last(ours):
     assert peers.complaint(theirs) == f"system Plan9, here {ours.system}; machine vax, here {ours.machine}"
     digest = peers.complaint(replace(ours, numbers="f" * 64))
     assert digest == f"computes other jumps of the probe designs (digest ffffffff, here {ours.numbers[:8]})"
+
+
+def test_other_jumps_by_other_linear_algebra_are_told_with_their_cure(ours):
+    """Workers that SSH had started on the same machine were refused, without a word about why."""
+    theirs = replace(ours, numbers="f" * 64, linear_algebra="Cooperlake")
+    assert peers.complaint(theirs) == (
+        f"computes other jumps of the probe designs (digest ffffffff, here {ours.numbers[:8]}; linear algebra for "
+        f"Cooperlake, here {ours.linear_algebra}: set OPENBLAS_CORETYPE=Haswell where each process starts)"
+    )
+    assert peers.complaint(replace(ours, linear_algebra="Cooperlake")) is None
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="names kinds of these processors")
+@pytest.mark.parametrize("kind", ["Haswell", "Nehalem"])
+def test_linear_algebra_is_named_as_it_was_chosen(kind):
+    program = "from pareto_monoped.jump import peers; print(peers._linear_algebra())"
+    environment = os.environ | {"OPENBLAS_CORETYPE": kind}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == [kind]
 
 
 def _slightly(name, jumps):
