@@ -68,8 +68,10 @@ def _area(points: Points, corner: NDArray[np.float64]) -> float:
     The sum goes over the points by their first objective; each adds the strip that reaches from its own second
     objective to the least one before it. Without moocore, which takes longer to import than a front of 1,000 designs.
     """
-    order = np.lexsort((points[:, 1], points[:, 0]))
-    first, second = points[order, 0], points[order, 1]
+    first, second = points[:, 0], points[:, 1]
+    if not (first[1:] > first[:-1]).all():  # a front that is followed is sorted, and sorting is most of the time
+        order = np.lexsort((second, first))
+        first, second = first[order], second[order]
     before = np.concatenate((corner[1:], np.minimum.accumulate(second)[:-1]))
     better = second < before
     # A cumulative sum adds in order, as moocore does; ``np.sum`` adds in pairs.

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from pareto_monoped.config import parsed_json
 from pareto_monoped.design import VARIABLES, Variable, in_use
 from pareto_monoped.study.database import reading, undamaged
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.derived import with_agility
 from pareto_monoped.study.foreign import FOREIGN_COUNT
-from pareto_monoped.study.kept_front import rows_of
+from pareto_monoped.study.kept_front import KeptFront, kept_row, rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.seals import ROWS, damaged, has_seals, read_seals
@@ -71,18 +70,22 @@ def _kept(connection: sqlite3.Connection, db: Path, foreign: int) -> StudyFront:
     rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
     if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
         raise damaged(db, findings)
-    ((_, listed, _, _, _, optional),) = rows["front"]
-    numbers = parsed_json(listed)
     columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
-    trials = trial_frame(columns, rows_of(connection, columns, numbers), db)
-    if len(trials) < len(numbers):
+    numbers, counts, _ = kept_row(connection)
+    total = connection.execute("SELECT count(*) FROM monoped_trials").fetchone()[0]
+    # Later trials than the kept front's are checked too: one that is bent may hide that it is on the front.
+    read = [*numbers, *range(sum(counts.values()), total)]
+    trials = trial_frame(columns, rows_of(connection, columns, read), db)
+    if len(trials) < len(read):
         raise damaged(db, ["trials of its kept front are missing"])
     if findings := seals.trial_findings({name: trials[name].to_numpy() for name in trials}, trials["trial"]):
         raise damaged(db, findings)
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
+    kept = KeptFront(study.objectives)
+    kept.load(connection)
+    trials = trials[trials["trial"].isin(kept.numbers)]
     named = with_agility(with_motors(trials, study, meta, db))
     front = named.sort_values(study.objectives.names[0], kind="stable", ignore_index=True)
-    chosen = set(parsed_json(optional))
-    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in chosen)
+    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in kept.used)
     return StudyFront(db=db, study=study, meta=meta, rows=front, used=used, foreign=foreign, sealed=True)

@@ -15,7 +15,7 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.pareto.at_height import AtHeight, best_at_height
-from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.growing_front import GrowingFront
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.algorithms import make_algorithm
 from pareto_monoped.study.coordinates import plain_coordinates
@@ -84,8 +84,8 @@ class Session:
         )
         feasible = (data.trials["state"] == "feasible").to_numpy()
         names = list(study.objectives.names)
-        self._front = np.zeros((0, len(names)))
-        self._add_to_front(data.trials.loc[feasible, names].to_numpy())
+        self._front = GrowingFront(study.objectives)
+        self._front.add(np.flatnonzero(feasible), data.trials.loc[feasible, names].to_numpy(dtype=np.float64))
         self._algorithm: Algorithm = make_algorithm(study, self._coordinates, own_algorithm)
         try:
             self._algorithm.restore(data.checkpoint.state, _history(data, self._coordinates))
@@ -157,8 +157,8 @@ class Session:
         judgement = judge(evaluations, self._study.constraints, objectives)
         self._designs, self._motors = np.vstack((self._designs, missing)), _first(motors, there + len(missing))
         self._scores = _joined(self._scores, scores(evaluations, judgement, objectives))
-        feasible = judgement.state == "feasible"
-        self._add_to_front(values_of(evaluations, objectives)[feasible])
+        feasible = np.flatnonzero(judgement.state == "feasible")
+        self._front.add(self.total + feasible, values_of(evaluations, objectives)[feasible])
         number, first = self._generation, self.total
         self.total += len(missing)
         state = None
@@ -171,7 +171,7 @@ class Session:
                 _first(motors, 0),
                 _joined(self._scores, None),
             )
-        volume = hypervolume(self._front, self._study.reference_point)
+        volume = hypervolume(self._front.values, self._study.reference_point)
         self._volumes.append((self.total, volume))
         return Generation(
             number=number,
@@ -199,10 +199,6 @@ class Session:
             return self._evaluate(designs)
         return self._evaluate(designs, where.kits(motors))
 
-    def _add_to_front(self, points: NDArray[np.float64]) -> None:
-        points = np.vstack((self._front, points))
-        self._front = points[front_mask(points, self._study.objectives)]
-
     def _present(self) -> Progress:
         rate = (self.total - self._before) / max(self.elapsed, 1e-9)
         return Progress(
@@ -211,7 +207,7 @@ class Session:
             per_second=rate,
             seconds_left=(self._budget - self.total) / rate,
             hypervolume=self._volumes[-1][1],
-            at_height=best_at_height(self._front, self._study.objectives),
+            at_height=best_at_height(self._front.values, self._study.objectives),
         )
 
     def _write(self, generation: Generation, present: Progress) -> Progress:

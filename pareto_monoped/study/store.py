@@ -244,7 +244,10 @@ class Store:
         with self._writing():
             rows = [(key, strict_json(value)) for key, value in values.items()]
             self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
-            self._sealer.add({"meta": row_digests(rows)})
+            written = {"meta": row_digests(rows)}
+            if self._front.behind:  # a study at rest lacks nothing
+                written["front"] = row_digests([self._front.store(self._connection)])
+            self._sealer.add(written)
 
     def set_audits(self, audits: Sequence[tuple[int, bool, Mapping[str, Any]]]) -> None:
         """Store audits of trials: number of the trial, whether it is well-conditioned, measures of the audit."""
@@ -312,7 +315,9 @@ class Store:
         passed = (generation.number, total, float(generation.hypervolume), float(generation.seconds))
         execute("INSERT OR REPLACE INTO monoped_history VALUES (?, ?, ?, ?)", passed)
         self._front.add(values)
-        written |= {"history": row_digests([passed]), "front": row_digests([self._front.store(self._connection)])}
+        written["history"] = row_digests([passed])
+        if self._front.due:
+            written["front"] = row_digests([self._front.store(self._connection)])
         if generation.state is not None:
             state = (1, generation.number + 1, total, strict_json(generation.state))
             execute("INSERT OR REPLACE INTO monoped_checkpoint VALUES (?, ?, ?, ?)", state)

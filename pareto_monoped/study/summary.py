@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.foreign import FOREIGN_COUNT
-from pareto_monoped.study.kept_front import STATES, rows_of
+from pareto_monoped.study.kept_front import STATES, KeptFront, rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
 from pareto_monoped.study.seals import has_seals
 
@@ -55,7 +54,7 @@ def read_summary(db: Path) -> Summary:
         meta = meta_of_rows(connection.execute("SELECT key, value FROM monoped_meta").fetchall(), db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
         try:
-            counts, trials = _kept(connection) if sealed else _computed(connection, db)
+            counts, trials = _kept(connection, study) if sealed else _computed(connection, db)
             names = [*study.objectives.names, "height_m", "energy_j"]
             rows = rows_of(connection, names, trials)
             if len(rows) != len(trials):
@@ -82,9 +81,10 @@ def read_summary(db: Path) -> Summary:
     )
 
 
-def _kept(connection: sqlite3.Connection) -> tuple[dict[str, int], list[int]]:
-    row = connection.execute("SELECT trials, feasible, infeasible, failed FROM monoped_front").fetchone()
-    return dict(zip(STATES, map(int, row[1:]), strict=True)), [int(trial) for trial in parsed_json(row[0])]
+def _kept(connection: sqlite3.Connection, study: Study) -> tuple[dict[str, int], list[int]]:
+    front = KeptFront(study.objectives)
+    front.load(connection)
+    return front.counts, front.numbers
 
 
 def _computed(connection: sqlite3.Connection, db: Path) -> tuple[dict[str, int], list[int]]:

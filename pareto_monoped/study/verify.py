@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pareto_monoped.config import parsed_json
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.study.database import reading
+from pareto_monoped.study.kept_front import STATES, KeptFront
 from pareto_monoped.study.optuna_check import foreign_trials, optuna_findings
 from pareto_monoped.study.plausible import implausible
 from pareto_monoped.study.reader import StudyData, read_study
@@ -86,11 +86,12 @@ def _sqlite_findings(connection: sqlite3.Connection) -> Iterator[str]:
 def _kept_front_findings(connection: sqlite3.Connection, data: StudyData) -> Iterator[str]:
     if not data.sealed:
         return
-    trials, *counts = connection.execute("SELECT trials, feasible, infeasible, failed FROM monoped_front").fetchone()
-    if parsed_json(trials) != sorted(data.front()["trial"].tolist()):
+    kept = KeptFront(data.study.objectives)
+    kept.load(connection)
+    if kept.numbers != sorted(data.front()["trial"].tolist()):
         yield "its kept front is not the front of its trials"
     states = data.trials["state"].tolist()
-    if counts != [states.count(state) for state in ("feasible", "infeasible", "failed")]:
+    if kept.counts != {state: states.count(state) for state in STATES}:
         yield "its counts of feasible, infeasible and failed trials are not those of its trials"
 
 

@@ -9,10 +9,13 @@ import pytest
 
 from pareto_monoped.design import in_use
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.database import reading
 from pareto_monoped.study.front_reader import read_front
+from pareto_monoped.study.kept_front import kept_row
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.status import status
 from pareto_monoped.study.store import Store
+from pareto_monoped.study.verify import verify
 from tests.study.support import UNSEALED, change, made_database, made_evaluations, made_generation, made_study
 
 ROOT = Path(__file__).parents[2]
@@ -83,6 +86,57 @@ def test_a_bent_kept_front_is_refused(large, statement, words):
     change(large, statement)
     with pytest.raises(DatabaseError, match=words):
         read_front(large)
+
+
+@pytest.fixture
+def long(tmp_path):
+    """A study as killed: 900 trials that are all on the front, some ill-conditioned, then 71 one by one."""
+    path, study, generator = tmp_path / "s.db", made_study(), np.random.default_rng(6)
+    made_database(path, [], study)
+    with Store(path, study) as store:
+        for number, (first, count) in enumerate([(0, 900), *((900 + k, 1) for k in range(71))]):
+            height_m = generator.uniform(0.5, 1.0, count)
+            store.add(made_generation(study, number, first, made_evaluations(height_m, 10.0 * height_m), state={}))
+            if number == 0:
+                store.set_audits([(t, t % 7 > 0, {}) for t in range(0, 900, 5)])
+    return path, study
+
+
+def assert_same_front(path):
+    data, kept = read_study(path), read_front(path)
+    assert kept.rows.equals(data.front())
+    facts = status(path)
+    assert (facts["front"], facts["feasible"]) == (len(data.front()), (data.trials["state"] == "feasible").sum())
+    assert not [
+        finding for finding in verify(path, simulate=0).findings if "kept front" in finding or "counts" in finding
+    ]
+
+
+def kept_trials(path):
+    with reading(path) as connection:
+        return sum(kept_row(connection)[1].values())
+
+
+def test_a_long_front_is_kept_with_some_generations_and_read_with_all(long):
+    path, study = long
+    total = len(read_study(path).trials)
+    assert 900 < kept_trials(path) < total == 971  # neither with the first alone nor with every one
+    assert_same_front(path)
+    with Store(path, study) as store:
+        store.add(made_generation(study, 72, 971, made_evaluations([0.4999], [9.0]), state={}))
+        assert kept_trials(path) < 972
+        assert_same_front(path)
+        store.set_meta({"finished": True})
+    assert kept_trials(path) == 972  # a study at rest keeps all of it
+    assert_same_front(path)
+
+
+@pytest.mark.parametrize("what", ["energy_j = energy_j + 1e-12", "state = 'infeasible'"])
+def test_a_bent_trial_after_the_kept_front_is_refused(long, what):
+    path, _ = long
+    change(path, f"UPDATE monoped_trials SET {what} WHERE trial = 970")
+    with pytest.raises(DatabaseError, match="trial 970 does not match its hash"):
+        read_front(path)
 
 
 def alone(code, path):
