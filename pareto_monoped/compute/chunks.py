@@ -6,18 +6,22 @@ The pieces must not depend on each other: where the cuts are then changes nothin
 import statistics
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from itertools import pairwise
 from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
 T = TypeVar("T")
+Item = TypeVar("Item")
 
 LEAST_TASK_S = 0.25
 """Least work in a task. Handing a task to a cluster takes about a millisecond, which is then below one percent."""
 _FIRST_ROWS = 64
 """Rows of the task that shows how long a row takes. Our own choice: a tenth of a second of jumps on one core."""
+AT_ONCE = 16
+"""Pieces of work that wait for an executor at a time. Our own choice: pieces of 8,000 jumps make 500 tasks together,
+and their results take 50 MB."""
 _REMEMBERED = 9
 """Tasks whose speed counts. Our own choice: enough that one slow task does not decide."""
 
@@ -84,6 +88,36 @@ def spread(
             raise
         done = cuts[-1]
     return results
+
+
+def in_turn(work: Callable[[Item], T], items: Iterable[Item], at_once: int) -> Generator[T, None, None]:
+    """The results of some work on items, in the order of the items.
+
+    Work that waits for an executor leaves its workers without tasks at its end; with several under way, the next ones'
+    tasks are then already there. Close the iterator where it is left before its end.
+
+    Args:
+        work: may be called by several threads at a time.
+        items: what it is done on.
+        at_once: how many items may be under way at a time; 1: in this thread.
+
+    Raises:
+        Exception: what the work raised; items that have not begun are then called off.
+    """
+    if at_once == 1:
+        yield from map(work, items)
+        return
+    pool, under_way = ThreadPoolExecutor(at_once, thread_name_prefix="in turn"), deque[Future[T]]()
+    try:
+        for item in items:
+            if len(under_way) == at_once:
+                yield under_way.popleft().result()
+            under_way.append(pool.submit(work, item))
+        while under_way:
+            yield under_way.popleft().result()
+    finally:
+        # What is under way ends with its executor, which the caller may be about to close: nobody waits for it here.
+        pool.shutdown(wait=False)
 
 
 def timed(work: Callable[..., T], *arguments: Any) -> tuple[T, float]:

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from pareto_monoped.compute.chunks import AT_ONCE, in_turn
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
@@ -27,7 +29,7 @@ LEAST_SAMPLES = 256
 _CHUNK = 4
 """Designs that are simulated and stored together; an interrupt loses at most these."""
 _SHARED = 32
-"""The same where an executor does the jumps, and many workers wait for each other at the end."""
+"""The same where an executor does the jumps; several such chunks are under way at a time."""
 
 
 def robust(
@@ -75,17 +77,17 @@ def robust(
         if len(fresh):
             threads = workers or default_workers()
             evaluator = stored_simulator(data, workers=threads, executor=executor).evaluator
-            step = _CHUNK if executor is None else _SHARED
-            with Store(db, data.study) as store:
-                for first in range(0, len(fresh), step):
-                    chunk = fresh.iloc[first : first + step]
-                    results = simulated(data, chunk, evaluator, drawn)
+            step, at_once = (_CHUNK, 1) if executor is None else (_SHARED, AT_ONCE)
+            chunks = [fresh.iloc[first : first + step] for first in range(0, len(fresh), step)]
+            under_way = in_turn(lambda chunk: simulated(data, chunk, evaluator, drawn), chunks, at_once)
+            with Store(db, data.study) as store, closing(under_way):
+                for results in under_way:
                     text = strict_json(settings)
                     store.set_rows(
                         ROBUSTNESS, [(trial, text, strict_json(result.as_dict())) for trial, result in results.items()]
                     )
                     known |= results
-                    done += len(chunk)
+                    done += len(results)
                     if progress is not None:
                         progress(done, len(rows))
     return {int(trial): known[int(trial)] for trial in rows["trial"]}

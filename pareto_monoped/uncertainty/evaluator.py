@@ -1,12 +1,14 @@
 """Designs to their measures under uncertainty, for a search: the same samples for every design."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pareto_monoped.compute.chunks import AT_ONCE, in_turn
 from pareto_monoped.design import complete
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import is_robust
@@ -80,15 +82,16 @@ class RobustEvaluator:
         robust = {name: np.full(len(values), np.nan) for name in self.names}
         reasons = list(result.reason)
         jumping, step = np.flatnonzero(result.ok), max(_JUMPS // self.sampling.samples, 1)
-        for first in range(0, len(jumping), step):
-            rows = jumping[first : first + step]
-            jumps = self._jumps(values[rows], kits[rows])
-            for k, row in enumerate(rows):
-                found = self._measures(jumps, slice(k * len(self.drawn), (k + 1) * len(self.drawn)))
-                for name, value in found.items():
-                    robust[name][row] = value
-                if not found["failed_share"] < 1.0:
-                    reasons[row] = f"none of {len(self.drawn)} jumps under uncertainty reaches an apex"
+        chunks = [jumping[first : first + step] for first in range(0, len(jumping), step)]
+        at_once = 1 if self.evaluator.executor is None else AT_ONCE
+        with closing(in_turn(lambda rows: self._jumps(values[rows], kits[rows]), chunks, at_once)) as simulated:
+            for rows, jumps in zip(chunks, simulated, strict=True):
+                for k, row in enumerate(rows):
+                    found = self._measures(jumps, slice(k * len(self.drawn), (k + 1) * len(self.drawn)))
+                    for name, value in found.items():
+                        robust[name][row] = value
+                    if not found["failed_share"] < 1.0:
+                        reasons[row] = f"none of {len(self.drawn)} jumps under uncertainty reaches an apex"
         given = {name: getattr(result, name) for name in Evaluations.__dataclass_fields__ if name != "reason"}
         return RobustEvaluations(**given, reason=tuple(reasons), robust=robust)
 

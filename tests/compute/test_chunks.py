@@ -1,16 +1,18 @@
 """Work cut into chunks: whatever the cuts and the order of the answers, every row counts once and in its place."""
 
 import gc
+import threading
 import time
 import weakref
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import closing
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.compute.chunks import LEAST_TASK_S, Pace, pace_of, spread
+from pareto_monoped.compute.chunks import LEAST_TASK_S, Pace, in_turn, pace_of, spread
 
 
 class Backwards(Executor):
@@ -164,3 +166,42 @@ def test_a_failure_is_raised_and_calls_off_what_has_not_begun():
     with ThreadPoolExecutor(1) as pool, pytest.raises(ValueError, match="one"):
         spread(pool, Cut(range(1, 200), 200), 200, work, lambda rows: [rows.start])
     assert len(done) < 200
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 5, 40])
+def test_pieces_in_turn_come_in_their_order(at_once):
+    """Whatever piece is done first."""
+    begun = []
+
+    def work(piece):
+        begun.append(piece)
+        time.sleep(0.02 if piece % 5 == 0 else 0.0)
+        return 2 * piece
+
+    for k, result in enumerate(in_turn(work, range(20), at_once)):
+        assert result == 2 * k
+        assert len(begun) <= k + 1 + at_once
+
+
+def test_pieces_in_turn_wait_for_each_other_no_more_than_they_must():
+    """Three pieces, each of which ends only when all are under way."""
+    together = threading.Barrier(3)
+    assert list(in_turn(lambda _: together.wait(timeout=30.0) >= 0, range(9), 3)) == [True] * 9
+
+
+def test_pieces_in_turn_that_are_left_do_not_begin():
+    begun, ended, go_on = [], [], threading.Event()
+
+    def work(piece):
+        begun.append(piece)
+        if piece == 0:
+            raise ValueError("the first piece")
+        go_on.wait(timeout=10.0)
+        ended.append(piece)
+
+    with closing(in_turn(work, iter(range(100)), 2)) as results, pytest.raises(ValueError, match="the first piece"):
+        next(results)
+    assert ended == []  # nobody has waited for the second piece
+    go_on.set()
+    time.sleep(0.2)
+    assert set(begun) <= {0, 1}

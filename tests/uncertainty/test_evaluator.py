@@ -81,7 +81,7 @@ def test_a_design_that_does_not_jump_has_no_numbers(found):
 class Failing:
     """Jumps as the real evaluator; as built, the first design never reaches an apex and the second in 1 of 4 jumps."""
 
-    calibration = CALIBRATION
+    calibration, executor = CALIBRATION, None
 
     def __call__(self, designs, motors=None, *, variations=None):
         result = Evaluator(MAP, CALIBRATION)(designs, motors, variations=variations)
