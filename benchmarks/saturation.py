@@ -58,8 +58,6 @@ from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, sobol_samples, v
 ALGORITHMS = ("surrogate", "nsga2", "sms_emoa", "age_moea2", "weighted_cmaes", "optuna_nsga2", "random")
 _ONE_TASK = 278
 """Jumps of a quarter of a second, the least that a task has, where one takes 0.9 ms."""
-_IDLE_S = 3.0
-"""How long everybody is watched without a task."""
 _NEW = 80
 """Designs of a generation: of the default algorithm after its first ones."""
 _ROUNDS = 8
@@ -128,17 +126,7 @@ def tasks(asked: argparse.Namespace) -> None:
             times = (time.perf_counter(), time.process_time(), spent_s([scheduler]), spent_s(others))
             return np.array([*times, *carried()], dtype=np.float64)
 
-        began = now()
-        time.sleep(_IDLE_S)
-        idle = now() - began
-        print(f"{cores()} workers; every task carries its setup, {len(text):,} bytes of text. In each second without a")
-        per_s = idle / idle[0]
-        print("task, coordinator, scheduler and workers take " + ", ".join(f"{1e3 * s:.0f} ms" for s in per_s[1:4]))
-        print(
-            "and the coordinator sends and receives {:,.0f} and {:,.0f} bytes; the rows are without it.\n".format(
-                *per_s[4:]
-            )
-        )
+        print(f"{cores()} workers; every task carries its setup, {len(text):,} bytes of text\n")
         print("| task | tasks | wall, ms | coordinator, ms | scheduler, ms | workers, ms | sent, B | received, B |")
         print("|---|---:|---:|---:|---:|---:|---:|---:|")
         for name, (count, work, arguments) in some.items():
@@ -146,8 +134,7 @@ def tasks(asked: argparse.Namespace) -> None:
             began = now()
             for future in [executor.submit(work, *arguments) for _ in range(count)]:
                 future.result()
-            spent = now() - began
-            each = np.array([spent[0], *(spent - per_s * spent[0])[1:]]) / count
+            each = (now() - began) / count
             times = " | ".join(f"{1000.0 * value:.2f}" for value in each[:4])
             print(f"| {name} | {count} | {times} | {each[4]:,.0f} | {each[5]:,.0f} |", flush=True)
 

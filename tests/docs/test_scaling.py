@@ -1,4 +1,4 @@
-"""The commands that docs/scaling.md shows for one machine start a scheduler and workers, and a study runs on them."""
+"""What docs/scaling.md shows: commands that work, figures that agree with each other and with the code."""
 
 import os
 import re
@@ -10,16 +10,56 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.compute.chunks import AT_ONCE
+from pareto_monoped.study import robustness
 from tests.compute.dask_here import free_port
 
 ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "docs" / "scaling.md").read_text(encoding="utf-8")
+MILLION = TEXT.split("## What a million evaluations cost")[1].split("\n## ")[0]
+BENCHMARKS = sorted({" ".join(found.split()) for found in re.findall(r"`python (benchmarks/[^`]*)`", TEXT)})
+
+
+def rows(title):
+    """The cells of the table below a heading of the section on a million evaluations, without its head."""
+    lines = [line for line in MILLION.split(f"### {title}")[1].split("\n### ")[0].splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+@pytest.mark.parametrize("command", BENCHMARKS)
+def test_measurements_name_commands_that_exist(command):
+    script, *words = shlex.split(command)
+    said = subprocess.run(
+        [sys.executable, script, "--help"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+    for option in (word for word in words if word.startswith("--")):
+        assert f"{option} " in said
+    parts = [word for word, before in zip(words, [script, *words], strict=False) if before == script]
+    assert all(part in said for part in parts)
+
+
+def test_the_section_on_a_million_evaluations_names_its_commands():
+    assert len([command for command in BENCHMARKS if command in " ".join(MILLION.split())]) >= 4
+
+
+def test_shares_of_an_evaluation_add_up():
+    shares = rows("Shares of an evaluation")
+    assert len(shares) == 7
+    for name, algorithm, storage, rest, together, jump, at_cores in shares:
+        assert float(algorithm) + float(storage) + float(rest) == pytest.approx(float(together), abs=0.0016), name
+        assert round(float(jump) / float(together), 1) == pytest.approx(float(at_cores), abs=0.5), name
+
+
+def test_groups_of_robust_designs_are_those_of_the_code():
+    assert f"or {robustness._SHARED} designs of `robust`" in TEXT
+    assert AT_ONCE == 16
+    assert "Up to sixteen such groups" in TEXT
 
 
 @pytest.mark.long
 def test_scheduler_and_workers_on_one_machine(tmp_path):
     pytest.importorskip("distributed")
-    text = (ROOT / "docs" / "scaling.md").read_text(encoding="utf-8")
-    section = text.split("## A scheduler and workers on one machine")[1].split("\n## ")[0]
+    section = TEXT.split("## A scheduler and workers on one machine")[1].split("\n## ")[0]
     (block,) = re.findall(r"^```sh\n(.*?)^```", section, re.S | re.M)
     port = str(free_port())
     scheduler, workers, study = block.replace("8786", port).strip().splitlines()
