@@ -13,6 +13,7 @@ The exceptions are a tree::
     |   |-- SelectionError      a selection that no design on the front meets
     |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
     |-- DiskError               a disk, or another limit of the system, that is full or fails
+    |-- ServerError             a database server that does not answer, or is gone
     |-- SimulationError         a simulation that should have worked failed
     |-- WorkerError             no worker process or cluster that can do the work
     `-- CheckError              an export failed its own checks (overlap, open mesh, ...)
@@ -83,6 +84,10 @@ class OutputError(InputError):
 
 class DiskError(ParetoMonopedError):
     """A disk, or another limit of the system, that is full or fails; nothing the user gave is wrong."""
+
+
+class ServerError(ParetoMonopedError):
+    """A database server that does not answer, or ended the connection; nothing the user gave is wrong."""
 
 
 class SimulationError(ParetoMonopedError):

@@ -9,6 +9,7 @@ EXTRAS = {
     "cluster": {"distributed": "distributed"},
     "dashboard": {"optuna_dashboard": "optuna-dashboard"},
     "parquet": {"pyarrow": "pyarrow"},
+    "postgres": {"psycopg": "psycopg[binary]"},
     "video": {"imageio_ffmpeg": "imageio-ffmpeg"},
 }
 """Extra -> its modules, each with the package that has it. An extra whose programs are not called from here is not

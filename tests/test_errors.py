@@ -23,7 +23,7 @@ def test_a_failure_while_running_ends_with_code_1(name):
 
 PACKAGE = Path(errors.__file__).parent
 OURS = {name for name in dir(errors) if name.endswith("Error")} | {"UsageError", "BadParameter"}
-CURED_BY = {"complaint", "unknown_name", "_unmet", "_unmet_together", "other_designs"}
+CURED_BY = {"complaint", "complaint_of", "unknown_name", "_unmet", "_unmet_together", "other_designs"}
 """Functions whose messages end with their cure."""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of, require_design
-from pareto_monoped.api.studies import Picked, StoredStudy, as_path, load_study
+from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.extras import require_extra
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
@@ -147,7 +147,7 @@ def write_report(
 
     several = [studies] if isinstance(studies, str) or not isinstance(studies, Sequence) else studies
     allowed = "a study as load_study returns it, the path of its database, or a list of these"
-    dbs = [one.path if isinstance(one, StoredStudy) else as_path(one, "studies", allowed=allowed) for one in several]
+    dbs = [one.path if isinstance(one, StoredStudy) else as_place(one, "studies", allowed=allowed) for one in several]
     target = as_path(out, "out")
     refuse_database(target)
     write_text(target, page(payload_of(dbs)), force=force)

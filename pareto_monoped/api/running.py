@@ -4,7 +4,6 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.api.given import executor_of, seed_of
@@ -18,7 +17,7 @@ from pareto_monoped.api.own import (
     own_calibration,
     stored_calibration_name,
 )
-from pareto_monoped.api.studies import StoredStudy, as_path, load_study
+from pareto_monoped.api.studies import StoredStudy, as_path, as_place, load_study
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import rules_for
@@ -27,6 +26,7 @@ from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.own import Own
 from pareto_monoped.study.own_algorithm import own_algorithm_name
 from pareto_monoped.study.own_functions import OwnFunction, functions_of, listed
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.weighted_budget import within_budget
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 def run(
     study: Study | StrPath,
-    db: StrPath | None = None,
+    db: StrPath | StudyPlace | None = None,
     *,
     algorithm: Any = None,
     objectives: Sequence[Goal] | None = None,
@@ -58,7 +58,8 @@ def run(
 
     Args:
         study: a study, or the path of a study file.
-        db: the database, made if missing; by default a file beside the study file, with the suffix ``.db``.
+        db: the database, made if missing; by default a file beside the study file, with the suffix
+            ``.db``. Or the address of a server as text, ``postgresql://USER@HOST/DATABASE?schema=NAME``.
         algorithm: name of a search algorithm, or its name and settings, instead of the study's. Or one's own: an object
             with ``ask()``, which returns designs of shape (n, d) or None at its end, and ``tell(scores)``, see
             ``Scores``; or a class or function of the ``Space`` and the seed that makes one.
@@ -128,11 +129,11 @@ def run(
         ),
     )
     _warn_of_no_front(summary)
-    return load_study(target)
+    return load_study(summary.db)
 
 
 def resume(
-    db: StrPath,
+    db: StrPath | StudyPlace,
     *,
     evaluations: int | None = None,
     algorithm: Any = None,
@@ -175,7 +176,7 @@ def resume(
     if algorithm is not None and own is None:
         raise StudyError(complaint("algorithm", algorithm, "an own one, the study knows every other", "leave it out"))
     summary = resume_study(
-        as_path(db, "db"),
+        as_place(db, "db"),
         evaluations=count_of("evaluations", evaluations),
         workers=count_of("workers", workers),
         executor=executor_of(executor),
@@ -183,7 +184,7 @@ def resume(
         own=Own(functions=functions_of(listed("functions", functions)), algorithm=own),
     )
     _warn_of_no_front(summary)
-    return load_study(db)
+    return load_study(summary.db)
 
 
 def _warn_of_no_front(summary: "RunSummary") -> None:
@@ -193,9 +194,9 @@ def _warn_of_no_front(summary: "RunSummary") -> None:
             warnings.warn(f"{summary.db}: {line}", UserWarning, stacklevel=3)
 
 
-def _database(study: Study | StrPath, db: StrPath | None) -> Path:
+def _database(study: Study | StrPath, db: StrPath | StudyPlace | None) -> StudyPlace:
     if db is not None:
-        return as_path(db, "db")
+        return as_place(db, "db")
     if isinstance(study, Study):
         raise StudyError("db: is not given; name the database file, such as 'mine.db'")
     return as_path(study).with_suffix(".db")

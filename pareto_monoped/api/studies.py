@@ -25,6 +25,8 @@ from pareto_monoped.pareto.selectors import (
     Weights,
 )
 from pareto_monoped.study.counts import count_of
+from pareto_monoped.study.place import StudyPlace, place_of
+from pareto_monoped.study.server.address import Server, is_address
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
@@ -65,7 +67,7 @@ class StoredStudy:
     """A study in its database, finished or still growing; each property reads what was there at ``load_study``.
 
     Attributes:
-        path: the database.
+        path: the database; as text the name of a file, or the address of a server without its password.
         study: its definition.
         data: everything that was read; its form may change between versions.
 
@@ -76,7 +78,7 @@ class StoredStudy:
         (True, 200, True)
     """
 
-    path: Path
+    path: StudyPlace
     study: "Study"
     data: "StudyData"
 
@@ -236,11 +238,12 @@ class StoredStudy:
         return chosen
 
 
-def load_study(path: StrPath) -> StoredStudy:
+def load_study(path: StrPath | StudyPlace) -> StoredStudy:
     """The study in a database.
 
     Args:
-        path: the database that ``run`` made. To read a study file, use ``Study.from_toml``.
+        path: the database that ``run`` made: a file, or a server's address as text. To read a study file, use
+            ``Study.from_toml``.
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
@@ -252,8 +255,19 @@ def load_study(path: StrPath) -> StoredStudy:
     """
     from pareto_monoped.study.reader import read_study
 
-    data = read_study(as_path(path))
+    data = read_study(as_place(path))
     return StoredStudy(path=data.db, study=data.study, data=data)
+
+
+def as_place(given: StrPath | StudyPlace, what: str = "path", *, allowed: str = "text or a path") -> StudyPlace:
+    """Where a study stands, from text that is a server's address, else from text or a path.
+
+    Raises:
+        InputError: it is neither.
+    """
+    if isinstance(given, Server):
+        return given
+    return place_of(given) if isinstance(given, str) and is_address(given) else as_path(given, what, allowed=allowed)
 
 
 def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a path") -> Path:

@@ -2,12 +2,13 @@
 
 import errno
 import webbrowser
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.terminal import echo, name
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from wsgiref.simple_server import WSGIServer
@@ -19,12 +20,12 @@ PORT = 8080
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option(
     "--port", type=click.IntRange(1, 65535), metavar="N", help=f"Where it listens.  [default: {PORT}, or any free one]"
 )
 @click.option("--open", "browse", is_flag=True, help="Open it in the browser.")
-def dashboard(db: Path, port: int | None, browse: bool) -> None:
+def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
     """Show a study in optuna-dashboard, until Ctrl-C.
 
     It listens on this machine only. The study is opened for reading, also while it runs: notes, new names and deletions
@@ -46,7 +47,7 @@ def dashboard(db: Path, port: int | None, browse: bool) -> None:
             echo("ended", err=True)
 
 
-def _application(db: Path) -> Any:
+def _application(db: StudyPlace) -> Any:
     """The dashboard's WSGI application of a study."""
     from optuna_dashboard import wsgi
 

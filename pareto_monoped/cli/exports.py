@@ -12,9 +12,11 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, where
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
+from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, new_console
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.cad.batch import Progress
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", required=False, type=click.Path(path_type=Path))
+@click.argument("db", required=False, type=DATABASE)
 @selector_options
 @click.option(
     "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
@@ -59,7 +61,7 @@ if TYPE_CHECKING:
 @click.option("--force", is_flag=True, help="Replace an earlier export in DIR.")
 @click.option("--no-strength", is_flag=True, help="Do not refuse a design whose joints do not hold.")
 def export(
-    db: Path | None,
+    db: StudyPlace | None,
     selector: "Selector | None",
     output: Path,
     case: str | None,
@@ -144,7 +146,7 @@ def export(
             _one(_without(dropped, job))
 
 
-def _read(db: Path) -> "StudyData":
+def _read(db: StudyPlace) -> "StudyData":
     from pareto_monoped.study.reader import read_study
     from pareto_monoped.study.seals import UNSEALED
 
@@ -155,7 +157,7 @@ def _read(db: Path) -> "StudyData":
 
 
 def _refuse_mixed_sources(
-    db: Path | None,
+    db: StudyPlace | None,
     selector: "Selector | None",
     case: str | None,
     record: Path | None,
@@ -183,7 +185,7 @@ def _without(dropped: set[str], job: "Job") -> "Job":
     return replace(job, formats=tuple(name for name in job.formats if name not in dropped))
 
 
-def _given(db: Path | None) -> Path:
+def _given(db: StudyPlace | None) -> StudyPlace:
     if db is None:
         raise click.UsageError("no DB given; give the study's database, or --case, or --record")
     return db

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pareto_monoped.cli import completing
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import DATABASE, force_option
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -46,7 +47,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
 @click.option(
     "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write the designs to a CSV file."
@@ -60,7 +61,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
     help="Two or three measures to judge by, instead of the study's.",
 )
 def front(
-    db: Path, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
+    db: StudyPlace, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
 ) -> None:
     """List the front: the designs that no other design dominates.
 
@@ -159,7 +160,7 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @selector_options
 @click.option(
     "--alternatives",
@@ -178,7 +179,9 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
 )
 @click.option("--robust", "by_robust", is_flag=True, help="By what 19 of 20 built robots keep; needs 'robust' before.")
 @click.option("--json", "as_json", is_flag=True, help="Print the design as JSON.")
-def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by_robust: bool, as_json: bool) -> None:
+def pick(
+    db: StudyPlace, selector: "Selector | None", count: int, tolerance: float, by_robust: bool, as_json: bool
+) -> None:
     """Pick one design from the front and say why it was chosen.
 
     Conditions combine with each other and with one way to choose. Measures and variables have their stored names and
@@ -250,7 +253,7 @@ def pick(db: Path, selector: "Selector | None", count: int, tolerance: float, by
             echo(wrapped(f"{note}; 'robust DB --trial N' adds others"))
 
 
-def _robust(db: Path) -> "tuple[StudyData, RobustTrials, DataFrame]":
+def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
     """The study, its trials by what is stored of their robustness, and their front."""
     from pareto_monoped.study.reader import read_study
     from pareto_monoped.study.robust_front import robust_front, robust_trials

@@ -1,8 +1,41 @@
 """Options that several commands share."""
 
 from pathlib import Path
+from typing import Any
 
 import click
+
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.place import place_of
+from pareto_monoped.study.server.address import is_address
+
+
+class _Database(click.Path):
+    """A parameter that names a study: a file, or the address of one on a server."""
+
+    def __init__(self, *, servers: bool) -> None:
+        super().__init__(path_type=Path)
+        self._servers = servers
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The ``StudyPlace`` that a user names.
+
+        Raises:
+            DatabaseError: an address that cannot be one of a study, or of a server where only files will do.
+        """
+        if not isinstance(value, str) or not is_address(value):
+            return super().convert(value, param, ctx)
+        place = place_of(value)
+        if not self._servers:
+            raise DatabaseError(
+                f"study database {str(place)!r}: is on a server, which this command does not take; give the name of a "
+                "file, or run its steps one by one: run, export, report"
+            )
+        return place
+
+
+DATABASE = _Database(servers=True)
+DATABASE_FILE = _Database(servers=False)
 
 force_option = click.option("--force", is_flag=True, help="Replace files of another kind; a study is never replaced.")
 workers_option = click.option(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.options import DATABASE_FILE
 from pareto_monoped.cli.terminal import echo, new_console
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Folder for the results.  [default: reports/STUDY]",
 )
-@click.option("--db", metavar="DB", type=click.Path(path_type=Path), help="Database.  [default: beside STUDY.toml]")
+@click.option("--db", metavar="DB", type=DATABASE_FILE, help="Database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")

@@ -4,12 +4,13 @@ from pathlib import Path
 
 import click
 
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import DATABASE, force_option
 from pareto_monoped.cli.terminal import echo
+from pareto_monoped.study.place import StudyPlace
 
 
 @click.command()
-@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
 @click.option(
     "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.html", help="The HTML page."
 )
@@ -28,7 +29,7 @@ from pareto_monoped.cli.terminal import echo
 @click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
 @force_option
 def report(
-    dbs: tuple[Path, ...],
+    dbs: tuple[StudyPlace, ...],
     output: Path | None,
     figures: Path | None,
     exports: Path | None,

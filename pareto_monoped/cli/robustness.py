@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.computing import executor_at, where, where_options
-from pareto_monoped.cli.options import sample_seed_option, uncertainty_option, workers_option
+from pareto_monoped.cli.options import DATABASE, sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.terminal import echo
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option(
     "--trial", "trials", type=click.IntRange(min=0), multiple=True, metavar="N", help="A trial, instead of the front."
 )
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 @where_options
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def robust(
-    db: Path,
+    db: StudyPlace,
     trials: tuple[int, ...],
     every: int,
     count: int,

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.fronts import wrapped
-from pareto_monoped.cli.options import force_option, sample_seed_option, uncertainty_option, workers_option
+from pareto_monoped.cli.options import DATABASE, force_option, sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.robustness import asked
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.measures import Measure
@@ -22,7 +23,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @selector_options
 @click.option(
     "--samples",
@@ -47,7 +48,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
 @force_option
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def sensitivity(
-    db: Path,
+    db: StudyPlace,
     selector: "Selector | None",
     samples: int,
     within: float,

@@ -1,19 +1,19 @@
 """Commands that look after a study database: ``verify`` and ``repair``."""
 
-from pathlib import Path
-
 import click
 
+from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.terminal import echo
+from pareto_monoped.study.place import StudyPlace
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option(
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
-def verify(db: Path, simulate: int, workers: int | None) -> None:
+def verify(db: StudyPlace, simulate: int, workers: int | None) -> None:
     """Check that nothing in a study has been lost or changed.
 
     Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
@@ -37,8 +37,8 @@ def verify(db: Path, simulate: int, workers: int | None) -> None:
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
-def repair(db: Path) -> None:
+@click.argument("db", type=DATABASE)
+def repair(db: StudyPlace) -> None:
     """Drop trials that an Optuna user has added to a study.
 
     They are ignored by all other commands, but Optuna and its dashboard count them among the study's.

@@ -12,9 +12,10 @@ import click
 
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import executor_at, where, where_options
-from pareto_monoped.cli.options import workers_option
+from pareto_monoped.cli.options import DATABASE, workers_option
 from pareto_monoped.cli.terminal import echo, name, new_console
 from pareto_monoped.design import HEADLINE_HEIGHT_M
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.study.run import RunSummary
@@ -43,9 +44,7 @@ _REASONS = {
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
 @workers_option
 @where_options
-@click.option(
-    "--db", type=click.Path(path_type=Path), metavar="DB", help="Database.  [default: STUDY.db beside STUDY.toml]"
-)
+@click.option("--db", type=DATABASE, metavar="DB", help="Database.  [default: STUDY.db beside STUDY.toml]")
 @click.option(
     "--objectives",
     metavar="A,B",
@@ -61,7 +60,7 @@ def run(
     workers: int | None,
     processes: int | None,
     scheduler: str | None,
-    db: Path | None,
+    db: StudyPlace | None,
     objectives: str | None,
     no_strength: bool,
     as_json: bool,
@@ -96,13 +95,13 @@ def run(
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @_evaluations
 @workers_option
 @where_options
 @_as_json
 def resume(
-    db: Path,
+    db: StudyPlace,
     evaluations: int | None,
     workers: int | None,
     processes: int | None,
@@ -121,9 +120,9 @@ def resume(
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
-def status(db: Path, as_json: bool) -> None:
+def status(db: StudyPlace, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.study.definition import NO_STRENGTH
     from pareto_monoped.study.foreign import foreign_note

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import DATABASE, force_option
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.extras import require_extra
+from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -16,14 +17,14 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command()
-@click.argument("db", type=click.Path(path_type=Path))
+@click.argument("db", type=DATABASE)
 @click.option("--csv", "csv_file", metavar="FILE.csv", type=_FILE, help="Write a table of text.")
 @click.option("--parquet", metavar="FILE.parquet", type=_FILE, help="Write a table of Apache Parquet.")
 @click.option(
     "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
 )
 @force_option
-def trials(db: Path, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
+def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
     """Give all trials of a study with every measure, as a table.
 
     Columns have their stored names and SI units. Without a file the table goes to stdout, as CSV.

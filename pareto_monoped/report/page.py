@@ -23,6 +23,7 @@ from pareto_monoped.report.payload import build
 from pareto_monoped.report.resimulation import frames_for, resimulate
 from pareto_monoped.report.schema import Payload
 from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_rows import read_robustness
 from pareto_monoped.study.run import default_workers
@@ -41,7 +42,7 @@ STYLES = ("style", "choose", "print")
 """The page's style sheets, in the order in which they apply."""
 
 
-def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None) -> None:
+def write_report(dbs: Sequence[StudyPlace], out: Path, *, exports: Path | None = None) -> None:
     """Write the report of one or several studies.
 
     Args:
@@ -58,7 +59,7 @@ def write_report(dbs: Sequence[Path], out: Path, *, exports: Path | None = None)
 
 
 def payload_of(
-    dbs: Sequence[Path],
+    dbs: Sequence[StudyPlace],
     *,
     exports: Path | None = None,
     most_jumps: int | None = None,

@@ -10,7 +10,8 @@ import time
 from pathlib import Path
 
 from pareto_monoped.study.database import READ_TIMEOUT_S, roll_back, translated
-from pareto_monoped.study.place import require_file_name
+from pareto_monoped.study.place import StudyPlace, require_file_name
+from pareto_monoped.study.server.address import Server
 
 _OPTUNAS_OWN = {"alembic_version", "version_info"}
 """Tables in which Optuna keeps the version of its schema; all others are empty before the first study."""
@@ -29,12 +30,18 @@ _OPTUNA = _OPTUNAS_OWN | {
 }
 
 
-def is_vacant(path: Path) -> bool:
-    """Whether there is nothing yet: no file, an empty one, or Optuna's tables without any study.
+def is_vacant(path: StudyPlace) -> bool:
+    """Whether there is nothing yet: no file, an empty one, or Optuna's tables without any study; on a server no tables.
 
     Raises:
         DatabaseError: something else than a file.
+        ServerError: the server is away.
     """
+    if isinstance(path, Server):
+        from pareto_monoped.study.server.creating import is_vacant_there
+
+        with translated(path):
+            return is_vacant_there(path)
     require_file_name(path)
     if not path.exists():
         return True

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.simulator import Simulator
 from pareto_monoped.study.store import Store
@@ -23,7 +23,7 @@ _SCREENED, _AUDITED = 256, 64
 """Designs that are screened together, and of these audited and stored together; an interrupt loses at most these."""
 
 
-def audit_front(db: Path, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
+def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
     """Audit every design on the front that has no audit yet, and store the audits.
 
     A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore

@@ -139,7 +139,7 @@ def columns_of(study: "Study") -> tuple[Column, ...]:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Columns of ``monoped_trials`` for SQL; the names of measures under uncertainty have a dot."""
+    """Columns of a table for SQL, in quotes because the names of measures under uncertainty have a dot."""
     return ", ".join(f'"{name}"' for name in names)
 
 

@@ -1,4 +1,4 @@
-"""Open study databases: check that a file is one, and turn SQLite's errors into ours.
+"""Open study databases: check that a file or schema is one, and turn the errors of databases into ours.
 
 A database may come from a stranger. It is read with plain SELECTs on known tables and with SQLite's defences switched
 on (no trusted schema, no views or triggers, no extensions). It holds only numbers, text and JSON.
@@ -13,8 +13,10 @@ from pathlib import Path
 
 from pareto_monoped.config import MAX_JSON_CHARACTERS
 from pareto_monoped.errors import DatabaseError, DiskError
+from pareto_monoped.study.connection import Connection, FileConnection
 from pareto_monoped.study.lock import holder, locked
-from pareto_monoped.study.place import inaccessible, require_file_name
+from pareto_monoped.study.place import StudyPlace, inaccessible, require_file_name
+from pareto_monoped.study.server.address import Server
 
 FORMAT = 2
 """Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, had neither running hash nor
@@ -29,10 +31,16 @@ _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
 
 
 @contextmanager
-def translated(path: Path) -> Iterator[None]:
-    """Turn the exceptions of SQLite, SQLAlchemy and the system into one clear ``DatabaseError`` or ``DiskError``."""
+def translated(path: StudyPlace) -> Iterator[None]:
+    """Turn the exceptions of databases, SQLAlchemy and the system into one clear error of ours."""
     try:
-        yield
+        if isinstance(path, Server):
+            from pareto_monoped.study.server.failures import translated_there
+
+            with translated_there(path):
+                yield
+        else:
+            yield
     except sqlite3.Error as error:
         raise _clear(path, error) from error
     except OSError as error:
@@ -63,7 +71,7 @@ def _of_sqlalchemy(error: BaseException | None) -> BaseException | None:
 
 
 @contextmanager
-def undamaged(path: Path) -> Iterator[None]:
+def undamaged(path: StudyPlace) -> Iterator[None]:
     """Say that a database is damaged where its content makes the block fail.
 
     Numbers that are text, text that is no JSON, rows that are missing: a study as this package writes it has none.
@@ -76,7 +84,7 @@ def undamaged(path: Path) -> Iterator[None]:
         ) from error
 
 
-def _clear(path: Path, error: sqlite3.Error) -> DatabaseError | DiskError:
+def _clear(path: StudyPlace, error: sqlite3.Error) -> DatabaseError | DiskError:
     code = getattr(error, "sqlite_errorcode", 0) & 0xFF
     kind = DiskError if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_NOMEM) else DatabaseError
     return kind(f"study database {str(path)!r}: {' '.join(_explained(error).split())}")
@@ -109,13 +117,39 @@ def _explained(error: sqlite3.Error) -> str:
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[sqlite3.Connection]:
+def reading(path: StudyPlace) -> Iterator[Connection]:
     """A read-only connection to a study database. All its reads see the database as it was at one moment.
 
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
         DiskError: the disk fails.
+        ServerError: the server is away.
     """
+    with _reading_there(path) if isinstance(path, Server) else _reading_file(path) as connection:
+        yield connection
+
+
+@contextmanager
+def _reading_there(server: Server) -> Iterator[Connection]:
+    with translated(server), undamaged(server):
+        from pareto_monoped.study.server.connection import ServerConnection
+
+        connection = ServerConnection(server)
+        try:
+            connection.execute("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY")
+            if not connection.objects():
+                raise DatabaseError(
+                    f"study database {str(server)!r}: no such study on the server; check the schema, or run a study "
+                    "first"
+                )
+            check(connection, server)
+            yield connection
+        finally:
+            connection.close()
+
+
+@contextmanager
+def _reading_file(path: Path) -> Iterator[Connection]:
     require_file_name(path)
     if not path.is_file():
         raise DatabaseError(f"study database {str(path)!r}: no such file; check the path, or run a study first")
@@ -125,7 +159,9 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
     roll_back(path)
     with translated(path), undamaged(path):
-        connection = sqlite3.connect(_address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S)
+        connection = sqlite3.connect(
+            _address(path), uri=True, isolation_level=None, timeout=READ_TIMEOUT_S, factory=FileConnection
+        )
         try:
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_JSON_CHARACTERS)
             connection.execute("PRAGMA trusted_schema = OFF")
@@ -183,13 +219,13 @@ def _folder_writable(path: Path) -> bool:
     return os.access(path.resolve().parent, os.W_OK)
 
 
-def check(connection: sqlite3.Connection, path: Path) -> int:
+def check(connection: Connection, path: StudyPlace) -> int:
     """Check that a database is a study database of a known version; returns the version of its format.
 
     Raises:
         DatabaseError: not a study, or of a newer version.
     """
-    kinds = connection.execute("SELECT type, name FROM sqlite_master").fetchall()
+    kinds = connection.objects()
     tables = {name for kind, name in kinds if kind == "table"}
     active = [name for kind, name in kinds if kind in ("view", "trigger")]
     if missing := [name for name in (*_OPTUNA_TABLES, *TABLES) if name not in tables]:

@@ -1,14 +1,14 @@
 """Tables that a study has only where something was stored in them; their rows have their place in the running hash."""
 
-import sqlite3
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, TypeVar
 
 from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.connection import Connection
 from pareto_monoped.study.database import reading
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.seals import damaged, has_seals, read_seals
 
 T = TypeVar("T")
@@ -34,22 +34,17 @@ class ExtraTable:
         columns = f"{self.key} PRIMARY KEY, settings TEXT NOT NULL, result TEXT NOT NULL"
         return f"CREATE TABLE IF NOT EXISTS monoped_{self.what} ({columns})"
 
-    @property
-    def insert(self) -> str:
-        """The statement that stores a row, in place of an earlier one with its key."""
-        return f"INSERT OR REPLACE INTO monoped_{self.what} VALUES (?, ?, ?)"
-
-    def rows(self, connection: sqlite3.Connection) -> list[Row]:
+    def rows(self, connection: Connection) -> list[Row]:
         """All rows by their keys; none if the study has no such table."""
-        there = connection.execute(
-            "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?", (f"monoped_{self.what}",)
-        )
+        there = connection.columns(f"monoped_{self.what}")
         key = self.key.split()[0]
         select = f"SELECT {key}, settings, result FROM monoped_{self.what} ORDER BY {key}"
-        return connection.execute(select).fetchall() if there.fetchone() else []
+        return connection.execute(select).fetchall() if there else []
 
 
-def read_rows(db: Path, table: ExtraTable, make: Callable[[Any, Any, str], T]) -> dict[Any, tuple[dict[str, Any], T]]:
+def read_rows(
+    db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]
+) -> dict[Any, tuple[dict[str, Any], T]]:
     """Settings and results by key, checked against the running hash.
 
     Args:

@@ -1,7 +1,14 @@
 """Trials of a study that an Optuna user has added: ignored here, counted, and named."""
 
-FOREIGN_COUNT = "SELECT max(0, (SELECT count(*) FROM trials) - (SELECT count(*) FROM monoped_trials))"
-"""How many of Optuna's trials are not of this package."""
+from pareto_monoped.study.connection import Connection
+
+
+def foreign_count(connection: Connection) -> int:
+    """How many of Optuna's trials are not of this package."""
+    (more,) = connection.execute(
+        "SELECT (SELECT count(*) FROM trials) - (SELECT count(*) FROM monoped_trials)"
+    ).fetchone()
+    return max(0, int(more))
 
 
 def foreign_note(count: int) -> str:

@@ -1,18 +1,18 @@
 """Read the front that a study keeps, without its other trials."""
 
-import sqlite3
 from dataclasses import dataclass
-from pathlib import Path
 
 import pandas as pd
 
 from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.study.connection import Connection
 from pareto_monoped.study.database import reading, undamaged
 from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.derived import with_agility
-from pareto_monoped.study.foreign import FOREIGN_COUNT
+from pareto_monoped.study.foreign import foreign_count
 from pareto_monoped.study.kept_front import KeptFront, kept_row, rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.seals import ROWS, damaged, has_seals, read_seals
 from pareto_monoped.study.trial_frame import trial_frame, with_motors
@@ -29,7 +29,7 @@ class StudyFront:
         foreign: how many of Optuna's trials are not of this package.
     """
 
-    db: Path
+    db: StudyPlace
     study: Study
     meta: StudyMeta
     rows: pd.DataFrame
@@ -38,7 +38,7 @@ class StudyFront:
     sealed: bool
 
 
-def read_front(db: Path) -> StudyFront:
+def read_front(db: StudyPlace) -> StudyFront:
     """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
 
     Raises:
@@ -48,9 +48,9 @@ def read_front(db: Path) -> StudyFront:
         return _read_front(db)
 
 
-def _read_front(db: Path) -> StudyFront:
+def _read_front(db: StudyPlace) -> StudyFront:
     with reading(db) as connection:
-        foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
+        foreign = foreign_count(connection)
         if has_seals(connection):
             return _kept(connection, db, foreign)
     data = read_study(db)
@@ -65,12 +65,12 @@ def _read_front(db: Path) -> StudyFront:
     )
 
 
-def _kept(connection: sqlite3.Connection, db: Path, foreign: int) -> StudyFront:
+def _kept(connection: Connection, db: StudyPlace, foreign: int) -> StudyFront:
     seals = read_seals(connection, db)
     rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
     if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
         raise damaged(db, findings)
-    columns = [row[1] for row in connection.execute("PRAGMA table_info(monoped_trials)")]
+    columns = connection.columns("monoped_trials")
     numbers, counts, _ = kept_row(connection)
     total = connection.execute("SELECT count(*) FROM monoped_trials").fetchone()[0]
     # Later trials than the kept front's are checked too: one that is bent may hide that it is on the front.

@@ -1,7 +1,6 @@
 """The front and the counts of a study as its database keeps them, so that nobody needs to read all trials for them."""
 
 import json
-import sqlite3
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
@@ -12,6 +11,7 @@ from pareto_monoped.design import in_use
 from pareto_monoped.pareto.growing_front import GrowingFront
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.columns import listed
+from pareto_monoped.study.connection import Connection
 
 FRONT = """
 CREATE TABLE monoped_front (
@@ -67,7 +67,7 @@ class KeptFront:
         """Whether the row lacks so many trials that it is to be written again: a long front takes a while."""
         return self.behind and _SHARE * (self.trials - self._stored) >= len(self._front)
 
-    def load(self, connection: sqlite3.Connection) -> None:
+    def load(self, connection: Connection) -> None:
         """Take what the database keeps, and add the trials that came after."""
         numbers, self.counts, self.used = kept_row(connection)
         rows = rows_of(connection, self._objectives.names, numbers)
@@ -91,7 +91,7 @@ class KeptFront:
         objectives = np.column_stack([np.asarray(values[n], dtype=np.float64) for n in self._objectives.names])
         self._front.add(np.asarray(values["trial"], dtype=np.int64)[feasible], objectives[feasible])
 
-    def leave_out(self, connection: sqlite3.Connection, ill_conditioned: Collection[int]) -> None:
+    def leave_out(self, connection: Connection, ill_conditioned: Collection[int]) -> None:
         """Make the front anew without these trials; trials that they dominated may enter."""
         names = listed(self._objectives.names)
         rows = connection.execute(
@@ -102,23 +102,23 @@ class KeptFront:
         self._front = GrowingFront(self._objectives)
         self._front.add(np.array([row[0] for row in rows], dtype=np.int64), values)
 
-    def store(self, connection: sqlite3.Connection) -> tuple[Any, ...]:
+    def store(self, connection: Connection) -> tuple[Any, ...]:
         """Replace the kept row; returns it."""
         numbers = json.dumps(self.numbers, separators=(",", ":"))
         row = (1, numbers, *self.counts.values(), json.dumps(sorted(self.used)))
-        connection.execute("INSERT OR REPLACE INTO monoped_front VALUES (?, ?, ?, ?, ?, ?)", row)
+        connection.replace("monoped_front", [row])
         self._stored = self.trials
         return row
 
 
-def kept_row(connection: sqlite3.Connection) -> tuple[list[int], dict[str, int], set[str]]:
+def kept_row(connection: Connection) -> tuple[list[int], dict[str, int], set[str]]:
     """Numbers of the trials on the kept front, how many trials have each state, and names of the optional variables."""
     row = connection.execute("SELECT trials, feasible, infeasible, failed, used FROM monoped_front").fetchone()
     numbers = [int(number) for number in parsed_json(row[0])]
     return numbers, dict(zip(STATES, map(int, row[1:4]), strict=True)), set(parsed_json(row[4]))
 
 
-def rows_of(connection: sqlite3.Connection, names: Sequence[str], trials: Sequence[int]) -> list[tuple[Any, ...]]:
+def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int]) -> list[tuple[Any, ...]]:
     """Values of some columns of some trials, ascending by number."""
     rows = []
     for first in range(0, len(trials), _CHUNK):

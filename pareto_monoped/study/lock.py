@@ -5,12 +5,17 @@ import fcntl
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pareto_monoped.errors import DatabaseError, OutputError
 from pareto_monoped.files import is_failure
-from pareto_monoped.study.place import inaccessible, require_file_name
+from pareto_monoped.study.place import StudyPlace, inaccessible, require_file_name
+from pareto_monoped.study.server.address import Server
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.server.lock import ServerLock
 
 
 class Lock:
@@ -38,16 +43,29 @@ def _content(links: int) -> bytes:
     return f"{os.getpid():<10}\n{links:<10}\n".encode("ascii")
 
 
-@contextmanager
-def locked(db: Path) -> Iterator[Lock]:
-    """Lock the study for this process. The file ``DB-lock`` beside the database, links resolved, holds the process id.
+def locked(db: StudyPlace) -> "AbstractContextManager[Lock | ServerLock]":
+    """Lock the study for this process, on whatever place it stands.
 
-    The kernel releases the lock when the process ends in any way, so a killed run never blocks the next one.
+    The lock ends when the process ends in any way, so a killed run never blocks the next one.
 
     Raises:
         DatabaseError: another process holds the study.
-        OutputError: the folder cannot be written to, or something else has the lock's name.
+        OutputError: the file's folder cannot be written to, or something else has the name of the lock.
         DiskError: the disk is full or fails.
+        ServerError: the server is away.
+    """
+    if isinstance(db, Path):
+        return _locked_file(db)
+    from pareto_monoped.study.server.lock import locked_there
+
+    return locked_there(db)
+
+
+@contextmanager
+def _locked_file(db: Path) -> Iterator[Lock]:
+    """Lock a file. The file ``DB-lock`` beside the database, links resolved, holds the process id.
+
+    The kernel releases the lock when the process ends in any way.
     """
     require_file_name(db)
     path = _lock_path(db)
@@ -117,8 +135,12 @@ def _words(descriptor: int) -> list[str]:
     return words if words and words[0].isdigit() else ["unknown", *words]
 
 
-def holder(db: Path) -> int | None:
+def holder(db: StudyPlace) -> int | None:
     """Process id of the run that holds the study, or None."""
+    if isinstance(db, Server):
+        from pareto_monoped.study.server.lock import holder_there
+
+        return holder_there(db)
     try:
         descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

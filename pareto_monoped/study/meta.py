@@ -3,13 +3,13 @@
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import Any
 
 from pydantic import StrictBool, StrictFloat, StrictInt
 
 from pareto_monoped.config import checked, parsed_json
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.place import StudyPlace
 
 Number = StrictFloat | None
 """A number as JSON keeps it: None stands for NaN, which JSON lacks."""
@@ -62,7 +62,7 @@ class StudyMeta:
         return [(field.name, strict_json(getattr(self, field.name))) for field in fields(self)]
 
 
-def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: Path) -> StudyMeta:
+def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: StudyPlace) -> StudyMeta:
     """The record from its stored rows; rows with other keys are ignored.
 
     Raises:

@@ -1,18 +1,18 @@
 """Whether Optuna's tables say the same as ours, and which of Optuna's trials are not of this package."""
 
-import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from pareto_monoped.study.connection import Connection, Rows
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.optuna_tables import OURS, stored_digest, study_digests
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, Seals
 
 
-def optuna_numbers(connection: sqlite3.Connection, count: int, seals: Seals | None) -> list[int]:
+def optuna_numbers(connection: Connection, count: int, seals: Seals | None) -> list[int]:
     """Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials.
 
     Trials that were written directly are numbered on from the first of their generation, which the running hash has
@@ -32,13 +32,13 @@ def optuna_numbers(connection: sqlite3.Connection, count: int, seals: Seals | No
     return [int(number) for number in numbers]
 
 
-def foreign_trials(connection: sqlite3.Connection, count: int, seals: Seals | None) -> tuple[int, ...]:
+def foreign_trials(connection: Connection, count: int, seals: Seals | None) -> tuple[int, ...]:
     """Optuna's numbers of the trials that are not among the study's ``count``."""
     ours = set(optuna_numbers(connection, count, seals))
     return tuple(n for (n,) in connection.execute("SELECT number FROM trials ORDER BY number") if n not in ours)
 
 
-def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seals | None) -> list[str]:
+def optuna_findings(connection: Connection, data: StudyData, seals: Seals | None) -> list[str]:
     """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
     numbers = optuna_numbers(connection, len(data.trials), seals)
     findings = list(_study_findings(connection, data.study))
@@ -51,7 +51,7 @@ def optuna_findings(connection: sqlite3.Connection, data: StudyData, seals: Seal
     return findings
 
 
-def _study_findings(connection: sqlite3.Connection, study: Study) -> Iterator[str]:
+def _study_findings(connection: Connection, study: Study) -> Iterator[str]:
     names = [name for (name,) in connection.execute("SELECT study_name FROM studies")]
     if names != [study.name]:
         yield f"Optuna's name of the study is {', '.join(map(repr, names))}, ours {study.name!r}"
@@ -61,7 +61,7 @@ def _study_findings(connection: sqlite3.Connection, study: Study) -> Iterator[st
         yield "Optuna's directions of the objectives are not ours"
 
 
-def _attribute_findings(connection: sqlite3.Connection, sealed: Mapping[str, str]) -> Iterator[str]:
+def _attribute_findings(connection: Connection, sealed: Mapping[str, str]) -> Iterator[str]:
     """What Optuna's tables say otherwise of the study itself than when it was created; additions are a user's right."""
     found = study_digests(connection)
     different = [name for name, digest in sealed.items() if found.get(name) != digest]
@@ -72,7 +72,7 @@ def _attribute_findings(connection: sqlite3.Connection, sealed: Mapping[str, str
         yield f"Optuna's {name} " + ("does not match its hash" if name in found else "is missing")
 
 
-def _trial_findings(connection: sqlite3.Connection, data: StudyData, numbers: Sequence[int]) -> Iterator[str]:
+def _trial_findings(connection: Connection, data: StudyData, numbers: Sequence[int]) -> Iterator[str]:
     place = {number: k for k, number in enumerate(numbers)}
     trials = data.trials
     failed = (trials["state"] == "failed").to_numpy()
@@ -94,7 +94,7 @@ def _trial_findings(connection: sqlite3.Connection, data: StudyData, numbers: Se
 
 def _different(
     what: str,
-    rows: sqlite3.Cursor,
+    rows: Rows,
     place: dict[int, int],
     wanted: dict[Any, Any],
     present: "np.typing.NDArray[np.bool_]",
@@ -122,7 +122,7 @@ def sealed_generations(seals: Seals) -> dict[int, int]:
     return {first: end - first for first, end in ends if digests[first] != BY_OPTUNA}
 
 
-def _digest_findings(connection: sqlite3.Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:
+def _digest_findings(connection: Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:
     sealed = seals.written.get("optuna", {})
     for first, count in sealed_generations(seals).items():
         end = first + count

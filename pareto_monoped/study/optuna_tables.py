@@ -1,22 +1,32 @@
 """Optuna's own tables: what Optuna and its dashboard show of a study."""
 
 import json
-import sqlite3
 import warnings
 from collections.abc import Mapping, Sequence
 from datetime import UTC
-from pathlib import Path
 from typing import Any
 
 from pareto_monoped.design import NAMES
+from pareto_monoped.study.connection import Connection
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.motor_choice import AnyCoordinates
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.scoring import values_of
 from pareto_monoped.study.seals import row_digest
+from pareto_monoped.study.server.address import Server
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
 """Revisions of Optuna's schema that are written directly. For any other, Optuna writes its tables itself."""
+
+_KEYS = {
+    "trials": "trial_id",
+    "trial_params": "param_id",
+    "trial_values": "trial_value_id",
+    "trial_system_attributes": "trial_system_attribute_id",
+    "trial_user_attributes": "trial_user_attribute_id",
+}
+"""Primary keys of these tables; their rows were written in this order."""
 
 _WRITTEN = {
     "trials": ("trial_id", "number", "study_id", "state", "datetime_start", "datetime_complete"),
@@ -25,7 +35,7 @@ _WRITTEN = {
     "trial_system_attributes": ("trial_id", "key", "value_json"),
     "trial_user_attributes": ("trial_id", "key", "value_json"),
 }
-"""Optuna's tables that trials are written into, and the columns that are; the others are numbered by SQLite."""
+"""Optuna's tables that trials are written into, and the columns that are; the database numbers the others."""
 
 OURS = "monoped:trial"
 """Key of our number in a trial that Optuna writes for us, which tells it from trials of an Optuna user."""
@@ -33,7 +43,7 @@ _OF_TRIALS = ("trial_params", "trial_values", "trial_system_attributes", "trial_
 _OF_OTHERS = ("trial_intermediate_values", "trial_heartbeats")
 
 
-def drop_trials(connection: sqlite3.Connection, foreign: Sequence[int]) -> None:
+def drop_trials(connection: Connection, foreign: Sequence[int]) -> None:
     """Delete Optuna's trials of these numbers, and number the others from 0 on, as Optuna would have."""
     ids = [(n,) for n in foreign]
     for table in (*_OF_TRIALS, *_OF_OTHERS):
@@ -45,7 +55,7 @@ def drop_trials(connection: sqlite3.Connection, foreign: Sequence[int]) -> None:
     connection.executemany("UPDATE trials SET number = ? WHERE trial_id = ?", [(n, i) for n, (i,) in enumerate(kept)])
 
 
-def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str:
+def stored_digest(connection: Connection, first: int, count: int) -> str:
     """The digest that ``OptunaTables.insert`` gave of trials, of what is stored of them now.
 
     Args:
@@ -60,7 +70,7 @@ def stored_digest(connection: sqlite3.Connection, first: int, count: int) -> str
             connection.execute(
                 f"SELECT {names} FROM {table} "
                 + ("" if table == "trials" else "JOIN trials USING (trial_id) ")
-                + f"WHERE trials.number >= ? AND trials.number < ? ORDER BY trials.trial_id, {table}.rowid",
+                + f"WHERE trials.number >= ? AND trials.number < ? ORDER BY trials.trial_id, {table}.{_KEYS[table]}",
                 (first, first + count),
             ).fetchall()
         )
@@ -75,7 +85,7 @@ _OF_STUDY = {
 }
 
 
-def study_digests(connection: sqlite3.Connection) -> dict[str, str]:
+def study_digests(connection: Connection) -> dict[str, str]:
     """Digests of what Optuna's tables say of the study itself: per table, and per attribute of the study."""
     rows: dict[str, list[Any]] = {table: connection.execute(sql).fetchall() for table, sql in _OF_STUDY.items()}
     for kind in ("user", "system"):
@@ -91,7 +101,7 @@ def _digest(rows: list[list[Any]]) -> str:
     return row_digest([trials, [row[:3] for row in params], distributions, *others])
 
 
-def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> None:
+def create_tables(path: StudyPlace, study: Study, attributes: Mapping[str, Any]) -> None:
     """Let Optuna create a new database with an empty study.
 
     Args:
@@ -127,10 +137,14 @@ def create_tables(path: Path, study: Study, attributes: Mapping[str, Any]) -> No
         optuna.logging.set_verbosity(verbosity)
 
 
-def _optuna_storage(path: Path) -> Any:
+def _optuna_storage(path: StudyPlace) -> Any:
     import optuna
     from sqlalchemy.engine import URL
 
+    if isinstance(path, Server):
+        from pareto_monoped.study.server.connection import SQLALCHEMY, creator
+
+        return optuna.storages.RDBStorage(SQLALCHEMY, engine_kwargs={"creator": creator(path)})
     # In a plain "sqlite:///..." text, a question mark or percent sign in the path would get a meaning.
     url = URL.create("sqlite", database=str(path)).render_as_string(hide_password=False)
     return optuna.storages.RDBStorage(url)
@@ -139,7 +153,7 @@ def _optuna_storage(path: Path) -> Any:
 class OptunaTables:
     """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
-    def __init__(self, path: Path, study_id: int, coordinates: AnyCoordinates) -> None:
+    def __init__(self, path: StudyPlace, study_id: int, coordinates: AnyCoordinates) -> None:
         study = coordinates.study
         self._path = path
         self._study_id = study_id
@@ -164,7 +178,7 @@ class OptunaTables:
                 {"name": "CategoricalDistribution", "attributes": {"choices": motors}}
             )
 
-    def insert(self, connection: sqlite3.Connection, generation: Generation) -> dict[str, dict[str, str]]:
+    def insert(self, connection: Connection, generation: Generation) -> dict[str, dict[str, str]]:
         """Insert a generation's rows within the transaction that the connection has open.
 
         Returns:
@@ -173,21 +187,21 @@ class OptunaTables:
         """
         rows, first = self._rows(connection, generation)
         for table, columns in _WRITTEN.items():
-            connection.executemany(
-                f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({', '.join('?' * len(columns))})", rows[table]
-            )
+            connection.insert(table, columns, rows[table])
         key = str(generation.first_trial)
         sealed = {"optuna": {key: _digest(list(rows.values()))}}
         return sealed if first == generation.first_trial else {**sealed, "optuna_first": {key: str(first)}}
 
-    def _rows(self, connection: sqlite3.Connection, generation: Generation) -> tuple[dict[str, list[Any]], int]:
+    def _rows(self, connection: Connection, generation: Generation) -> tuple[dict[str, list[Any]], int]:
         """The rows of each table of ``_WRITTEN``, and Optuna's number of the first trial."""
         # Optuna's numbers and primary keys are ours, and one more, unless an Optuna user has added trials. It numbers
         # trials by their keys, so the last key has the last number; to look for that would be to read all trials.
         first, last_id = connection.execute(
             "SELECT number + 1, trial_id FROM trials ORDER BY trial_id DESC LIMIT 1"
         ).fetchone() or (0, 0)
-        ids = range(last_id + 1, last_id + 1 + len(generation.designs))
+        count = len(generation.designs)
+        first_id = connection.trial_ids_after(last_id, count)
+        ids = range(first_id, first_id + count)
         failed = (generation.judgement.state == "failed").tolist()
         started, ended = (
             t.astimezone(UTC).replace(tzinfo=None).isoformat(" ") for t in (generation.started, generation.ended)

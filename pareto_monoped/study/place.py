@@ -1,13 +1,32 @@
-"""Where a study database stands: names that cannot be one, and files that the system does not let us use."""
+"""Where a study stands: in a file or on a server; names that cannot be one, and files that we may not use."""
 
 import stat
 from pathlib import Path
 
 from pareto_monoped.errors import DatabaseError, DiskError
+from pareto_monoped.extras import require_extra
 from pareto_monoped.files import cure_of, is_failure
+from pareto_monoped.study.server.address import Server, is_address, server_of
+
+StudyPlace = Path | Server
+"""A database file, or a schema on a server."""
 
 
-def inaccessible(path: Path, error: OSError) -> DatabaseError | DiskError:
+def place_of(text: str) -> StudyPlace:
+    """The place that a user names: the address of a server, else a file.
+
+    Raises:
+        DatabaseError: an address that cannot be one of a study.
+        InputError: what speaks to servers is not installed.
+    """
+    if not is_address(text):
+        return Path(text)
+    server = server_of(text)
+    require_extra("postgres", f"study database {str(server)!r}", instead="give the name of a file")
+    return server
+
+
+def inaccessible(path: StudyPlace, error: OSError) -> DatabaseError | DiskError:
     """The error for a database that the system does not let us read or write."""
     kind = DiskError if is_failure(error) else DatabaseError
     said = error.strerror or error

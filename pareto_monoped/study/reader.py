@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from pareto_monoped.study.definition import Study, study_from_dict
 from pareto_monoped.study.derived import with_agility
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows, motor_keys
 from pareto_monoped.study.named_motors import names_of
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.seals import ROWS, Seals, damaged, has_seals, read_seals
 from pareto_monoped.study.trial_frame import trial_frame, with_motors
 
@@ -60,7 +60,7 @@ class StudyData:
         links: length of its running hash.
     """
 
-    db: Path
+    db: StudyPlace
     study: Study
     meta: StudyMeta
     trials: pd.DataFrame
@@ -188,7 +188,7 @@ class StudyData:
         return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
-def read_study(db: Path) -> StudyData:
+def read_study(db: StudyPlace) -> StudyData:
     """Read a study database, finished or still growing, and check it against its running hash.
 
     Raises:
@@ -198,7 +198,7 @@ def read_study(db: Path) -> StudyData:
         return _read_study(db)
 
 
-def _read_study(db: Path) -> StudyData:
+def _read_study(db: StudyPlace) -> StudyData:
     with reading(db) as connection:
         sealed = has_seals(connection)
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}

@@ -1,17 +1,16 @@
 """Drop from a study what an Optuna user has added to it."""
 
-from pathlib import Path
-
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.optuna_check import foreign_trials, optuna_findings, sealed_generations
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.seals import read_seals
 from pareto_monoped.study.store import Store
 
 
-def repair(db: Path) -> tuple[int, ...]:
+def repair(db: StudyPlace) -> tuple[int, ...]:
     """Drop trials that are not of this package from Optuna's tables, and number Optuna's others from 0 on.
 
     Returns:

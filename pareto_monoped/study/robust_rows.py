@@ -1,12 +1,12 @@
 """The stored robustness of a study: one row per trial that was simulated under uncertainty."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from pareto_monoped.config import checked
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.extra_rows import ExtraTable, read_rows
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.uncertainty.statistics import Robustness
 
 ROBUSTNESS = ExtraTable(what="robustness", key="trial INTEGER")
@@ -20,7 +20,7 @@ class Stored:
     result: Robustness
 
 
-def read_robustness(db: Path) -> dict[int, Stored]:
+def read_robustness(db: StudyPlace) -> dict[int, Stored]:
     """The stored robustness of a study by trial; empty if it has none.
 
     Raises:

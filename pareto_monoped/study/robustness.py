@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -14,6 +13,7 @@ from pareto_monoped.errors import InputError, SelectionError, StudyError, compla
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import strict_json
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.robust_rows import ROBUSTNESS, read_robustness
 from pareto_monoped.study.run import default_workers
@@ -33,7 +33,7 @@ _SHARED = 32
 
 
 def robust(
-    db: Path,
+    db: StudyPlace,
     uncertainty: Uncertainty,
     *,
     trials: Sequence[int] | None = None,

@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.compute.threads import cores
 from pareto_monoped.errors import LostTrialsError, StudyError
@@ -21,8 +21,10 @@ from pareto_monoped.study.lock import Lock, locked
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.own import NOTHING, Own
 from pareto_monoped.study.own_functions import refuse_other_functions, require_functions, with_functions
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
+from pareto_monoped.study.server.address import Server, schema_for
 from pareto_monoped.study.session import Progress, Session
 from pareto_monoped.study.simulator import (
     Simulator,
@@ -32,6 +34,9 @@ from pareto_monoped.study.simulator import (
     stored_simulator,
 )
 from pareto_monoped.study.store import Store, create_database
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.server.lock import ServerLock
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +57,7 @@ class RunSummary:
         remarks: see ``study.remarks``.
     """
 
-    db: Path
+    db: StudyPlace
     evaluations: int
     new_evaluations: int
     front_size: int
@@ -76,7 +81,7 @@ def default_workers() -> int:
 
 def run(
     study: Study,
-    db: Path,
+    db: StudyPlace,
     *,
     evaluations: int | None = None,
     seed: int | None = None,
@@ -90,7 +95,7 @@ def run(
 
     Args:
         study: the definition.
-        db: its database; created if missing.
+        db: its database; created if missing. A server's address without a schema gets one after the study's name.
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
         workers: number of threads that simulate, all cores if None. It does not change the trials.
@@ -106,6 +111,8 @@ def run(
     """
     if seed is not None:
         study = replace(study, seed=seed)
+    if isinstance(db, Server) and db.schema is None:
+        db = db.of_schema(schema_for(study.name))
     with locked(db) as lock:
         threads = workers or default_workers()
         if is_vacant(db):
@@ -129,7 +136,7 @@ def run(
 
 
 def resume(
-    db: Path,
+    db: StudyPlace,
     *,
     evaluations: int | None = None,
     workers: int | None = None,
@@ -164,10 +171,10 @@ def resume(
         return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock, own)
 
 
-def _checked(db: Path, lock: Lock) -> StudyData:
+def _checked(db: StudyPlace, lock: "Lock | ServerLock") -> StudyData:
     """The study, if it has everything that was safe when its last run was killed."""
     data = read_study(db)
-    if data.links < lock.before:
+    if isinstance(lock, Lock) and isinstance(db, Path) and data.links < lock.before:
         raise LostTrialsError(
             f"study database {str(db)!r}: lacks the last {lock.before - data.links} transactions of a killed run, "
             f"which were safe: its log {db.name + '-wal'!r} was deleted, or an older copy was put back; restore both, "
@@ -198,7 +205,7 @@ def _meta(study: Study, simulator: Simulator) -> StudyMeta:
     )
 
 
-def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: Path) -> None:
+def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: StudyPlace) -> None:
     before = provenance.decisive(data.study, data.meta.contents, data.meta.versions)
     now = provenance.decisive(study, simulator.contents, provenance.versions(study))
     changes = provenance.differences(before, now)
@@ -211,7 +218,7 @@ def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: Pat
         )
 
 
-def _refuse_fewer(data: StudyData, evaluations: int | None, db: Path) -> None:
+def _refuse_fewer(data: StudyData, evaluations: int | None, db: StudyPlace) -> None:
     """Refuse a total that is below what is stored: trials are never taken back."""
     if evaluations is not None and evaluations < len(data.trials):
         raise StudyError(
@@ -220,7 +227,7 @@ def _refuse_fewer(data: StudyData, evaluations: int | None, db: Path) -> None:
         )
 
 
-def _refuse_other_results(data: StudyData, simulator: Simulator, db: Path) -> None:
+def _refuse_other_results(data: StudyData, simulator: Simulator, db: StudyPlace) -> None:
     before, now = data.meta.probe, simulator.probe()
     if before != now:
         raise StudyError(
@@ -247,18 +254,18 @@ def _nothing_left(data: StudyData, study: Study, budget: int) -> bool:
 
 
 def _go_on(
-    db: Path,
+    db: StudyPlace,
     data: StudyData,
     study: Study,
     simulator: Simulator,
     budget: int,
     progress: Callable[[Progress], object],
     notify: Callable[[str], None],
-    lock: Lock,
+    lock: "Lock | ServerLock",
     own: Own,
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
-        if any(Path(f"{db.resolve()}{end}").exists() for end in ("-wal", "-journal")):
+        if isinstance(db, Path) and any(Path(f"{db.resolve()}{end}").exists() for end in ("-wal", "-journal")):
             # A kill at the very end has left a log; opening the study for writing makes it a single file again.
             with Store(db, study, lock=lock):
                 pass
@@ -282,11 +289,11 @@ def _go_on(
     return _summary(db, data, read_study(db), session.elapsed)
 
 
-def _source(db: Path) -> str:
+def _source(db: StudyPlace) -> str:
     return f"study database {str(db)!r}"
 
 
-def _summary(db: Path, before: StudyData, after: StudyData, seconds: float) -> RunSummary:
+def _summary(db: StudyPlace, before: StudyData, after: StudyData, seconds: float) -> RunSummary:
     front, objectives = after.front(), after.study.objectives
     return RunSummary(
         db=db,

@@ -9,10 +9,8 @@ The hash finds damage and careless edits. It is no signature: who edits a study 
 
 import hashlib
 import json
-import sqlite3
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,6 +19,8 @@ from pareto_monoped.config import parsed_json
 from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.columns import COLUMNS
+from pareto_monoped.study.connection import Connection
+from pareto_monoped.study.place import StudyPlace
 
 SEALS = """
 CREATE TABLE monoped_seals (
@@ -99,7 +99,7 @@ def _link_hash(previous: str, first: int, columns: str, trials: str, written: st
 class Sealer:
     """Adds links to the chain, each within the transaction whose rows it seals."""
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
+    def __init__(self, connection: Connection) -> None:
         self._connection = connection
         self._names: list[str] = []
         self._names_link = -1
@@ -142,7 +142,7 @@ class Seals:
         written: the latest digests of the rows of all other tables.
     """
 
-    db: Path
+    db: StudyPlace
     links: int
     parts: tuple[tuple[int, tuple[str, ...], str], ...]
     written: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -199,13 +199,13 @@ def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) ->
     return wrong
 
 
-def has_seals(connection: sqlite3.Connection) -> bool:
+def has_seals(connection: Connection) -> bool:
     """Whether a study has a running hash; studies of versions up to 0.2.0 have none until they go on."""
     row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
     return row is not None and row[0] != "1"
 
 
-def read_seals(connection: sqlite3.Connection, db: Path) -> Seals:
+def read_seals(connection: Connection, db: StudyPlace) -> Seals:
     """Read the chain and check that its links follow from each other.
 
     Raises:
@@ -239,7 +239,7 @@ def read_seals(connection: sqlite3.Connection, db: Path) -> Seals:
 _SHOWN = 3
 
 
-def damaged(db: Path, findings: Sequence[str]) -> DatabaseError:
+def damaged(db: StudyPlace, findings: Sequence[str]) -> DatabaseError:
     """The error for rows that do not match their hash."""
     more = f" and {len(findings) - _SHOWN} others" if len(findings) > _SHOWN else ""
     return DatabaseError(

@@ -1,7 +1,6 @@
 """Which variable of a trial and which assumption about the built robot moves its measures most, and by how much."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -15,6 +14,7 @@ from pareto_monoped.study.coordinates import gear_list
 from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.lock import locked
 from pareto_monoped.study.meta import strict_json
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.robustness import refuse_other_jumps
 from pareto_monoped.study.run import default_workers
@@ -49,7 +49,7 @@ _LABELS = {
 
 
 def sensitivity(
-    db: Path,
+    db: StudyPlace,
     trial: int,
     ranges: Uncertainty,
     *,

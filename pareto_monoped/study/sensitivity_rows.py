@@ -1,12 +1,12 @@
 """The stored sensitivities of a study: one row per trial and per kind of factors."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, get_args
 
 from pareto_monoped.config import checked
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.study.extra_rows import ExtraTable, read_rows
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.uncertainty.influences import About, Sensitivity
 
 SENSITIVITY = ExtraTable(what="sensitivity", key="trial_and_factors TEXT")
@@ -25,7 +25,7 @@ def key_of(trial: int, about: About) -> str:
     return f"{trial} {about}"
 
 
-def read_sensitivity(db: Path) -> dict[tuple[int, About], StoredSensitivity]:
+def read_sensitivity(db: StudyPlace) -> dict[tuple[int, About], StoredSensitivity]:
     """The stored sensitivities of a study by trial and kind of factors; empty if it has none.
 
     Raises:

@@ -1,16 +1,16 @@
 """Progress and settings of a study."""
 
-from pathlib import Path
 from typing import Any
 
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.pareto.at_height import best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.study.lock import holder
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.summary import read_summary
 
 
-def status(db: Path) -> dict[str, Any]:
+def status(db: StudyPlace) -> dict[str, Any]:
     """Progress and settings of a study, as JSON values.
 
     Raises:

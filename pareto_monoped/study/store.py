@@ -9,19 +9,20 @@ import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import temporary_beside
 from pareto_monoped.study.arrival import settle
-from pareto_monoped.study.columns import LATER, columns_of, listed
+from pareto_monoped.study.columns import LATER, columns_of
+from pareto_monoped.study.connection import Connection, FileConnection
 from pareto_monoped.study.coordinates import plain_coordinates
 from pareto_monoped.study.database import FORMAT, check, translated
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.extra_rows import ExtraTable, Row
-from pareto_monoped.study.foreign import FOREIGN_COUNT
+from pareto_monoped.study.foreign import foreign_count
 from pareto_monoped.study.generation import Generation
 from pareto_monoped.study.kept_front import FRONT, KeptFront
 from pareto_monoped.study.lock import Lock
@@ -35,7 +36,13 @@ from pareto_monoped.study.optuna_tables import (
     stored_digest,
     study_digests,
 )
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
+from pareto_monoped.study.server.address import Server
+from pareto_monoped.study.writing import open_for_writing
+
+if TYPE_CHECKING:
+    from pareto_monoped.study.server.lock import ServerLock
 
 _OUR_TABLES = """
 CREATE TABLE monoped_meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -51,10 +58,11 @@ CREATE TABLE monoped_trials ({columns});
 _OUR_TABLES += SEALS + FRONT
 
 
-def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
-    """Create a study database without trials; after an error there is no file.
+def create_database(path: StudyPlace, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
+    """Create a study database without trials; after an error there is none.
 
-    A killed creation leaves the hidden file ``.NAME-new`` and perhaps its journal, which the next creation deletes.
+    A killed creation leaves the hidden file ``.NAME-new`` and perhaps its journal, or on a server the schema
+    ``NAME_new``, which the next creation deletes.
 
     Args:
         path: where to; must be vacant, see ``arrival``. The caller holds its lock.
@@ -65,31 +73,44 @@ def create_database(path: Path, study: Study, meta: StudyMeta, state: Mapping[st
     Raises:
         DatabaseError: it cannot be written.
         OutputError: the folder cannot be written to.
+        ServerError: the server is away.
     """
+    attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
+    if isinstance(path, Server):
+        from pareto_monoped.study.server.connection import ServerConnection
+        from pareto_monoped.study.server.creating import new_schema
+
+        with translated(path), new_schema(path) as schema:
+            create_tables(schema, study, attributes)
+            _create_ours(ServerConnection(schema), study, meta, state)
+        return
     new = path.with_name(f".{path.name}-new")
     # Before the file itself: a journal without its file would be rolled back into the next file of that name.
     Path(f"{new}-journal").unlink(missing_ok=True)
     with temporary_beside(path, new) as temporary:
         temporary.unlink()
-        attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
         with translated(path):
             create_tables(temporary, study, attributes)
-            connection = sqlite3.connect(temporary, isolation_level=None)
-            try:
-                columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
-                connection.execute("BEGIN IMMEDIATE")
-                for statement in _OUR_TABLES.format(columns=columns).split(";"):
-                    connection.execute(statement)
-                rows = [("format", strict_json(FORMAT)), *meta.as_rows()]
-                connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
-                connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
-                KeptFront(study.objectives).store(connection)
-                written = {table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()}
-                Sealer(connection).add(written | {OPTUNA_STUDY: study_digests(connection)})
-                connection.execute("COMMIT")
-            finally:
-                connection.close()
+            connection = sqlite3.connect(temporary, isolation_level=None, factory=FileConnection)
+            _create_ours(connection, study, meta, state)
         settle(temporary, path)
+
+
+def _create_ours(connection: Connection, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
+    """Create our tables beside those of Optuna, and close the connection."""
+    try:
+        columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
+        with _transaction(connection):
+            for statement in _OUR_TABLES.format(columns=columns).split(";"):
+                connection.execute(statement)
+            rows = [("format", strict_json(FORMAT)), *meta.as_rows()]
+            connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
+            connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
+            KeptFront(study.objectives).store(connection)
+            written = {table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()}
+            Sealer(connection).add(written | {OPTUNA_STUDY: study_digests(connection)})
+    finally:
+        connection.close()
 
 
 class Store:
@@ -97,12 +118,12 @@ class Store:
 
     def __init__(
         self,
-        path: Path,
+        path: StudyPlace,
         study: Study,
         *,
         coordinates: AnyCoordinates | None = None,
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
-        lock: Lock | None = None,
+        lock: "Lock | ServerLock | None" = None,
     ) -> None:
         """Open an existing study for writing.
 
@@ -119,26 +140,19 @@ class Store:
         self.path = path
         self._objectives, self._columns = study.objectives, columns_of(study)
         self._lock = lock
-        # A file marked read-only is meant to stay as it is. SQLite would ask the system, which lets root write anyway.
-        if not path.stat().st_mode & 0o222:
-            raise DatabaseError(
-                f"study database {str(path)!r}: is read-only; allow writing (chmod u+w), or run on a copy"
-            )
         with translated(path):
-            # One other thread writes the generations, one at a time, and the run loop waits for it.
-            self._connection = sqlite3.connect(path, isolation_level=None, timeout=30.0, check_same_thread=False)
+            self._place = open_for_writing(path)
+            self._connection = self._place.connection
             try:
                 self._open(coordinates or plain_coordinates(study), known_schemas)
             except BaseException:
-                self._connection.close()
+                self._place.close()
                 raise
 
     def _open(self, coordinates: AnyCoordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
-        connection.execute("PRAGMA trusted_schema = OFF")
         version = check(connection, self.path)
-        if connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
-            raise sqlite3.DatabaseError("its pages contradict each other")
+        self._place.examine()
         rows = connection.execute("SELECT study_id FROM studies").fetchall()
         if len(rows) != 1:
             raise DatabaseError(
@@ -152,17 +166,11 @@ class Store:
         if version < FORMAT:
             self._adopt()
         self._front.load(connection)
-        connection.execute("PRAGMA journal_mode = WAL")
-        # What was acknowledged must survive a power cut too, not only a killed process.
-        connection.execute("PRAGMA synchronous = FULL")
-        self._files: dict[Path, tuple[int, int]] = {}
-        self._resolved = self.path.resolve()
-        self._log = Path(f"{self._resolved}-wal")
-        self._require_files()
+        self._place.settle()
 
     def _add_later_columns(self) -> None:
         """Give a database of an earlier version the columns that trials have now."""
-        there = {row[1] for row in self._connection.execute("PRAGMA table_info(monoped_trials)")}
+        there = self._connection.columns("monoped_trials")
         missing = [column for column in LATER if column.name not in there]
         if missing:
             with _transaction(self._connection):
@@ -193,57 +201,30 @@ class Store:
             self._sealer.add(written, 0, names if rows else (), trials)
 
     def _ill_conditioned(self) -> set[int]:
-        rows = self._connection.execute("SELECT trial FROM monoped_audits WHERE NOT well_conditioned")
+        rows = self._connection.execute("SELECT trial FROM monoped_audits WHERE well_conditioned = 0")
         return {int(row[0]) for row in rows}
 
     def __enter__(self) -> "Store":
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close, and merge the write-ahead log into the file, so that a study at rest is a single file."""
-        try:
-            self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-            self._connection.execute("PRAGMA journal_mode = DELETE")
-        except sqlite3.Error:
-            # While a reader is open or the disk is full, the log stays beside the file, which is equally valid.
-            pass
-        finally:
-            self._connection.close()
+        """Close; a file is a single one again."""
+        self._place.close_at_rest()
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
         """A transaction; what it wrote is acknowledged only if the files it went to are still those of the study."""
         with translated(self.path), _transaction(self._connection):
             yield
-        self._require_files()
+        self._place.require_place()
         if self._lock is not None:
             self._lock.acknowledge(self._sealer.links)
-
-    def _require_files(self) -> None:
-        """Check that the database and its log are the files that were opened.
-
-        A file that is deleted or replaced while it is open takes everything with it that is still written to it.
-        """
-        # The study by the name that it was opened by: a link in this that leads elsewhere now is noticed too.
-        for file, name in ((self._resolved, self.path), (self._log, self._log)):
-            try:
-                found = name.stat()
-            except OSError:
-                found = None
-            place = None if found is None else (found.st_dev, found.st_ino)
-            if file not in self._files and place is not None:
-                self._files[file] = place
-            elif place != self._files.get(file):
-                raise DatabaseError(
-                    f"study database {str(self.path)!r}: {file.name!r} was deleted, renamed or replaced during "
-                    "the run; see what is there, put it back or restore a copy, then resume"
-                )
 
     def set_meta(self, values: Mapping[str, Any]) -> None:
         """Replace the values of some fields of ``StudyMeta``."""
         with self._writing():
             rows = [(key, strict_json(value)) for key, value in values.items()]
-            self._connection.executemany("INSERT OR REPLACE INTO monoped_meta VALUES (?, ?)", rows)
+            self._connection.replace("monoped_meta", rows)
             written = {"meta": row_digests(rows)}
             if self._front.behind:  # a study at rest lacks nothing
                 written["front"] = row_digests([self._front.store(self._connection)])
@@ -253,7 +234,7 @@ class Store:
         """Store audits of trials: number of the trial, whether it is well-conditioned, measures of the audit."""
         with self._writing():
             rows = [(trial, int(good), json.dumps(dict(measures))) for trial, good, measures in audits]
-            self._connection.executemany("INSERT OR REPLACE INTO monoped_audits VALUES (?, ?, ?)", rows)
+            self._connection.replace("monoped_audits", rows)
             written = {"audits": row_digests(rows)}
             if not all(good for _, good, _ in audits):
                 self._front.leave_out(self._connection, self._ill_conditioned())
@@ -264,13 +245,13 @@ class Store:
         """Store rows of a table that only some studies have."""
         with self._writing():
             self._connection.execute(table.create)
-            self._connection.executemany(table.insert, rows)
+            self._connection.replace(f"monoped_{table.what}", rows)
             self._sealer.add({table.what: row_digests(rows)})
 
     def foreign_count(self) -> int:
         """How many of Optuna's trials are not of this package."""
         with translated(self.path):
-            return int(self._connection.execute(FOREIGN_COUNT).fetchone()[0])
+            return foreign_count(self._connection)
 
     def drop_foreign(self, numbers: Sequence[int], generations: Mapping[int, int]) -> None:
         """Delete trials of an Optuna user.
@@ -305,34 +286,34 @@ class Store:
 
     def _add_to_our_tables(self, generation: Generation, written: dict[str, dict[str, str]]) -> None:
         """Add a generation to our tables; ``written`` is what the running hash has of Optuna's."""
-        execute, executemany = self._connection.execute, self._connection.executemany
         values = {column.name: column.values(generation) for column in self._columns}
-        executemany(
-            f"INSERT INTO monoped_trials ({listed(values)}) VALUES ({', '.join('?' * len(values))})",
+        self._connection.insert(
+            "monoped_trials",
+            tuple(values),
             zip(*(v.tolist() if isinstance(v, np.ndarray) else v for v in values.values()), strict=True),
         )
         total = generation.first_trial + len(generation.designs)
         passed = (generation.number, total, float(generation.hypervolume), float(generation.seconds))
-        execute("INSERT OR REPLACE INTO monoped_history VALUES (?, ?, ?, ?)", passed)
+        self._connection.replace("monoped_history", [passed])
         self._front.add(values)
         written["history"] = row_digests([passed])
         if self._front.due:
             written["front"] = row_digests([self._front.store(self._connection)])
         if generation.state is not None:
             state = (1, generation.number + 1, total, strict_json(generation.state))
-            execute("INSERT OR REPLACE INTO monoped_checkpoint VALUES (?, ?, ?, ?)", state)
+            self._connection.replace("monoped_checkpoint", [state])
             written["checkpoint"] = row_digests([state])
         self._sealer.add(written, generation.first_trial, tuple(values), values)
 
 
 class _transaction:  # noqa: N801
-    """A context: BEGIN IMMEDIATE, then COMMIT, or ROLLBACK after an error. A commit that fails is rolled back too."""
+    """A context: BEGIN, then COMMIT, or ROLLBACK after an error. A commit that fails is rolled back too."""
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
+    def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def __enter__(self) -> None:
-        self._connection.execute("BEGIN IMMEDIATE")
+        self._connection.begin()
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
         try:

@@ -1,18 +1,18 @@
 """What a study says of itself without its trials being read: settings, counts, front and hypervolume."""
 
-import sqlite3
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study.connection import Connection
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.foreign import FOREIGN_COUNT
+from pareto_monoped.study.foreign import foreign_count
 from pareto_monoped.study.kept_front import STATES, KeptFront, rows_of
 from pareto_monoped.study.meta import StudyMeta, meta_of_rows
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.seals import has_seals
 
 
@@ -43,7 +43,7 @@ class Summary:
     sealed: bool
 
 
-def read_summary(db: Path) -> Summary:
+def read_summary(db: StudyPlace) -> Summary:
     """Read the summary of a study, from its kept front if it has one; the checkpoint is never read.
 
     Raises:
@@ -62,9 +62,9 @@ def read_summary(db: Path) -> Summary:
             values = np.array(rows, dtype=np.float64).reshape(-1, len(names))
             values = values[np.argsort(values[:, 0], kind="stable")]
             last = connection.execute("SELECT seconds FROM monoped_history ORDER BY generation DESC LIMIT 1").fetchone()
-            bad = connection.execute("SELECT count(*) FROM monoped_audits WHERE NOT well_conditioned").fetchone()
+            bad = connection.execute("SELECT count(*) FROM monoped_audits WHERE well_conditioned = 0").fetchone()
             seconds = float(last[0]) if last else 0.0
-            foreign = connection.execute(FOREIGN_COUNT).fetchone()[0]
+            foreign = foreign_count(connection)
         except (TypeError, ValueError, RecursionError) as error:
             raise DatabaseError(f"study database {str(db)!r}: is damaged ({error}); restore a copy") from None
     return Summary(
@@ -81,13 +81,13 @@ def read_summary(db: Path) -> Summary:
     )
 
 
-def _kept(connection: sqlite3.Connection, study: Study) -> tuple[dict[str, int], list[int]]:
+def _kept(connection: Connection, study: Study) -> tuple[dict[str, int], list[int]]:
     front = KeptFront(study.objectives)
     front.load(connection)
     return front.counts, front.numbers
 
 
-def _computed(connection: sqlite3.Connection, db: Path) -> tuple[dict[str, int], list[int]]:
+def _computed(connection: Connection, db: StudyPlace) -> tuple[dict[str, int], list[int]]:
     """The same of a study of format 1, which keeps no front."""
     from pareto_monoped.study.reader import read_study
 

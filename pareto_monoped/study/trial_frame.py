@@ -1,6 +1,5 @@
 """Stored rows of trials as a data frame: every column there is, each of its type, with the names of the motors."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,12 @@ from pareto_monoped.study.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.study.definition import Study
 from pareto_monoped.study.meta import StudyMeta, motor_keys
 from pareto_monoped.study.named_motors import MOTOR_KEYS, names_of
+from pareto_monoped.study.place import StudyPlace
 
 _DTYPES = {column.name: column.dtype for column in COLUMNS}
 
 
-def trial_frame(names: list[str], rows: list[tuple[Any, ...]], db: Path) -> pd.DataFrame:
+def trial_frame(names: list[str], rows: list[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
     """Trials as read from the database.
 
     Args:
@@ -51,7 +51,7 @@ def _typed(values: tuple[Any, ...], dtype: str) -> Any:
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
 
 
-def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: Path) -> pd.DataFrame:
+def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
     """The trials with the names of each one's motors, which the database leaves out where all have the same.
 
     The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the

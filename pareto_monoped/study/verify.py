@@ -1,18 +1,18 @@
 """Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew."""
 
-import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.study.connection import Connection
 from pareto_monoped.study.database import reading
 from pareto_monoped.study.kept_front import STATES, KeptFront
 from pareto_monoped.study.optuna_check import foreign_trials, optuna_findings
+from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.plausible import implausible
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.robust_rows import read_robustness
@@ -39,7 +39,7 @@ class Verification:
     findings: tuple[str, ...]
 
 
-def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
+def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1) -> Verification:
     """Check a study.
 
     Args:
@@ -58,7 +58,7 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)
         findings = [
-            *_sqlite_findings(connection),
+            *connection.defects(),
             *implausible(data),
             *_kept_front_findings(connection, data),
             *optuna_findings(connection, data, seals),
@@ -75,15 +75,7 @@ def verify(db: Path, *, simulate: int = 0, workers: int = 1) -> Verification:
     )
 
 
-def _sqlite_findings(connection: sqlite3.Connection) -> Iterator[str]:
-    """What SQLite finds wrong with pages and indexes; it lists all of one kind in one text of several lines."""
-    for (text,) in connection.execute("PRAGMA integrity_check(5)"):
-        for line in text.splitlines():
-            if line != "ok" and not line.startswith("***"):
-                yield f"SQLite: {line}"
-
-
-def _kept_front_findings(connection: sqlite3.Connection, data: StudyData) -> Iterator[str]:
+def _kept_front_findings(connection: Connection, data: StudyData) -> Iterator[str]:
     if not data.sealed:
         return
     kept = KeptFront(data.study.objectives)
@@ -112,7 +104,7 @@ def _jump_findings(data: StudyData, numbers: "np.typing.NDArray[np.int_]", worke
         yield f"trial {numbers[k]} ends otherwise: {rows['status'].iloc[k]}, simulated again {jumps.status[k]}"
 
 
-def require_sound(db: Path, verification: Verification) -> None:
+def require_sound(db: StudyPlace, verification: Verification) -> None:
     """Raise for a study that is not sound.
 
     Raises:
