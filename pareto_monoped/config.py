@@ -10,12 +10,15 @@ import tomllib
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from pareto_monoped.errors import DiskError, InputError
+from pareto_monoped.errors import DiskError, InputError, complaint
 from pareto_monoped.files import cure_of, is_failure
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 T = TypeVar("T")
 
@@ -148,10 +151,49 @@ def _line(kind: type, problem: ValidationError) -> str:
         hint = f"did you mean {near[0]!r}?" if near else "remove it"
         top = f"; allowed: {', '.join(allowed)}" if len(first["loc"]) == 1 and allowed else ""
         return f"unknown key {key!r}{top}; {hint}"
-    message = first["msg"].removeprefix("Value error, ")
-    if not key:
-        return message
     # Errors raised in our own __post_init__ state value and cure already.
     if first["type"] == "value_error":
-        return f"{key}: {message}"
-    return f"{key} = {first['input']!r}: {message[0].lower()}{message[1:]}; correct it"
+        message = first["msg"].removeprefix("Value error, ")
+        return f"{key}: {message}" if key else message
+    return complaint(key or "value", first["input"], _allowed(first), "correct it")
+
+
+_ALLOWED = {
+    "greater_than": "above {gt}",
+    "greater_than_equal": "at least {ge}",
+    "less_than": "below {lt}",
+    "less_than_equal": "at most {le}",
+    "multiple_of": "a multiple of {multiple_of}",
+    "finite_number": "a finite number",
+    "literal_error": "{expected}",
+    "union_tag_invalid": "one of {expected_tags}",
+    "string_pattern_mismatch": "text of the form {pattern}",
+    "string_too_short": "text of at least {min_length} letters",
+    "string_too_long": "text of at most {max_length} letters",
+    "too_short": "a list of at least {min_length} values",
+    "too_long": "a list of at most {max_length} values",
+}
+"""Kind of an error of pydantic -> what is allowed; in braces what pydantic knows of it."""
+_KINDS = {
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "string": "text",
+    "dict": "a table",
+    "dataclass": "a table",
+    "model": "a table",
+    "list": "a list",
+    "tuple": "a list",
+}
+"""First word of such a kind -> what is allowed."""
+
+
+def _allowed(problem: "ErrorDetails") -> str:
+    """What is allowed in place of a wrong value, in our words."""
+    kind = problem["type"]
+    if kind in _ALLOWED:
+        known = problem.get("ctx", {})
+        if known.get("min_length") == 1:
+            return "at least one letter" if kind == "string_too_short" else "a list that is not empty"
+        return _ALLOWED[kind].format(**{name: f"{v:g}" if isinstance(v, float) else v for name, v in known.items()})
+    return _KINDS.get(kind.partition("_")[0]) or problem["msg"].lower().removeprefix("input should be ")

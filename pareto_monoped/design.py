@@ -4,9 +4,11 @@ Order and symbols of the first seven are those of the paper (section III-B): Y =
 others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
+from numbers import Real
 from typing import Literal, TypeVar, get_args
 
 import numpy as np
@@ -112,6 +114,16 @@ UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES 
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
+_SHORTEST_M = 0.05
+"""Of a link, or of a start above the floor. A shorter link has no room for the actuators' output couplings."""
+LEAST: NDArray[np.float64] = np.array(
+    [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
+)
+"""The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,)."""
+LEAST.flags.writeable = False
+MOST = 1e9
+"""Beyond this value of any variable, numbers overflow."""
+
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
     """The paper's seven variables, and the optional ones of which some value differs from the default.
@@ -172,8 +184,35 @@ def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
     return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
 
-def _with_known_names(kind: type[_T]) -> type[_T]:
-    """The class, with errors of ours for names that are unknown or missing."""
+def nonsense(name: str, value: float) -> str | None:
+    """What is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
+    if not np.isfinite(value):
+        return complaint(name, float(value), "a finite number", "give a number")
+    least = LEAST[NAMES.index(name)]
+    if value < least:
+        return f"{name} = {value:g}: must be at least {least:g}; give a larger value"
+    return f"{name} = {value:g}: must be at most {MOST:g}; give a smaller value" if value > MOST else None
+
+
+def _number(name: str, given: object) -> float:
+    """A value that a design can mean.
+
+    Raises:
+        DesignError: no number, or nonsense.
+    """
+    if isinstance(given, bool) or not isinstance(given, Real):
+        raise DesignError(complaint(name, given, "a finite number", "give a number"))
+    try:
+        value = float(given)
+    except OverflowError:  # a whole number beyond the greatest float
+        value = math.inf
+    if (problem := nonsense(name, value)) is not None:
+        raise DesignError(problem)
+    return value
+
+
+def _checked(kind: type[_T]) -> type[_T]:
+    """The class, with errors of ours for names that are unknown or missing, and for values that cannot be meant."""
     made = kind.__init__
 
     @wraps(made)
@@ -183,16 +222,19 @@ def _with_known_names(kind: type[_T]) -> type[_T]:
                 raise DesignError(unknown_name("design variable", name, NAMES))
         if missing := [name for name in PAPER_NAMES if name not in values]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
-        made(self, **values)
+        made(self, **{name: _number(name, value) for name, value in values.items()})
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
     return kind
 
 
-@_with_known_names
+@_checked
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults.
+
+    The paper's bounds play no part, but values that nobody can mean are a ``DesignError``: links and starts of less
+    than 0.05 m, gear ratios below 1, negative stiffness, damping or release, and what is no finite number.
 
     Example:
         >>> from pareto_monoped import PAPER_CASES
@@ -226,7 +268,7 @@ class Design:
         """A design from its values in the order of ``NAMES``.
 
         Raises:
-            DesignError: a wrong number of values, or a value that is not finite.
+            DesignError: a wrong number of values, or a value that no design can mean.
         """
         try:
             array = np.asarray(values, dtype=np.float64)
@@ -235,18 +277,13 @@ class Design:
         if array.ndim != 1:
             shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
-        design = cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
-        for name in NAMES:
-            value = getattr(design, name)
-            if not np.isfinite(value):
-                raise DesignError(complaint(name, value, "a finite number", "give a number"))
-        return design
+        return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
 
     def replace(self, changes: Mapping[str, float]) -> "Design":
         """A copy with some variables changed.
 
         Raises:
-            DesignError: an unknown name or a value that is not finite.
+            DesignError: an unknown name, or a value that no design can mean.
         """
         if not isinstance(changes, Mapping):
             allowed = "a mapping of variables to numbers, such as {'knee_ratio': 6.0}"
@@ -275,17 +312,26 @@ class PaperCase:
     free: tuple[str, ...]
 
 
+class _Cases(dict[str, PaperCase]):
+    """Cases by name, with an error of ours for an unknown one."""
+
+    def __missing__(self, name: object) -> PaperCase:
+        raise DesignError(unknown_name("case", name, self))
+
+
 def _case(name: str, values: tuple[float, ...], height_m: float, energy_j: float, free: tuple[str, ...]) -> PaperCase:
     return PaperCase(name=name, design=Design.from_array(values), height_m=height_m, energy_j=energy_j, free=free)
 
 
 # Table I of the paper. The paper prints g_h before g_k; here the values stand in the order of NAMES.
-PAPER_CASES: Mapping[str, PaperCase] = {
-    "nominal": _case("nominal", (0.400, 0.400, 6.0, 6.0, 50.0, 2.5, 10.0), 0.887, 31.44, ()),
-    "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, RATIOS + PAPER_CONTROL),
-    "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + PAPER_CONTROL),
-    "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + PAPER_CONTROL),
-}
+PAPER_CASES: Mapping[str, PaperCase] = _Cases(
+    {
+        "nominal": _case("nominal", (0.400, 0.400, 6.0, 6.0, 50.0, 2.5, 10.0), 0.887, 31.44, ()),
+        "A": _case("A", (0.400, 0.400, 7.9, 4.0, 13.7, 6.5, 46.5), 0.743, 15.51, RATIOS + PAPER_CONTROL),
+        "B": _case("B", (0.499, 0.346, 6.0, 6.0, 8.9, 1.0, 6.9), 0.771, 17.02, LENGTHS + PAPER_CONTROL),
+        "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + PAPER_CONTROL),
+    }
+)
 """The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``."""
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""

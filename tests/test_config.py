@@ -3,7 +3,7 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import pytest
 from pydantic import ConfigDict, Field
@@ -54,12 +54,12 @@ def test_values_become_a_record():
     ("values", "words"),
     [
         ({}, ["mass_kg", "missing"]),
-        ({"mass_kg": 0}, ["mass_kg = 0", "greater than 0"]),
+        ({"mass_kg": 0}, ["mass_kg = 0", "must be above 0"]),
         ({"mass_kg": "heavy"}, ["mass_kg = 'heavy'", "number"]),
-        ({"mass_kg": float("nan")}, ["mass_kg = nan", "greater than 0"]),
+        ({"mass_kg": float("nan")}, ["mass_kg = nan", "must be above 0"]),
         ({"mass_kg": 1, "mas_kg": 2}, ["unknown key 'mas_kg'", "mass_kg", "did you mean"]),
         ({"mass_kg": 1, "colour": 2}, ["unknown key 'colour'", "allowed: mass_kg, name, shell"]),
-        ({"mass_kg": 1, "shell": {"outer_diameter_mm": -1}}, ["shell.outer_diameter_mm = -1", "greater than 0"]),
+        ({"mass_kg": 1, "shell": {"outer_diameter_mm": -1}}, ["shell.outer_diameter_mm = -1", "must be above 0"]),
         ({"mass_kg": 1, "shell": {}}, ["shell.outer_diameter_mm", "missing"]),
     ],
 )
@@ -160,3 +160,54 @@ def test_a_long_json_text_is_refused_before_it_is_parsed(monkeypatch, tmp_path):
     for read in (lambda: parsed_json("[1, 2, 3, 4]"), lambda: read_json(Path("/dev/zero"))):
         with pytest.raises(ValueError, match="must be 10 at most"):
             read()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Everything:
+    whole: Annotated[int, Field(ge=1, le=9, multiple_of=2)] = 2
+    share: Annotated[float, Field(ge=0.0, lt=1.0, allow_inf_nan=False)] = 0.5
+    word: Annotated[str, Field(min_length=1, max_length=4)] = "word"
+    code: Annotated[str, Field(pattern="^[a-z]+$")] = "code"
+    on: bool = True
+    table: dict[str, float] | None = None
+    several: Annotated[tuple[float, ...], Field(min_length=1, max_length=2)] = (1.0,)
+    one_of: Literal["a", "b"] = "a"
+    thing: Thing | None = None
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "allowed"),
+    [
+        ("whole", 0, "at least 1"),
+        ("whole", 10, "at most 9"),
+        ("whole", 3, "a multiple of 2"),
+        ("whole", 1.5, "a whole number"),
+        ("whole", "many", "a whole number"),
+        ("share", -0.5, "at least 0"),
+        ("share", 1.0, "below 1"),
+        ("share", float("inf"), "a finite number"),
+        ("share", [1], "a number"),
+        ("word", "", "at least one letter"),
+        ("word", "words", "text of at most 4 letters"),
+        ("word", 5, "text"),
+        ("code", "A", "text of the form ^[a-z]+$"),
+        ("on", "perhaps", "true or false"),
+        ("table", 5, "a table"),
+        ("several", 5, "a list"),
+        ("several", [], "a list that is not empty"),
+        ("several", [1, 2, 3], "a list of at most 2 values"),
+        ("one_of", "c", "'a' or 'b'"),
+        ("thing", 5, "a table"),
+    ],
+)
+def test_what_is_allowed_is_said_in_our_words_and_not_in_pydantics(key, value, allowed):
+    """``Study.define(evaluations=-5)`` once said "input should be greater than or equal to 1"."""
+    with pytest.raises(InputError) as caught:
+        checked(Everything, {key: value}, source="file")
+    assert str(caught.value) == f"file: {key} = {value!r}: must be {allowed}; correct it"
+
+
+def test_a_long_value_is_shown_in_part():
+    with pytest.raises(InputError) as caught:
+        checked(Everything, {"word": "w" * 5000}, source="file")
+    assert len(str(caught.value)) < 500

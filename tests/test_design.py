@@ -153,3 +153,48 @@ def test_each_case_frees_the_variables_that_the_paper_frees():
 
 def test_jumps_start_at_the_papers_height():
     assert (BASE_START_HEIGHT_M, HEADLINE_HEIGHT_M, PAPER_MOTOR) == (0.5, 0.8, "VT8020")
+
+
+def test_an_unknown_case_is_an_error_of_ours_that_names_the_cases():
+    """It was a bare KeyError."""
+    with pytest.raises(DesignError, match=r"^case = 'D': must be one of nominal, A, B, C; correct the name$"):
+        PAPER_CASES["D"]
+    with pytest.raises(DesignError, match="case = 3"):
+        PAPER_CASES[3]
+    assert PAPER_CASES.get("D") is None
+    assert "D" not in PAPER_CASES
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("thigh_length_m", -0.3, "thigh_length_m = -0.3: must be at least 0.05"),
+        ("shank_length_m", 0.0, "at least 0.05"),
+        ("start_height_m", 0.0, "at least 0.05"),
+        ("knee_ratio", 0.5, "knee_ratio = 0.5: must be at least 1"),
+        ("hip_ratio", -6, "at least 1"),
+        ("stiffness_n_per_m", -1e-9, "at least 0"),
+        ("damping_n_s_per_m", -1.0, "at least 0"),
+        ("torsional_stiffness_n_m_per_rad", -1.0, "at least 0"),
+        ("knee_release_rad", -0.1, "at least 0"),
+        ("rest_length_m", -1.0, "at least 0"),
+        ("stiffness_n_per_m", 2e9, "at most 1e"),
+        ("stiffness_n_per_m", float("nan"), "finite number"),
+        ("stiffness_n_per_m", 10**400, "finite number"),
+        ("stiffness_n_per_m", "50", "finite number"),
+        ("stiffness_n_per_m", True, "finite number"),
+        ("stiffness_n_per_m", None, "finite number"),
+        ("stiffness_n_per_m", [50.0], "finite number"),
+    ],
+)
+def test_a_design_refuses_values_that_nobody_can_mean(name, value, words):
+    """``Design(thigh_length_m=-0.3)`` was accepted."""
+    with pytest.raises(DesignError, match=words) as caught:
+        Design(**PAPER_CASES["C"].design.as_dict() | {name: value})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_design_takes_numbers_of_any_kind_as_floats():
+    design = Design(**PAPER_CASES["C"].design.as_dict() | {"knee_ratio": 6, "hip_ratio": np.float32(4.0)})
+    assert design == PAPER_CASES["C"].design
+    assert {type(value) for value in design.as_dict().values()} == {float}

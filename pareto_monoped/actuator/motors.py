@@ -34,6 +34,7 @@ __all__ = [
     "motor_names",
     "motor_source",
     "motor_values",
+    "require_motor_name",
     "stored_motor",
 ]
 
@@ -74,11 +75,25 @@ def load_motor(name_or_path: str) -> Motor:
     return motor
 
 
+def require_motor_name(name_or_path: str, *, key: str = "motor") -> None:
+    """Refuse what is neither the name of a shipped motor nor may be a file, which is not opened.
+
+    Args:
+        name_or_path: the name.
+        key: where it was given, for the message.
+
+    Raises:
+        MotorError: an unknown name.
+    """
+    path = Path(name_or_path)
+    if _shipped_name(name_or_path) is None and path.suffix != ".toml" and not path.is_file():
+        raise MotorError(unknown_name(key, name_or_path, motor_names(), ", or a TOML file"))
+
+
 def _user_values(name_or_path: str) -> dict[str, Any]:
     """The fields of the motor in a user's file."""
+    require_motor_name(name_or_path)
     path = Path(name_or_path)
-    if path.suffix != ".toml" and not path.is_file():
-        raise MotorError(unknown_name("motor", name_or_path, motor_names(), ", or a TOML file"))
     values = read_toml(path, what="motor file", error=MotorError)
     known = {field.name for field in fields(Motor)}
     if len(values) == 1 and not known & set(values):

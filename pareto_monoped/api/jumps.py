@@ -146,7 +146,7 @@ def build_robot(
 
     Raises:
         MotorError: an unusable motor, or one that no gearbox or no leg fits.
-        DesignError: a link without length, or a gear ratio without a gearbox.
+        DesignError: a gear ratio without a gearbox.
 
     Example:
         >>> from pareto_monoped import PAPER_CASES, build_robot

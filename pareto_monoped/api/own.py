@@ -41,7 +41,7 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
             of such mappings and functions.
 
     Raises:
-        StudyError: something else.
+        StudyError: something else, or a limit that is given twice, in whatever spelling.
     """
     parts = [constraints] if isinstance(constraints, Mapping) or callable(constraints) else constraints
     if isinstance(parts, str) or not isinstance(parts, Sequence):
@@ -57,7 +57,11 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
         functions += [key for key in table if not isinstance(key, str)]
         for key, limits in table.items():
             name = key if isinstance(key, str) else own_name(key)
-            flat |= _flattened(name, limits)
+            new = _flattened(name, limits)
+            if twice := [stored for stored in new if stored in flat]:
+                side, _, measured = twice[0].partition("_")
+                raise StudyError(f"constraints: the {side} of {measured} is given twice; drop one")
+            flat |= new
     return flat, functions_of(functions)
 
 

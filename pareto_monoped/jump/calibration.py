@@ -373,6 +373,27 @@ def _present_labels() -> Mapping[str, str]:
     return {load_calibration(name).label: name for name in calibration_names()}
 
 
+def _is_path(name_or_path: str) -> bool:
+    return "/" in name_or_path or name_or_path.endswith(".toml")
+
+
+def require_calibration_name(name_or_path: str, *, key: str = "calibration") -> None:
+    """Refuse what is neither the name or label of a shipped calibration nor a file, which is not opened.
+
+    Args:
+        name_or_path: the name.
+        key: where it was given, for the message.
+
+    Raises:
+        CalibrationError: an unknown name.
+    """
+    if _is_path(name_or_path) or name_or_path in calibration_names() or name_or_path in earlier_calibrations():
+        return
+    if name_or_path not in _present_labels():
+        known = (*calibration_names(), *sorted((*earlier_calibrations(), *_present_labels())))
+        raise CalibrationError(unknown_name(key, name_or_path, known, ", or a TOML file"))
+
+
 def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
 
@@ -381,17 +402,15 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     Raises:
         CalibrationError: unknown name, unreadable file, or a field missing, unknown or out of range.
     """
-    if "/" in name_or_path or name_or_path.endswith(".toml"):
+    require_calibration_name(name_or_path)
+    if _is_path(name_or_path):
         path = Path(name_or_path)
     elif name := name_or_path if name_or_path in calibration_names() else _present_labels().get(name_or_path):
         path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name}.toml"))
-    elif name_or_path in earlier_calibrations():
+    else:
         path = Path(
             str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
         )
-    else:
-        known = (*calibration_names(), *sorted((*earlier_calibrations(), *_present_labels())))
-        raise CalibrationError(unknown_name("calibration", name_or_path, known, ", or a TOML file"))
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
     return calibration_of(values, source=f"calibration file {path.name}")
 

@@ -8,7 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, LENGTHS, NAMES, columns, complete, complete_control
+from pareto_monoped.design import (
+    CONTROL,
+    GRAVITY_M_PER_S2,
+    LEAST,
+    MOST,
+    NAMES,
+    columns,
+    complete,
+    complete_control,
+    nonsense,
+)
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.pose import start_pose
@@ -24,11 +34,6 @@ Floats = NDArray[np.float64]
 
 STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
 """How a jump can end. Every status but ``ok`` comes with a reason, and without height and energy."""
-# A shorter link has no room for the actuators' output couplings; the limit keeps nonsense out of the part models.
-_SHORTEST_LINK_M = 0.05
-_LEAST = np.array([_SHORTEST_LINK_M if name in LENGTHS else 0.0 for name in NAMES])
-# Beyond this value of any variable, numbers overflow.
-_MOST = 1e9
 # Measures that the controller's records hold under their own names.
 _LOADS = ("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "drift_m", "peak_knee_force_n")
 # Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
@@ -215,19 +220,12 @@ def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArra
 
 
 def _nonsense(values: Floats) -> dict[int, str]:
-    """The rows of ``values`` that are not designs, each with the reason; the paper's bounds play no part."""
+    """The rows of ``values`` that are not designs, each with the reason."""
     with np.errstate(invalid="ignore"):
-        wrong = ~((values >= _LEAST) & (values <= _MOST))
+        wrong = ~((values >= LEAST) & (values <= MOST))
     reasons: dict[int, str] = {}
-    for i, column in np.argwhere(wrong):
-        name, value, least = NAMES[column], float(values[i, column]), _LEAST[column]
-        if not np.isfinite(value):
-            reason = f"{name} = {value}: must be a finite number; give a number"
-        elif value < least:
-            reason = f"{name} = {value:g}: must be at least {least:g}; give a larger value"
-        else:
-            reason = f"{name} = {value:g}: must be at most {_MOST:g}; give a smaller value"
-        reasons.setdefault(int(i), reason)
+    for i, column in np.argwhere(wrong).tolist():
+        reasons.setdefault(i, nonsense(NAMES[column], float(values[i, column])) or "")
     return reasons
 
 

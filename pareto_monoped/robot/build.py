@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.joint_maps import Maps, joint_maps
 from pareto_monoped.design import Design
-from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.frames import BODIES, Floats, in_body
@@ -75,12 +74,8 @@ def build_robot(design: Design, maps: Maps) -> Robot:
         maps: the gearboxes of both joints, or of hip and knee.
 
     Raises:
-        DesignError: a link has no length, or no gearbox of the joint's motor has the gear ratio.
+        DesignError: no gearbox of the joint's motor has the gear ratio.
     """
-    for name in ("thigh_length_m", "shank_length_m"):
-        value = getattr(design, name)
-        if not value > 0.0:
-            raise DesignError(f"{name} = {value}: must be above 0 m; give a length such as 0.4")
     both = joint_maps(maps)
     hip, knee = both.hip.lookup(design.hip_ratio), both.knee.lookup(design.knee_ratio)
     leg = leg_dimensions(both)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pareto_monoped.config import checked
 from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, rules_for, strength_for
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import Objectives
@@ -27,7 +27,7 @@ from pareto_monoped.study.goals import (
     objectives_of,
     stored_objectives,
 )
-from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, text_of
+from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, names_of, text_of
 from pareto_monoped.study.study_file import Stop, StudyFile, algorithm_of, file_values, with_objectives
 from pareto_monoped.study.weighted_budget import within_budget
 from pareto_monoped.uncertainty.settings import Sampling, sampling_of
@@ -86,6 +86,8 @@ class Study:
 
         Raises:
             StudyError: no readable TOML, an unknown key, a wrong type, or impossible bounds.
+            MotorError: an unknown name of a motor.
+            CalibrationError: an unknown name of a calibration.
 
         Example:
             >>> from pareto_monoped import Study
@@ -106,6 +108,8 @@ class Study:
 
         Raises:
             StudyError: an unknown key, a wrong type, or impossible bounds.
+            MotorError: an unknown name of a motor.
+            CalibrationError: an unknown name of a calibration.
 
         Example:
             >>> from pareto_monoped import Study
@@ -242,6 +246,8 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
 
     Raises:
         StudyError: an unknown key, a wrong type, or impossible bounds.
+        MotorError: an unknown name of a motor; its file is read only when the study runs.
+        CalibrationError: an unknown name of a calibration, likewise.
     """
     calibration = str(values.get("calibration"))
     defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
@@ -249,8 +255,21 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
     if isinstance(name := values.get("algorithm"), str):
         values["algorithm"] = {"name": name}
     study = study_from_dict(values, source=source)
+    _require_names(study, source)
     given = "iterations" in values.get("algorithm", {})
     return replace(study, algorithm=within_budget(study.algorithm, study.evaluations, given=given, source=source))
+
+
+def _require_names(study: Study, source: str) -> None:
+    """Refuse names of motors and of a calibration that no run could find; a stored study has what they meant."""
+    from pareto_monoped.actuator.motors import require_motor_name
+    from pareto_monoped.jump.calibration import require_calibration_name
+
+    for key in MOTOR_KEYS:
+        for name in names_of(getattr(study, key)):
+            require_motor_name(name, key=f"{source}: {key}")
+    if not study.calibration.startswith(OWN_CALIBRATION):
+        require_calibration_name(study.calibration, key=f"{source}: calibration")
 
 
 def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:

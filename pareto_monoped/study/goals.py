@@ -240,13 +240,20 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
 
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A table in which ``height_m.p05 = x`` has the key "height_m.p05": in TOML, a dot makes a table in the table."""
+    """A table in which ``height_m.p05 = x`` has the key "height_m.p05": in TOML, a dot makes a table in the table.
+
+    Raises:
+        StudyError: a key that is there in both forms.
+    """
     flat: dict[str, Any] = {}
     for key, value in table.items():
         inner = {name: value[name] for name in STATISTICS if name in value} if isinstance(value, Mapping) else {}
-        flat |= {f"{key}.{name}": given for name, given in inner.items()}
+        new = {f"{key}.{name}": given for name, given in inner.items()}
         if not inner or len(inner) < len(value):
-            flat[key] = {name: given for name, given in value.items() if name not in inner} if inner else value
+            new[key] = {name: given for name, given in value.items() if name not in inner} if inner else value
+        if twice := [name for name in new if name in flat]:
+            raise StudyError(f"{twice[0]}: is given twice, once with a dot and once as a table; drop one")
+        flat |= new
     return flat
 
 

@@ -93,7 +93,7 @@ class OwnAlgorithm:
         """
         for number, (values, scores) in enumerate(history):
             asked = self.ask()
-            if asked is None or not _equal(asked.values, values):
+            if asked is None or not same_designs(asked.values, values):
                 raise StudyError(self.other_designs(f"generation {number}"))
             self.tell(scores)
 
@@ -129,5 +129,10 @@ class OwnAlgorithm:
             raise StudyError(f"{self._source}: {text}; correct it") from error
 
 
-def _equal(asked: Floats, stored: Floats) -> bool:
+def same_designs(asked: Floats, stored: Floats) -> bool:
+    """Whether designs are those stored: in number, and in every value to nine digits.
+
+    One rule for whole generations and for one that was cut short. Equality to the last bit would be too much: another
+    version of a library may round a value of the user's own algorithm differently.
+    """
     return asked.shape == stored.shape and bool(np.allclose(asked, stored, rtol=_SAME, atol=_SAME))

@@ -134,9 +134,9 @@ def continued_simulator(
             )
         ]
     )
-    same = unchanged("calibration", study.calibration, data.study.calibration)
-    known = data.calibration if same else _named_calibration(study.calibration)
-    return _simulator(study, motors, calibration or known, workers, executor)
+    if calibration is None and unchanged("calibration", study.calibration, data.study.calibration):
+        calibration = data.calibration
+    return _simulator(study, motors, calibration or _named_calibration(study.calibration), workers, executor)
 
 
 def _simulator(

@@ -154,7 +154,7 @@ BAD = {
     "inertia a thousand times too small": ({"rotor_inertia_kg_m2": "4e-7"}, "rotor_inertia_kg_m2 = 4e-07: must be"),
     "a resistance of another kind": (
         {"winding_resistance_kind": '"delta"'},
-        "winding_resistance_kind = 'delta': input should be 'line_to_line' or 'phase'; correct it",
+        "winding_resistance_kind = 'delta': must be 'line_to_line' or 'phase'; correct it",
     ),
 }
 

@@ -153,7 +153,7 @@ def test_a_motor_stored_by_0_1_0_is_what_it_was():
 def test_a_stored_motor_may_contradict_itself_but_not_be_impossible():
     values = motor_values(load_motor("VT8020")) | {"torque_constant_n_m_per_a": 0.5}
     assert stored_motor(values, source="x").torque_constant_n_m_per_a == 0.5
-    with pytest.raises(DatabaseError, match=r"^my study: kv_rpm_per_v = -1.0: .*greater than 0"):
+    with pytest.raises(DatabaseError, match=r"^my study: kv_rpm_per_v = -1.0: .*above 0"):
         stored_motor(values | {"kv_rpm_per_v": -1.0}, source="my study", error=DatabaseError)
 
 
@@ -169,9 +169,9 @@ BAD = {
     "not a number": (KV, "kv_rpm_per_v = nan", ("kv_rpm_per_v", "nan")),
     "unknown field": (KV, KV + "\nkv = 3", ("unknown key 'kv'",)),
     "no TOML": (KV, KV + " x", ("not valid TOML",)),
-    "negative mass": ("{ mass_kg = 0.5", "{ mass_kg = -0.5", ("framed.mass_kg", "-0.5", "greater than 0")),
-    "huge diameter": ("= 90.0, length", "= 900.0, length", ("framed.outer_diameter_mm", "900.0", "less than or equal")),
-    "zero diameter": ("= 90.0, length", "= 0.0, length", ("framed.outer_diameter_mm", "0.0", "greater than 0")),
+    "negative mass": ("{ mass_kg = 0.5", "{ mass_kg = -0.5", ("framed.mass_kg", "-0.5", "above 0")),
+    "huge diameter": ("= 90.0, length", "= 900.0, length", ("framed.outer_diameter_mm", "900.0", "at most")),
+    "zero diameter": ("= 90.0, length", "= 0.0, length", ("framed.outer_diameter_mm", "0.0", "above 0")),
     "stator larger than motor": (
         "stator_outer_diameter_mm = 80.0",
         "stator_outer_diameter_mm = 95.0",

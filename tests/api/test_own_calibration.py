@@ -118,3 +118,9 @@ def test_goals_of_a_call_leave_the_other_settings_as_they_are(tmp_path):
     stored = pm.run(study, tmp_path / "s.db", constraints={"mass_kg": {"max": 6.0}})
     assert (stored.study.rules, stored.study.strength, stored.study.gear_list) == ("paper", False, False)
     assert stored.study.constraints.value("max_mass_kg") == 6.0
+
+
+def test_a_renamed_own_calibration_is_called_another_setting(stored):
+    """It was said that only the user's program has it, in the user's program."""
+    with pytest.raises(pm.ParetoMonopedError, match="began with other settings"):
+        pm.run(STUDY, stored.path, calibration=softer(name="renamed"), evaluations=60)

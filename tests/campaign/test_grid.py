@@ -4,7 +4,7 @@ import pytest
 
 from pareto_monoped.campaign.grid import MOST_STUDIES, load_campaign
 from pareto_monoped.campaign.naming import LONGEST, joined, names_of
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import MotorError, StudyError
 
 HEAD = 'name = "grid"\n[study]\nevaluations = 100\ncase = "C"\n'
 
@@ -69,12 +69,12 @@ def test_without_an_axis_that_varies_the_study_has_the_name_of_the_campaign(tmp_
     ("axes", "words"),
     [
         ('motor = ["U8"]', ("table [axes]", "unknown key 'motor'", "did you mean 'motors'?")),
-        ("seeds = []", ("table [axes]", "seeds = []", "at least 1 item")),
+        ("seeds = []", ("table [axes]", "seeds = []", "a list that is not empty")),
         ("seeds = 3", ("table [axes]", "seeds = 3", "list")),
         ("", ("axes: none is named", "motors")),
         ("seeds = [1, 2, 1]", ("axes.seeds: 1 is named 2 times", "name it once")),
         ('motors = ["U8", "u8"]', ("axes.motors: 'U8' is named 2 times",)),
-        ("seeds = [1, -1]", ("study 'seed-1'", "seed = -1", "greater than or equal to 0")),
+        ("seeds = [1, -1]", ("study 'seed-1'", "seed = -1", "at least 0")),
         ('algorithms = ["nsga2", "nsga3"]', ("study 'nsga3'", "algorithm.name = 'nsga3'", "must be one of")),
         ('objectives = [["height_m", "speed"]]', ("study 'grid'", "speed")),
         ("variables = [{ knee = 5.0 }]", ("variable = 'knee'", "must be one of")),
@@ -141,3 +141,9 @@ def test_names_that_would_be_alike_get_a_mark_of_their_own():
     assert names == names_of("motors", ["a/mine.toml", "b/MINE.toml", "c" * 80, "c" * 81])
     assert len(joined(["x" * 48] * 6)) == LONGEST
     assert joined(["x" * 48] * 6) != joined(["x" * 48] * 7)
+
+
+def test_an_unknown_motor_is_refused_before_any_study_runs(tmp_path):
+    """It was the end of its own studies only, after the others."""
+    with pytest.raises(MotorError, match="study 'U9': motor = 'U9': must be one of VT8020, U8"):
+        load_campaign(written(tmp_path, 'motors = ["U8", "U9"]'))

@@ -10,7 +10,7 @@ from tests.campaign.test_coordinator import SMALL, standings
 @pytest.fixture
 def idle(tmp_path):
     """A worker that has had a study, which could not be run, and waits for another."""
-    (one,) = standings(tmp_path, 'motors = ["Nope"]', SMALL)
+    (one,) = standings(tmp_path, 'motors = ["Nope.toml"]', SMALL)
     worker = WorkerProcess()
     worker.begin(Task(study=one.place.study, db=one.place.db, threads=1))
     assert list(speakers([worker], 120.0)) == [worker]

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import InputError, StudyError
 from pareto_monoped.jump import calibration_defaults
 from pareto_monoped.study.algorithm_settings import ALGORITHMS
-from pareto_monoped.study.definition import load_study, study_from_dict
+from pareto_monoped.study.definition import Study, load_study, study_from_dict
 from pareto_monoped.study.free_variables import Bounds
 from tests.study.support import assert_refused
 from tests.study.support import study_of as made
@@ -106,9 +106,9 @@ def test_plain_values_and_back(name):
     ("change", "words"),
     [
         ({"evaluation": 3}, ["'evaluation'", "did you mean 'evaluations'"]),
-        ({"evaluations": 0}, ["evaluations = 0", "greater than or equal to 1"]),
-        ({"evaluations": "many"}, ["evaluations = 'many'", "integer"]),
-        ({"name": ""}, ["name = ''", "at least 1"]),
+        ({"evaluations": 0}, ["evaluations = 0", "must be at least 1"]),
+        ({"evaluations": "many"}, ["evaluations = 'many'", "whole number"]),
+        ({"name": ""}, ["name = ''", "at least one letter"]),
         ({"case": "D"}, ["case = 'D'", "'A', 'B' or 'C'"]),
         ({"seed": -1}, ["seed = -1"]),
         ({"rules": "agma"}, ["rules = 'agma'", "'paper' or 'iso6336'"]),
@@ -177,3 +177,37 @@ def test_shipped_studies_are_sound(path):
     study = load_study(path)
     assert study.name == path.stem
     assert study.description
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"motor": "VT8021"}, "study: motor = 'VT8021': must be one of VT8020, .*did you mean 'VT8020'"),
+        ({"motor": ["U8", "U9"]}, "study: motor = 'U9'"),
+        ({"hip_motor": "U8", "knee_motor": "VT8021"}, "study: knee_motor = 'VT8021'"),
+        ({"calibration": "referense"}, "study: calibration = 'referense': .*did you mean 'reference'"),
+    ],
+)
+def test_unknown_names_are_refused_when_a_study_is_defined(changes, words):
+    """A motor that does not exist was refused only when the study ran."""
+    with pytest.raises(InputError, match=words):
+        Study.define(name="mine", evaluations=10, **changes)
+
+
+def test_files_and_names_of_a_program_are_found_only_when_a_study_runs():
+    study = Study.define(name="mine", evaluations=10, motor="not_yet.toml", calibration="own:mine")
+    assert (study.motor, study.calibration) == ("not_yet.toml", "own:mine")
+
+
+def test_a_stored_study_keeps_a_name_that_is_unknown_by_now():
+    values = Study.define(name="mine", evaluations=10).as_dict() | {"motor": "VT7000", "calibration": "older"}
+    assert study_from_dict(values, source="database").motor == "VT7000"
+
+
+def test_the_same_limit_with_a_dot_and_as_a_table_is_refused():
+    with pytest.raises(InputError, match=r"height_m\.p05: is given twice"):
+        Study.define(
+            name="mine",
+            evaluations=10,
+            constraints={"height_m.p05": {"min": 0.6}, "height_m": {"p05": {"min": 0.7}}},
+        )

@@ -108,6 +108,25 @@ def test_other_designs_in_a_generation_that_was_cut_short_are_noticed(half):
         pm.resume(half, evaluations=50, algorithm=Late)
 
 
+@pytest.mark.parametrize(("share", "same"), [(1e-12, True), (1e-6, False)])
+@pytest.mark.parametrize("calls", [1, 2], ids=["whole generations", "one that was cut short"])
+def test_one_rule_says_which_designs_are_the_stored_ones(half, whole, calls, share, same):
+    """A generation that was cut short had to be equal to the last bit, a whole one to nine digits."""
+
+    class Rounded(Climber):
+        def ask(self):
+            self.calls = getattr(self, "calls", 0) + 1
+            asked = super().ask()
+            return asked + share * (np.mean((self.lower, self.upper), 0) - asked) if self.calls == calls else asked
+
+    Rounded.__name__ = "Climber"
+    if same:
+        assert len(pm.resume(half, evaluations=50, algorithm=Rounded).trials) == 50
+    else:
+        with pytest.raises(StudyError, match="asks for other designs in"):
+            pm.resume(half, evaluations=50, algorithm=Rounded)
+
+
 def test_an_own_algorithm_for_a_study_of_the_package_is_refused(tmp_path):
     stored = pm.run(pm.Study.define(name="s", evaluations=20, algorithm="random"), tmp_path / "s.db")
     with pytest.raises(StudyError, match="the study's is 'random'"):

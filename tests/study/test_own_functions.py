@@ -278,3 +278,18 @@ def test_values_that_are_not_real_numbers_are_refused(kind):
     table = Jumps({"mass_kg": np.array([4.0, 5.0])})
     with pytest.raises(StudyError, match=r"own function 'odd': returns .*; it must return 2 numbers"):
         called(odd, table, np.zeros(2, dtype=bool))
+
+
+@pytest.mark.parametrize(
+    "constraints",
+    [
+        {"mass_kg": {"max": 4.0}, "max_mass_kg": 5.0},
+        [{"max_mass_kg": 5.0}, {"mass_kg": {"max": 4.0}}],
+        [{"mass_kg": {"max": 4.0}}, {"mass_kg": {"min": 1.0, "max": 4.0}}],
+    ],
+)
+def test_one_limit_in_two_spellings_is_refused(constraints, tmp_path):
+    """The last one was taken without a word."""
+    with pytest.raises(StudyError, match=r"^constraints: the max of mass_kg is given twice; drop one$"):
+        pm.run(pm.Study.define(name="s", evaluations=10), tmp_path / "s.db", constraints=constraints)
+    assert list(tmp_path.iterdir()) == []
