@@ -12,7 +12,7 @@ import click
 
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.options import force_option
-from pareto_monoped.cli.terminal import echo, new_console
+from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def actuators(
     rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]
     stand_in = "" if ratio is None else actuator_map.stand_in(ratio)
     if stand_in:
-        echo(f"note: {stand_in}", err=True)
+        note(stand_in)
     if csv_file:
         _write_csv(csv_file, rows, rules, force=force)
     if csv_file == _STANDARD_OUTPUT:

@@ -9,7 +9,7 @@ import click
 
 from pareto_monoped.cli.computing import scheduler_option
 from pareto_monoped.cli.options import force_option
-from pareto_monoped.cli.terminal import echo, name
+from pareto_monoped.cli.terminal import echo, name, note
 
 if TYPE_CHECKING:
     from pareto_monoped.campaign.coordinator import Standing
@@ -112,7 +112,7 @@ def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place
     if others := strangers(folder, places):
         some = ", ".join(name(db.name) for db in others[:3]) + (", ..." if len(others) > 3 else "")
         those = "a database" if len(others) == 1 else f"{len(others)} databases"
-        echo(f"note: no study of this grid has {those} in {folder}: {some}", err=True)
+        note(f"no study of this grid has {those} in {folder}: {some}")
 
 
 def _write(

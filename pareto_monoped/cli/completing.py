@@ -72,6 +72,26 @@ def _formats() -> Iterable[str]:
     return FORMATS
 
 
+def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list[CompletionItem]":
+    """Numbers of the trials on the front of the study that the line names so far; nothing where none can be read.
+
+    Shells that show help beside a word show the objectives.
+    """
+    from click.shell_completion import CompletionItem
+
+    from pareto_monoped.errors import ParetoMonopedError
+    from pareto_monoped.study.front_trials import front_trials
+    from pareto_monoped.study.place import place_of
+
+    # An option without its value ends click's reading of a line, before arguments get their names.
+    db = ctx.params.get("db") or next(iter(ctx.args), None)
+    try:
+        known = {} if db is None else front_trials(place_of(db) if isinstance(db, str) else db)
+    except ParetoMonopedError:
+        return []
+    return [CompletionItem(str(n), help=text) for n, text in known.items() if str(n).startswith(incomplete)]
+
+
 motors = _completing(_motors, files=True)
 calibrations = _completing(_calibrations, files=True)
 studies = _completing(_studies)

@@ -14,7 +14,7 @@ from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, w
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.cli.terminal import echo, new_console
+from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 from pareto_monoped.study.place import StudyPlace
 
@@ -152,7 +152,7 @@ def _read(db: StudyPlace) -> "StudyData":
 
     data = read_study(db)
     if not data.sealed:
-        _note(UNSEALED)
+        note(UNSEALED)
     return data
 
 
@@ -202,7 +202,7 @@ def _note(text: str) -> None:
 def _one(job: "Job") -> None:
     from pareto_monoped.cad.batch import run
 
-    record = run(job, progress=lambda step: _note(f"{step} ..."), note=lambda text: _note(f"note: {text}"))
+    record = run(job, progress=lambda step: _note(f"{step} ..."), note=note)
     _note(f"wrote {job.folder} ({len(record['files'])} files)")
     _say_of_strength([job])
     for name in ("searched", "as_built"):
@@ -217,7 +217,7 @@ def _say_of_strength(jobs: "list[Job]") -> None:
     from pareto_monoped.study.definition import NO_STRENGTH
 
     if not all(job.strength for job in jobs):
-        _note(f"note: {NO_STRENGTH}")
+        note(NO_STRENGTH)
 
 
 def _many(jobs: "list[Job]", workers: int, place: Where) -> None:

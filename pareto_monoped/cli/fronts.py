@@ -2,7 +2,6 @@
 
 import json
 import math
-import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,7 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.options import DATABASE, force_option
 from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.cli.terminal import echo
+from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
 from pareto_monoped.design import VARIABLES, Variable, in_use
 from pareto_monoped.study.place import StudyPlace
 
@@ -60,8 +59,17 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
     shell_complete=completing.measures,
     help="Two or three measures to judge by, instead of the study's.",
 )
+@click.option(
+    "--limit", type=click.IntRange(min=1), metavar="N", help="At most N designs, evenly spread along the front."
+)
 def front(
-    db: StudyPlace, as_json: bool, csv_file: Path | None, force: bool, include_all: bool, objectives: str | None
+    db: StudyPlace,
+    as_json: bool,
+    csv_file: Path | None,
+    force: bool,
+    include_all: bool,
+    objectives: str | None,
+    limit: int | None,
 ) -> None:
     """List the front: the designs that no other design dominates.
 
@@ -78,7 +86,7 @@ def front(
         kept = read_front(db)
         study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
         if kept.foreign:
-            echo(f"note: {foreign_note(kept.foreign)}", err=True)
+            note(foreign_note(kept.foreign))
     else:
         data = read_study(db)
         study, used, sealed = data.study, in_use(data.trials), data.sealed
@@ -86,9 +94,9 @@ def front(
         rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
         if chosen != study.objectives:
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
-            echo(f"note: designs without an audit: {unaudited} of {len(rows)}", err=True)
+            note(f"designs without an audit: {unaudited} of {len(rows)}")
     say_of_study(study, sealed=sealed)
-    rows = rows[shown_columns(study, used, chosen)]
+    rows = _spread(rows[shown_columns(study, used, chosen)], limit)
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -98,6 +106,23 @@ def front(
         echo(json.dumps(rows.to_dict(orient="records"), indent=2))
     elif csv_file is None:
         _print_table(rows, chosen)
+        if limit is None and len(rows) > _MANY:
+            note(f"the front has {len(rows)} designs; --limit 40 shows 40 of them, evenly spread")
+
+
+_MANY = 100
+"""Designs of a table that is told how to be shorter: more than two screens. Our own choice."""
+
+
+def _spread(rows: "DataFrame", limit: int | None) -> "DataFrame":
+    """At most ``limit`` rows, evenly spread, with both ends; says how many are left out."""
+    if limit is None or len(rows) <= limit:
+        return rows
+    import numpy as np
+
+    chosen = np.linspace(0, len(rows) - 1, limit).round().astype(int)
+    note(f"{limit} of the front's {len(rows)} designs, evenly spread; leave out --limit to see all")
+    return rows.iloc[chosen]
 
 
 def say_of_study(study: "Study", *, sealed: bool) -> None:
@@ -105,10 +130,10 @@ def say_of_study(study: "Study", *, sealed: bool) -> None:
     from pareto_monoped.study.definition import NO_STRENGTH
     from pareto_monoped.study.seals import UNSEALED
 
-    if not sealed:
-        echo(f"note: {UNSEALED}", err=True)
     if not study.strength:
-        echo(f"note: {NO_STRENGTH}", err=True)
+        note(NO_STRENGTH)
+    if not sealed:
+        note(UNSEALED)
 
 
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
@@ -125,9 +150,6 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
     return chosen
 
 
-_TABLE_WIDTH = 80
-
-
 def _decimals(entry: "Measure") -> int:
     """Decimals in the stored unit: one more than reports show."""
     return entry.decimals + 1 + round(math.log10(entry.scale))
@@ -140,7 +162,7 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     # The motors' names stand last, each in a column as wide as the longest.
     motors = {name: max(map(len, (name, *rows[name]))) for name in _MOTORS if name in rows.columns}
     last = sum(width + 1 for width in motors.values())
-    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= _TABLE_WIDTH
+    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= WIDTH
     # With a third objective the usual columns do not fit; three digits of each variable then must do.
     number: Callable[[float], str] = (
         (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
@@ -249,8 +271,8 @@ def pick(
     if count:
         _print_alternatives(others, tolerance)
         if compared is not None:
-            note = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
-            echo(wrapped(f"{note}; 'robust DB --trial N' adds others"))
+            many = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
+            echo(wrapped(f"{many}; 'robust DB --trial N' adds others"))
 
 
 def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
@@ -262,7 +284,7 @@ def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
     data = read_study(db)
     trials = robust_trials(data, read_robustness(db))
     if trials.others:
-        echo(f"note: left out: {trials.others} trials with other ranges, samples or seed", err=True)
+        note(f"left out: {trials.others} trials with other ranges, samples or seed")
     return data, trials, robust_front(data, trials)
 
 
@@ -275,16 +297,4 @@ def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> 
         values = other.objectives.text(other.values)
         echo(wrapped(f"  trial {other.trial} ({values}): {other.text()}", indent=4))
     if unaudited := sum(not other.audited for other in others):
-        echo(f"note: alternatives without an audit: {unaudited} of {len(others)}", err=True)
-
-
-def wrapped(text: str, indent: int = 2) -> str:
-    """A sentence in lines of at most 80 letters."""
-    return textwrap.fill(
-        text,
-        width=_TABLE_WIDTH,
-        subsequent_indent=" " * indent,
-        break_on_hyphens=False,
-        drop_whitespace=True,
-        break_long_words=False,
-    )
+        note(f"alternatives without an audit: {unaudited} of {len(others)}")

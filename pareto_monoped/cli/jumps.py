@@ -11,7 +11,7 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import force_option
-from pareto_monoped.cli.terminal import echo, new_console
+from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
     CONTROL,
@@ -110,7 +110,7 @@ def simulate(
 ) -> None:
     """Simulate one jump and print its measures.
 
-    A jump that diverges has none, and ends with exit code 1.
+    A robot that cannot stand or does not jump has none. Its status and reason are printed, and the exit code is 1.
     """
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.calibration_defaults import rules_for
@@ -125,8 +125,7 @@ def simulate(
     hip, knee = chosen_motors(motor, hip_motor, knee_motor)
     maps = maps_for(hip, knee, rules_for(calibration_name, rules))
     served = {(maps.of(joint), getattr(design, f"{joint}_ratio")) for joint in JOINTS}
-    for note in filter(None, (one.stand_in(ratio) for one, ratio in sorted(served, key=lambda pair: pair[1]))):
-        echo(f"note: {note}", err=True)
+    stand_ins = list(filter(None, (one.stand_in(ratio) for one, ratio in sorted(served, key=lambda pair: pair[1]))))
     result = jump(design, maps, calibration, trace=trace is not None or shown)
     if result.status == "bad_input":
         raise DesignError(result.reason)
@@ -136,7 +135,9 @@ def simulate(
         raise DesignError(f"design cannot stand: {result.reason}; there is no jump to write, change the link lengths")
     motors = _motors(hip, knee)
     report = _report(result, motors, maps)
-    _add_gear_life(report, result, maps)
+    advice = _add_gear_life(report, result, maps)
+    for text in (*advice, *stand_ins, *_outside(design)):
+        note(text)
     if audited and result.status == "ok":
         report["audit"] = _audit(design, maps, calibration)
     if trace:
@@ -151,15 +152,21 @@ def simulate(
         _print(report)
     if view:
         view_jump(design, maps, calibration, result.trace, slower=slower)
-    if result.status == "diverged":
-        raise SimulationError(
-            f"jump: diverged, {result.reason}; choose softer contact and stops or a smaller time step in the "
-            "calibration, or smaller gains"
-        )
+    if result.status != "ok":
+        raise SimulationError(f"jump: {result.status.replace('_', ' ')}, {result.reason}; {_CURES[result.status]}")
+
+
+_CURES = {
+    "cannot_stand": "change the link lengths or start_height_m",
+    "no_lift_off": "raise stiffness_n_per_m or the gear ratios, or lower damping_n_s_per_m",
+    "timeout": "lower stiffness_n_per_m or rest_length_m",
+    "diverged": "choose softer contact and stops or a smaller time step in the calibration, or smaller gains",
+}
+"""How a jump can fail -> what may help."""
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:
-    """The case with its changes; values outside the paper's bounds get a note on stderr."""
+    """The case with its changes."""
     numbers = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -172,15 +179,19 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
             numbers[name] = float(text)
         except ValueError:
             raise DesignError(complaint(name, text, "a number", "give for example 0.4")) from None
-    design = PAPER_CASES[case].design.replace(numbers)
+    return PAPER_CASES[case].design.replace(numbers)
+
+
+def _outside(design: Design) -> list[str]:
+    """What to note of values outside their bounds: a line for the paper's variables, and one for the others."""
+    found: dict[str, list[str]] = {}
     for variable in VARIABLES:
         value = getattr(design, variable.name)
         if not variable.lower <= value <= variable.upper:
-            unit = "" if variable.unit == "1" else f" {variable.unit}"
-            bounds = f"{variable.lower:g} to {variable.upper:g}{unit}"
+            bounds = f"{variable.lower:g} to {variable.upper:g} {variable.unit}".removesuffix(" 1")
             whose = "the paper's" if variable.default is None else "the usual"
-            echo(f"note: {variable.name} = {value:g} is outside {whose} bounds, {bounds}", err=True)
-    return design
+            found.setdefault(whose, []).append(f"{variable.name} = {value:g} ({bounds})")
+    return [f"outside {whose} bounds: {', '.join(those)}" for whose, those in found.items()]
 
 
 def _plain(value: float) -> float | None:
@@ -206,8 +217,8 @@ def _report(result: "JumpResult", motors: dict[str, str], maps: "JointMaps") -> 
     }
 
 
-def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMaps") -> None:
-    """How many jumps the gears last that strike their stops in each; with a note if that is too few."""
+def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMaps") -> list[str]:
+    """How many jumps the gears last that strike their stops in each; with advice if that is too few."""
     import numpy as np
 
     from pareto_monoped.strength.loads import loads_of
@@ -215,10 +226,10 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
 
     known = result.measures | result.design.as_dict()
     life = gear_life(result.design, maps, loads_of({name: np.array([v]) for name, v in known.items()}))
-    if life is not None:
-        report["gear_life_jumps"] = life.jumps
-        if life.advice:
-            echo(f"note: {life.advice}", err=True)
+    if life is None:
+        return []
+    report["gear_life_jumps"] = life.jumps
+    return [life.advice] if life.advice else []
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
@@ -301,8 +312,9 @@ def table1(as_json: bool) -> None:
     ratios = sorted(
         {ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)}
     )
-    for note in filter(None, map(reference.stand_in, ratios)):
-        echo(f"note: reference: {note}", err=True)
+    stand_ins = filter(None, map(reference.stand_in, ratios))
+    for text in stand_ins:
+        note(f"reference: {text}")
     rows = rows_of(paper, reference)
     if as_json:
         echo(json.dumps([row.as_dict() for row in rows], indent=2))

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from pareto_monoped.cli.options import DATABASE, force_option
-from pareto_monoped.cli.terminal import echo
+from pareto_monoped.cli.terminal import echo, note
 from pareto_monoped.study.place import StudyPlace
 
 
@@ -49,7 +49,7 @@ def report(
         refuse_database(output)
     # Figures show one jump only.
     most_jumps = 0 if no_jumps else 1 if output is None else None
-    payload = payload_of(dbs, exports=exports, most_jumps=most_jumps, note=lambda text: echo(f"note: {text}", err=True))
+    payload = payload_of(dbs, exports=exports, most_jumps=most_jumps, note=note)
     if output is not None:
         write_text(output, page(payload), force=force)
         echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)

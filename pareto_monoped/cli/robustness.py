@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import executor_at, where, where_options
 from pareto_monoped.cli.options import DATABASE, sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.terminal import echo
@@ -23,7 +24,13 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("db", type=DATABASE)
 @click.option(
-    "--trial", "trials", type=click.IntRange(min=0), multiple=True, metavar="N", help="A trial, instead of the front."
+    "--trial",
+    "trials",
+    type=click.IntRange(min=0),
+    multiple=True,
+    metavar="N",
+    shell_complete=completing.trials,
+    help="A trial, instead of the front.",
 )
 @click.option(
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."

@@ -58,7 +58,13 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
         shell_complete=completing.conditions,
         help="Nearest to a wished-for point, such as height_m=1,energy_j=20.",
     )
-    @click.option("--trial", type=click.IntRange(min=0), metavar="N", help="The trial with this number.")
+    @click.option(
+        "--trial",
+        type=click.IntRange(min=0),
+        metavar="N",
+        shell_complete=completing.trials,
+        help="The trial with this number.",
+    )
     @functools.wraps(command)
     def wrapper(*arguments: Any, **given: Any) -> Any:
         selector = _selector(**{name: given.pop(name) for name in inspect.signature(_selector).parameters})

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.fronts import wrapped
 from pareto_monoped.cli.options import DATABASE, force_option, sample_seed_option, uncertainty_option, workers_option
 from pareto_monoped.cli.robustness import asked
 from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.cli.terminal import echo
+from pareto_monoped.cli.terminal import echo, wrapped
 from pareto_monoped.study.place import StudyPlace
 
 if TYPE_CHECKING:

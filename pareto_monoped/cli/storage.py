@@ -3,7 +3,7 @@
 import click
 
 from pareto_monoped.cli.options import DATABASE
-from pareto_monoped.cli.terminal import echo
+from pareto_monoped.cli.terminal import echo, note
 from pareto_monoped.study.place import StudyPlace
 
 
@@ -28,9 +28,9 @@ def verify(db: StudyPlace, simulate: int, workers: int | None) -> None:
     for line in result.findings:
         echo(f"found: {line}", err=True)
     if result.foreign:
-        echo(f"note: {foreign_note(len(result.foreign))}", err=True)
+        note(foreign_note(len(result.foreign)))
     if not result.sealed:
-        echo(f"note: {UNSEALED}", err=True)
+        note(UNSEALED)
     require_sound(db, result)
     again = f", {result.simulated} jumped again as stored" if result.simulated else ""
     echo(f"{db}: sound, {result.trials} trials{again}")

@@ -13,7 +13,7 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import executor_at, where, where_options
 from pareto_monoped.cli.options import DATABASE, workers_option
-from pareto_monoped.cli.terminal import echo, name, new_console
+from pareto_monoped.cli.terminal import echo, name, new_console, notes, wrapped
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.study.place import StudyPlace
 
@@ -89,7 +89,7 @@ def run(
             workers=workers,
             executor=executor,
             progress=progress,
-            notify=_say,
+            notify=_said,
         )
     return _finish(summary, as_json)
 
@@ -114,7 +114,7 @@ def resume(
     place = where(processes, scheduler, workers)
     with executor_at(place) as executor, progress_reports(as_json) as progress:
         summary = resume_study(
-            db, evaluations=evaluations, workers=workers, executor=executor, progress=progress, notify=_say
+            db, evaluations=evaluations, workers=workers, executor=executor, progress=progress, notify=_said
         )
     return _finish(summary, as_json)
 
@@ -205,6 +205,11 @@ def _say(line: str) -> None:
     echo(line, err=True)
 
 
+def _said(text: str) -> None:
+    """Print what a run has to say besides its progress."""
+    echo(wrapped(text), err=True)
+
+
 def _finish(summary: "RunSummary", as_json: bool) -> int:
     """Say how a run ended; returns the exit code."""
     code = 130 if summary.stop_reason == "interrupted" else 0
@@ -226,10 +231,10 @@ def _print_end(summary: "RunSummary") -> None:
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
-    for line in summary.remarks:
-        _say(f"note: {line}")
-    if not summary.strength:
-        _say(f"note: {NO_STRENGTH}")
+    strength = () if summary.strength else (NO_STRENGTH,)
+    # Without a front, the first remark says why there is none.
+    said = (*strength, *summary.remarks) if summary.front_size else (*summary.remarks, *strength)
+    notes(said, others="'report'")
 
 
 @contextmanager

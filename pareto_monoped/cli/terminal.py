@@ -6,7 +6,9 @@ obeys or hides (control characters, changes of writing direction, halves of char
 """
 
 import re
+import textwrap
 import unicodedata
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -42,6 +44,45 @@ def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
     except OSError:
         if not err:
             raise
+
+
+WIDTH = 80
+"""Letters per line of everything that is printed."""
+
+
+def wrapped(text: str, indent: int = 2) -> str:
+    """A sentence in lines of at most ``WIDTH`` letters."""
+    return textwrap.fill(
+        text,
+        width=WIDTH,
+        subsequent_indent=" " * indent,
+        break_on_hyphens=False,
+        drop_whitespace=True,
+        break_long_words=False,
+    )
+
+
+def note(text: str) -> None:
+    """Print what a user should know besides the result."""
+    echo(wrapped(f"note: {name(text)}"), err=True)
+
+
+_MOST_NOTES = 5
+"""At most so many notes on one result are read; our own choice."""
+
+
+def notes(texts: Sequence[str], *, others: str) -> None:
+    """Print notes on one result, the most important first, and of those that are too many how to see them.
+
+    Args:
+        texts: the notes, by descending importance.
+        others: what shows the others.
+    """
+    shown = texts if len(texts) <= _MOST_NOTES else texts[: _MOST_NOTES - 1]
+    for text in shown:
+        note(text)
+    if left := len(texts) - len(shown):
+        note(f"{left} more notes are left out; {others} shows them")
 
 
 def new_console(**options: Any) -> "Console":

@@ -46,6 +46,38 @@ def test_front_as_csv_and_table(db, tmp_path, capsys):
     assert max(map(len, lines)) <= 80
 
 
+def long_front(path, designs):
+    """A study whose front has so many designs: the higher, the more energy."""
+    study, heights = made_study(), np.linspace(0.6, 1.2, designs)
+    jumps = made_evaluations(heights.tolist(), (10.0 * heights).tolist(), seed=1)
+    made_database(path, [made_generation(study, 0, 0, jumps, state={"after": 0})], study)
+    return str(path)
+
+
+def test_front_can_be_limited_to_some_designs_and_says_what_is_left_out(tmp_path, capsys):
+    """It printed thousands of rows."""
+    db = long_front(tmp_path / "long.db", 300)
+    assert cli(["front", db]) == 0
+    said = capsys.readouterr()
+    whole = said.out.splitlines()
+    assert len(whole) == 301
+    assert "note: the front has 300 designs; --limit 40 shows 40 of them, evenly spread\n" in said.err
+    assert cli(["front", db, "--limit", "4"]) == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines() == [whole[0], *(whole[1 + place] for place in (0, 100, 199, 299))]
+    assert "note: 4 of the front's 300 designs, evenly spread; leave out --limit to see all\n" in said.err
+    assert cli(["front", db, "--limit", "2", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)) == 2
+    assert cli(["front", db, "--limit", "1", "--csv", str(tmp_path / "one.csv")]) == 0
+    assert (tmp_path / "one.csv").read_text().count("\n") == 2
+    capsys.readouterr()
+    assert cli(["front", db, "--limit", "300"]) == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines() == whole
+    assert "evenly" not in said.err
+    assert cli(["front", db, "--limit", "0"]) == 2
+
+
 @pytest.mark.parametrize(
     ("selector", "trial", "word"),
     [

@@ -4,10 +4,12 @@ import ast
 import json
 import shutil
 import sqlite3
+from pathlib import Path
 
 import pytest
 
 from pareto_monoped.cli import _run as cli
+from pareto_monoped.cli import terminal
 from pareto_monoped.cli.terminal import echo, name, new_console, plain
 from tests.cli.support import ROOT, STORED
 
@@ -103,3 +105,33 @@ def test_nothing_is_printed_past_the_escapes(path):
         return
     calls = [ast.unparse(node.func) for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
     assert not {"click.echo", "click.secho", "print", "Console", "sys.stdout.write", "sys.stderr.write"} & set(calls)
+
+
+def test_a_note_fits_eighty_columns_and_goes_to_stderr(capsys):
+    terminal.note("word " * 40 + "end")
+    said = capsys.readouterr()
+    lines = said.err.splitlines()
+    assert said.out == ""
+    assert len(lines) == 3
+    assert max(map(len, lines)) <= 80
+    assert lines[0].startswith("note: word")
+    assert all(line.startswith("  word") for line in lines[1:])
+    assert " ".join(said.err.split()) == "note: " + "word " * 40 + "end"
+
+
+@pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (5, 5), (6, 4), (30, 4)])
+def test_of_many_notes_the_first_few_are_printed_and_the_rest_counted(capsys, count, shown):
+    terminal.notes([f"number {k}" for k in range(count)], others="'report'")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[:shown] == [f"note: number {k}" for k in range(shown)]
+    left = count - shown
+    assert lines[shown:] == ([f"note: {left} more notes are left out; 'report' shows them"] if left else [])
+
+
+def test_every_note_of_the_command_line_goes_through_one_function():
+    """Those printed by hand were longer than a line of the terminal."""
+    folder = Path(terminal.__file__).parent
+    by_hand = [
+        path.name for path in folder.glob("*.py") if 'f"note: ' in path.read_text() or '"note: ' in path.read_text()
+    ]
+    assert by_hand == ["terminal.py"]
