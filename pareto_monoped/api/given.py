@@ -6,6 +6,8 @@ from concurrent.futures import Executor
 from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+
 from pareto_monoped.errors import InputError, complaint
 
 
@@ -41,6 +43,17 @@ def trial_of(given: Any) -> int:
     if isinstance(given, bool) or not isinstance(given, Integral) or given < 0:
         raise InputError(complaint("trial", given, "the number of a trial, from 0", "give one"))
     return int(given)
+
+
+def truth_of(what: str, given: Any) -> bool:
+    """True or False.
+
+    Raises:
+        InputError: something else, which might count as either.
+    """
+    if not isinstance(given, bool | np.bool_):
+        raise InputError(complaint(what, given, "True or False", "give one of them"))
+    return bool(given)
 
 
 def number_of(what: str, given: Any) -> float:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of, require_design
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
@@ -70,9 +71,9 @@ def export(
         rules=chosen,
         folder=as_path(folder, "folder"),
         formats=chosen_formats(formats),
-        force=force,
+        force=truth_of("force", force),
         source={"design": design.as_dict()},
-        strength=strength_for(model.name) if strength is None else strength,
+        strength=strength_for(model.name) if strength is None else truth_of("strength", strength),
     )
     return run(job)
 
@@ -118,7 +119,12 @@ def export_trial(
     stored.design(number)  # refuses a number that the study does not have
     return run(
         trial_job(
-            stored.data, number, folder=as_path(folder, "folder"), formats=formats, force=force, strength=strength
+            stored.data,
+            number,
+            folder=as_path(folder, "folder"),
+            formats=formats,
+            force=truth_of("force", force),
+            strength=None if strength is None else truth_of("strength", strength),
         )
     )
 
@@ -149,5 +155,6 @@ def write_report(
     allowed = "a study as load_study returns it, the path of its database, or a list of these"
     dbs = [one.path if isinstance(one, StoredStudy) else as_place(one, "studies", allowed=allowed) for one in several]
     target = as_path(out, "out")
+    replace = truth_of("force", force)
     refuse_database(target)
-    write_text(target, page(payload_of(dbs)), force=force)
+    write_text(target, page(payload_of(dbs)), force=replace)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.studies import StoredStudy
 from pareto_monoped.errors import InputError, complaint, unknown_name
 from pareto_monoped.measures import MEASURE_NAMES, is_goal, measure
@@ -84,10 +85,11 @@ def plot_front(
     for name in (across, up):
         if not is_goal(name) or not all(name in one.trials for one in several):
             raise InputError(unknown_name("axis", name, MEASURE_NAMES))
+    with_trials = truth_of("trials", trials)
     series: list[_Series] = []
     for k, one in enumerate(several):
         colour = _COLOURS[k % len(_COLOURS)]
-        if trials:
+        if with_trials:
             feasible = one.trials[one.trials["state"] == "feasible"]
             series.append(_points(f"{one.study.name}, trials", feasible, across, up, colour, pale=True))
         series.append(_points(f"{one.study.name}, front", one.front(), across, up, colour, pale=False))

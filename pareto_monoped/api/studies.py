@@ -287,6 +287,10 @@ def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a pat
         raise InputError(complaint(what, given, allowed, "give one")) from None
     if "\0" in str(path):
         raise InputError(complaint(what, str(path), "without a zero byte", "check it"))
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:  # reports and records name it
+        raise InputError(complaint(what, str(path), "UTF-8", "rename the file")) from None
     return path
 
 
