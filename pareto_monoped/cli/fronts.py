@@ -60,7 +60,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
     help="Two or three measures to judge by, instead of the study's.",
 )
 @click.option(
-    "--limit", type=click.IntRange(min=1), metavar="N", help="At most N designs, evenly spread along the front."
+    "--most", type=click.IntRange(min=1), metavar="N", help="At most N designs, evenly spread along the front."
 )
 def front(
     db: StudyPlace,
@@ -69,7 +69,7 @@ def front(
     force: bool,
     include_all: bool,
     objectives: str | None,
-    limit: int | None,
+    most: int | None,
 ) -> None:
     """List the front: the designs that no other design dominates.
 
@@ -96,7 +96,7 @@ def front(
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
             note(f"designs without an audit: {unaudited} of {len(rows)}")
     say_of_study(study, sealed=sealed)
-    rows = _spread(rows[shown_columns(study, used, chosen)], limit)
+    rows = _spread(rows[shown_columns(study, used, chosen)], most)
     if csv_file is not None:
         from pareto_monoped.files import write_text
 
@@ -106,22 +106,22 @@ def front(
         echo(json.dumps(rows.to_dict(orient="records"), indent=2))
     elif csv_file is None:
         _print_table(rows, chosen)
-        if limit is None and len(rows) > _MANY:
-            note(f"the front has {len(rows)} designs; --limit 40 shows 40 of them, evenly spread")
+        if most is None and len(rows) > _MANY:
+            note(f"the front has {len(rows)} designs; --most 40 shows 40 of them, evenly spread")
 
 
 _MANY = 100
 """Designs of a table that is told how to be shorter: more than two screens. Our own choice."""
 
 
-def _spread(rows: "DataFrame", limit: int | None) -> "DataFrame":
-    """At most ``limit`` rows, evenly spread, with both ends; says how many are left out."""
-    if limit is None or len(rows) <= limit:
+def _spread(rows: "DataFrame", most: int | None) -> "DataFrame":
+    """At most ``most`` rows, evenly spread, with both ends; says how many are left out."""
+    if most is None or len(rows) <= most:
         return rows
     import numpy as np
 
-    chosen = np.linspace(0, len(rows) - 1, limit).round().astype(int)
-    note(f"{limit} of the front's {len(rows)} designs, evenly spread; leave out --limit to see all")
+    chosen = np.linspace(0, len(rows) - 1, most).round().astype(int)
+    note(f"{most} of the front's {len(rows)} designs, evenly spread; leave out --most to see all")
     return rows.iloc[chosen]
 
 

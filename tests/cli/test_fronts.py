@@ -61,21 +61,21 @@ def test_front_can_be_limited_to_some_designs_and_says_what_is_left_out(tmp_path
     said = capsys.readouterr()
     whole = said.out.splitlines()
     assert len(whole) == 301
-    assert "note: the front has 300 designs; --limit 40 shows 40 of them, evenly spread\n" in said.err
-    assert cli(["front", db, "--limit", "4"]) == 0
+    assert "note: the front has 300 designs; --most 40 shows 40 of them, evenly spread\n" in said.err
+    assert cli(["front", db, "--most", "4"]) == 0
     said = capsys.readouterr()
     assert said.out.splitlines() == [whole[0], *(whole[1 + place] for place in (0, 100, 199, 299))]
-    assert "note: 4 of the front's 300 designs, evenly spread; leave out --limit to see all\n" in said.err
-    assert cli(["front", db, "--limit", "2", "--json"]) == 0
+    assert "note: 4 of the front's 300 designs, evenly spread; leave out --most to see all\n" in said.err
+    assert cli(["front", db, "--most", "2", "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)) == 2
-    assert cli(["front", db, "--limit", "1", "--csv", str(tmp_path / "one.csv")]) == 0
+    assert cli(["front", db, "--most", "1", "--csv", str(tmp_path / "one.csv")]) == 0
     assert (tmp_path / "one.csv").read_text().count("\n") == 2
     capsys.readouterr()
-    assert cli(["front", db, "--limit", "300"]) == 0
+    assert cli(["front", db, "--most", "300"]) == 0
     said = capsys.readouterr()
     assert said.out.splitlines() == whole
     assert "evenly" not in said.err
-    assert cli(["front", db, "--limit", "0"]) == 2
+    assert cli(["front", db, "--most", "0"]) == 2
 
 
 @pytest.mark.parametrize(
