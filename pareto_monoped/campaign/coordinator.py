@@ -121,6 +121,7 @@ class _Job:
     standing: Standing
     worker: WorkerProcess
     before: int
+    seat: int
     again_with: int | None = None
     """Number of threads with which it goes on once it has stopped; None: it is not to stop."""
 
@@ -194,9 +195,11 @@ class _Coordinator:
     def _begin(self, standing: Standing, threads: int, worker: WorkerProcess | None = None) -> None:
         worker = worker or (self.idle.pop() if self.idle else WorkerProcess())
         standing.state, standing.threads = "running", threads
-        self.jobs.append(_Job(standing=standing, worker=worker, before=standing.evaluations - standing.new_evaluations))
+        seat = min(set(range(len(self.jobs) + 1)) - {job.seat for job in self.jobs})
+        before = standing.evaluations - standing.new_evaluations
+        self.jobs.append(_Job(standing=standing, worker=worker, before=before, seat=seat))
         place = standing.place
-        worker.begin(Task(study=place.study, db=place.db, threads=threads, scheduler=self.scheduler))
+        worker.begin(Task(study=place.study, db=place.db, threads=threads, scheduler=self.scheduler, seat=seat))
         self.changed(standing)
 
     def _hear(self, job: _Job) -> None:

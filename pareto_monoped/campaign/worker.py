@@ -31,12 +31,14 @@ class Task:
         study, db: what and where.
         threads: that simulate.
         scheduler: address of a Dask scheduler whose workers simulate in their place; None: they do.
+        seat: tells studies that run side by side apart, see ``compute.crew.Crew``.
     """
 
     study: Study
     db: Path
     threads: int
     scheduler: str | None = None
+    seat: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,7 +116,7 @@ def _simulating(task: Task, notify: Callable[[str], None]) -> Iterator[Executor 
         return
     from pareto_monoped.jump.peers import cluster
 
-    with cluster(task.scheduler, tell=notify) as crew:
+    with cluster(task.scheduler, tell=notify, seat=task.seat) as crew:
         yield crew
 
 

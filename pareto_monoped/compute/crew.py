@@ -76,6 +76,8 @@ class Crew(Executor):
         check: says what is wrong with the answer.
         tell: called with a line for the user.
         limits: how long to wait for tasks and workers.
+        seat: crews that share workers, such as those of a campaign's studies, have different ones: among workers with
+            equally little to do, each prefers another.
     """
 
     def __init__(
@@ -86,7 +88,9 @@ class Crew(Executor):
         check: Check,
         tell: Callable[[str], None] = lambda _: None,
         limits: Limits | None = None,
+        seat: int = 0,
     ) -> None:
+        self._seat = seat
         self._staff, self._greeting, self._check, self._tell = staff, greeting, check, tell
         self._limits = limits or Limits()
         self._waiting: deque[_Task] = deque()
@@ -262,9 +266,11 @@ class Crew(Executor):
 
     def _give(self) -> None:
         """Give what waits to who has least to do; what is late also to who has nothing to do."""
-        able = self._able()
+        able = sorted(self._able(), key=lambda one: one.member.name)
+        first = self._seat % max(1, len(able))
+        own_first = able[first:] + able[:first]
         while able and self._waiting:
-            post = min(able, key=lambda one: len(one.given) / one.member.slots)
+            post = min(own_first, key=lambda one: len(one.given) / one.member.slots)
             if len(post.given) >= post.member.slots + _AHEAD:
                 return
             task = self._waiting.popleft()

@@ -1,6 +1,7 @@
 """Crews that jump: who may join is decided by versions, platform and the exact results of a few probe designs."""
 
 import hashlib
+import os
 import platform
 import threading
 from collections.abc import Callable, Iterator
@@ -116,7 +117,7 @@ def complaint(theirs: Facts) -> str | None:
 
 @contextmanager
 def crew_of(
-    staff: Staff, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
+    staff: Staff, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None, seat: int = 0
 ) -> Iterator[Crew]:
     """An executor over the workers of a staff who compute the same numbers; closed with the block.
 
@@ -124,8 +125,9 @@ def crew_of(
         staff: the workers.
         tell: called with a line for the user when a worker is lost or refused.
         limits: how long to wait for tasks and workers.
+        seat: see ``Crew``.
     """
-    crew = Crew(staff, greeting=greeting, check=complaint, tell=tell, limits=limits)
+    crew = Crew(staff, greeting=greeting, check=complaint, tell=tell, limits=limits, seat=seat)
     try:
         facts()  # while the workers do the same
         yield crew
@@ -158,7 +160,11 @@ def processes(
 
 @contextmanager
 def cluster(
-    address: str, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
+    address: str,
+    *,
+    tell: Callable[[str], None] = lambda _: None,
+    limits: Limits | None = None,
+    seat: int | None = None,
 ) -> Iterator[Crew]:
     """An executor over the workers of a Dask scheduler; needs the extra ``cluster``.
 
@@ -168,10 +174,11 @@ def cluster(
         address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
         tell: called with a line for the user when a worker is lost or refused.
         limits: how long to wait for tasks and workers.
+        seat: see ``Crew``; by default the number of this process.
 
     Raises:
         InputError: Dask is not installed here.
         WorkerError: no scheduler answers.
     """
-    with crew_of(DaskWorkers(address), tell=tell, limits=limits) as crew:
+    with crew_of(DaskWorkers(address), tell=tell, limits=limits, seat=os.getpid() if seat is None else seat) as crew:
         yield crew

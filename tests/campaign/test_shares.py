@@ -22,7 +22,7 @@ class Recording(_Coordinator):
 
     def _begin(self, standing, threads, worker=None):
         standing.threads, standing.state = threads, "running"
-        self.jobs.append(_Job(standing=standing, worker=Stopping(), before=0))
+        self.jobs.append(_Job(standing=standing, worker=Stopping(), before=0, seat=0))
 
 
 def coordinator(cores, several, scheduler=None):
@@ -57,6 +57,24 @@ def test_with_a_scheduler_as_many_studies_run_as_there_are_cores(several, cores,
     made = coordinator(cores, several, scheduler="tcp://x:1")
     made._fill()
     assert [job.standing.threads for job in made.jobs] == [1] * count
+
+
+def test_studies_side_by_side_have_seats_of_their_own(several, monkeypatch):
+    """So that they give their tasks to different workers of a scheduler; a seat that has become free is taken again."""
+    told = []
+
+    class Listening(Stopping):
+        def begin(self, task):
+            told.append(task.seat)
+
+    monkeypatch.setattr("pareto_monoped.campaign.coordinator.WorkerProcess", Listening)
+    made = _Coordinator(3, "tcp://x:1", lambda _: None, lambda _: None)
+    made.waiting.extend(several)
+    made.slots = 3
+    made._fill()
+    made._release(made.jobs[1], "finished")
+    made._fill()
+    assert told == [0, 1, 2, 1]
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,29 @@ def test_a_worker_is_greeted_with_its_threads():
     assert heard == [3]
 
 
+def test_crews_with_different_seats_prefer_different_workers():
+    """All crews of a campaign gave their tasks to the first worker, and the others had nothing to do."""
+    given = []
+    for seat in range(4):
+        workers = {name: Worker(later=(slow,)) for name in ("two", "one", "three")}
+        made = Crew(StaffHere(workers), greeting=hello, check=lambda _: None, seat=seat)
+        until(lambda here=workers: all(worker.given for worker in here.values()))
+        tasks = [made.submit(slow) for _ in range(3)]
+        until(lambda here=workers: sum(len(worker.kept) for worker in here.values()) == 3)
+        assert [len(worker.kept) for worker in workers.values()] == [1, 1, 1]
+        for worker in workers.values():
+            worker.tell()
+        [task.result(timeout=30) for task in tasks]
+        last = made.submit(slow)
+        until(lambda here=workers: any(worker.kept for worker in here.values()))
+        given += [name for name, worker in workers.items() if worker.kept]
+        for worker in workers.values():
+            worker.tell()
+        assert last.result(timeout=30) == "slow"
+        made.shutdown()
+    assert given == ["one", "three", "two", "one"]
+
+
 def test_a_worker_whose_greeting_fails_is_refused():
     def unknown(threads):
         raise AttributeError("no such module")
