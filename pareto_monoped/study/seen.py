@@ -52,14 +52,21 @@ def _table_for(count: int) -> Digests:
 
 
 @compiled
+def _place(table: Digests, digest: np.uint64) -> np.uint64:
+    """Where a digest is in a table with free places, or else the free place for it."""
+    last = np.uint64(len(table) - 1)
+    place = digest & last
+    while table[place] != _FREE and table[place] != digest:
+        place = (place + np.uint64(1)) & last
+    return place
+
+
+@compiled
 def _insert(table: Digests, digests: Digests) -> NDArray[np.bool_]:
     """Put n digests into a table with free places; which of them were not in it before, shape (n,)."""
     fresh = np.zeros(len(digests), dtype=np.bool_)
-    last = np.uint64(len(table) - 1)
     for n in range(len(digests)):
-        place = digests[n] & last
-        while table[place] != _FREE and table[place] != digests[n]:
-            place = (place + np.uint64(1)) & last
+        place = _place(table, digests[n])
         fresh[n] = table[place] == _FREE
         table[place] = digests[n]
     return fresh
@@ -69,12 +76,8 @@ def _insert(table: Digests, digests: Digests) -> NDArray[np.bool_]:
 def _contains(table: Digests, digests: Digests) -> NDArray[np.bool_]:
     """Which of n digests are in a table, shape (n,)."""
     found = np.zeros(len(digests), dtype=np.bool_)
-    last = np.uint64(len(table) - 1)
     for n in range(len(digests)):
-        place = digests[n] & last
-        while table[place] != _FREE and table[place] != digests[n]:
-            place = (place + np.uint64(1)) & last
-        found[n] = table[place] != _FREE
+        found[n] = table[_place(table, digests[n])] != _FREE
     return found
 
 
