@@ -8,9 +8,11 @@ import sysconfig
 import tomllib
 import venv
 import zipfile
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
 import pareto_monoped as pm
 
@@ -29,6 +31,13 @@ TARGET = re.compile(r'!?\[[^\]]+\]\(([^)#]+)|<img src="([^"]+)')
 def targets(text):
     """Where links and pictures lead, without anchors within the page."""
     return [one or other for one, other in TARGET.findall(text)]
+
+
+def test_what_is_installed_runs_on_every_python_that_the_readme_names():
+    """A pinned package wanted 3.11.5, and the set-up failed on Debian 12, whose Python is 3.11.2."""
+    least = PROJECT["project"]["requires-python"].removeprefix(">=") + ".0"
+    wanted = {one.name: one.metadata["Requires-Python"] for one in distributions()}
+    assert {name: of for name, of in wanted.items() if of and least not in SpecifierSet(of)} == {}
 
 
 def test_with_an_address_all_links_and_pictures_of_the_readme_lead_to_files_there():
