@@ -48,7 +48,9 @@ _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
 _LARGER = 2
 """How many times as many designs each later generation has, as many climbs and as many with other gearboxes. Our own
-choice: the model takes as long for twice as many designs, and the front is as good."""
+choice: the model takes as long for twice as many designs, and the front is as good. Four times as many, with no more
+climbs, take a tenth less time for 8,000 designs of Case C, but one of 15 seeds then needs 1.2 percent more energy than
+the best known at 1.1 m, where all 15 are within 0.3 percent with twice as many."""
 
 
 class SurrogateSearch:
