@@ -88,8 +88,8 @@ class RobustEvaluator:
             for rows, jumps in zip(chunks, simulated, strict=True):
                 for k, row in enumerate(rows):
                     found = self._measures(jumps, slice(k * len(self.drawn), (k + 1) * len(self.drawn)))
-                    for name, value in found.items():
-                        robust[name][row] = value
+                    for name in self.names:
+                        robust[name][row] = found[name]
                     if not found["failed_share"] < 1.0:
                         reasons[row] = f"none of {len(self.drawn)} jumps under uncertainty reaches an apex"
         given = {name: getattr(result, name) for name in Evaluations.__dataclass_fields__ if name != "reason"}
@@ -105,7 +105,7 @@ class RobustEvaluator:
         )
 
     def _measures(self, jumps: Evaluations, rows: slice) -> dict[str, float]:
-        """The wanted measures of one design, and always the share of its jumps that fail."""
+        """The wanted measures of one design, and always the shares of its jumps that fail and that overload a part."""
         ok = jumps.ok[rows]
         found = {
             "failed_share": float(1.0 - ok.mean()),

@@ -24,11 +24,11 @@ IMPOSSIBLE = complete(np.array([[0.02, 0.3, 6.0, 6.0, 100.0, 1.0, 10.0]]))
 DESIGNS = np.vstack((PAPER_CASES["C"].design.as_array()[None], RANDOM, IMPOSSIBLE))
 
 
-def of_all(workers=1, sampling=SAMPLING, evaluator=None):
+def of_all(workers=1, sampling=SAMPLING, evaluator=None, names=NAMES):
     return RobustEvaluator(
         evaluator=evaluator or Evaluator(MAP, CALIBRATION, workers=workers),
         sampling=sampling,
-        names=NAMES,
+        names=names,
         least=LEAST,
     )
 
@@ -58,6 +58,15 @@ def test_the_jump_as_designed_is_that_of_the_bare_evaluator(found):
         if name != "reason":
             np.testing.assert_array_equal(found.as_columns()[name], values)
     assert set(found.as_columns()) == {*bare.as_columns(), *NAMES}
+
+
+@pytest.mark.parametrize("names", [("height_m.p05",), ("overloaded_share",), ("mass_kg.mean", "failed_share"), ()])
+def test_measures_that_nobody_asks_for_are_not_needed(found, names):
+    """Without both shares among the names it ended in a KeyError."""
+    some = of_all(names=names)(DESIGNS)
+    assert tuple(some.robust) == names
+    for name in names:
+        np.testing.assert_array_equal(some.of(name), found.of(name))
 
 
 def test_workers_batches_and_order_change_no_number(found, monkeypatch):

@@ -221,15 +221,19 @@ WHERE relnamespace = current_schema()::regnamespace AND relkind IN ('r', 'p')
 """
 
 
+_NAMED = 10
+"""Studies that the error for an address without schema names: our own choice, what fits on two lines."""
+
+
 def no_schema(server: Server, session: "psycopg.Connection[Any]") -> DatabaseError:
     """The error for an address that names no schema; it names those that are studies."""
     found = session.execute(
         "SELECT nspname FROM pg_namespace JOIN pg_class ON relnamespace = pg_namespace.oid "
         "WHERE relname = 'monoped_meta' ORDER BY nspname"
     ).fetchall()
-    studies = f"one of {', '.join(name for (name,) in found[:10])}" if found else "there are no studies yet"
-    if len(found) > 10:
-        studies += f" and {len(found) - 10} others"
+    studies = f"one of {', '.join(name for (name,) in found[:_NAMED])}" if found else "there are no studies yet"
+    if more := len(found[_NAMED:]):
+        studies += f" and {more} other{'' if more == 1 else 's'}"
     return DatabaseError(
         f"study database {str(server)!r}: names no study; add {'&' if '?' in str(server) else '?'}schema=NAME "
         f"to the address, {studies}"

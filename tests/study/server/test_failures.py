@@ -1,5 +1,6 @@
 """What goes wrong between a study and its server is one line with a cure, and without a password."""
 
+import itertools
 import subprocess
 import sys
 
@@ -16,6 +17,8 @@ from tests.study.same import assert_same_study
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
 
 pytest.importorskip("psycopg", reason="the extra postgres is not installed")
+
+_NUMBERS = itertools.count()
 
 STUDY = {
     "name": "s",
@@ -97,6 +100,20 @@ def test_an_address_without_schema_names_the_studies_there(cluster):
     """The first ten by name: other tests have made many on the same server."""
     made_database(place_of(cluster.address("a_study")))
     refused(DatabaseError, place_of(cluster.address()), "names no study", "add ?schema=NAME", "a_study")
+
+
+@pytest.mark.parametrize(("unnamed", "words"), [(0, ""), (1, " and 1 other"), (2, " and 2 others")])
+def test_an_address_without_schema_counts_the_studies_that_it_does_not_name(cluster, monkeypatch, unnamed, words):
+    """It said "and 1 others"."""
+    for _ in range(3):
+        made_database(place_of(cluster.address(f"counted_{next(_NUMBERS)}")))
+    ((there,),) = cluster.sql("SELECT count(*) FROM pg_class WHERE relname = 'monoped_meta'")
+    monkeypatch.setattr("pareto_monoped.study.server.connection._NAMED", there - unnamed)
+    with pytest.raises(DatabaseError) as caught:
+        read_study(place_of(cluster.address()))
+    names = str(caught.value).partition(", one of ")[2].removesuffix(words).split(", ")
+    assert len(names) == there - unnamed
+    assert not any(" other" in name for name in names)
 
 
 def test_an_empty_schema_may_be_there_before(cluster, place):
