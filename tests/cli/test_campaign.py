@@ -118,6 +118,25 @@ def test_json_is_a_line_per_generation_and_per_study(done):
     assert events[-1]["event"] == "end"
 
 
+def test_a_working_directory_that_was_deleted_is_named_rather_than_an_output(tmp_path):
+    """Starting a process asks for it; what the system said read as if the table could not be written."""
+    file = written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    line = [sys.executable, "-m", "pareto_monoped", "campaign", str(file), "--csv", "out"]
+    ran = subprocess.run(
+        ["sh", "-c", 'rmdir ../gone && exec "$@"', "sh", *line],
+        cwd=gone,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr == "error: working directory: has been deleted; change to a folder that exists\n"
+    assert not list(tmp_path.rglob("*.db"))
+
+
 def shown(standings, height):
     console = Console(width=80, height=height, file=io.StringIO())
     for part in _rows(standings, height):
