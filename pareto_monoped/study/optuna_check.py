@@ -7,7 +7,7 @@ import numpy as np
 
 from pareto_monoped.study.connection import Connection, Rows
 from pareto_monoped.study.definition import Study
-from pareto_monoped.study.optuna_tables import OURS, stored_digest, study_digests
+from pareto_monoped.study.optuna_tables import OURS, stored_digest, study_digests, trial_ids
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, Seals
 
@@ -123,9 +123,11 @@ def sealed_generations(seals: Seals) -> dict[int, int]:
 
 
 def _digest_findings(connection: Connection, numbers: Sequence[int], seals: Seals) -> Iterator[str]:
-    sealed = seals.written.get("optuna", {})
+    sealed, ids = seals.written.get("optuna", {}), trial_ids(connection)
     for first, count in sealed_generations(seals).items():
         end = first + count
-        if end > len(numbers) or stored_digest(connection, numbers[first], count) != sealed[str(first)]:
+        # Each trial is there: that was looked at before.
+        theirs = {ids[number] for number in numbers[first:end]}
+        if end > len(numbers) or stored_digest(connection, theirs) != sealed[str(first)]:
             yield f"trials {first} to {end - 1} do not match their hash in Optuna's tables"
             return

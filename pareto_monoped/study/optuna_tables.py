@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC
 from typing import Any
 
@@ -43,37 +43,38 @@ _OF_TRIALS = ("trial_params", "trial_values", "trial_system_attributes", "trial_
 _OF_OTHERS = ("trial_intermediate_values", "trial_heartbeats")
 
 
+def trial_ids(connection: Connection) -> dict[int, int]:
+    """Optuna's number of each trial -> its key. Optuna has no index of numbers: a search for each would read all."""
+    return dict(connection.execute("SELECT number, trial_id FROM trials ORDER BY number").fetchall())
+
+
 def drop_trials(connection: Connection, foreign: Sequence[int]) -> None:
     """Delete Optuna's trials of these numbers, and number the others from 0 on, as Optuna would have."""
-    ids = [(n,) for n in foreign]
-    for table in (*_OF_TRIALS, *_OF_OTHERS):
-        connection.executemany(
-            f"DELETE FROM {table} WHERE trial_id IN (SELECT trial_id FROM trials WHERE number = ?)", ids
-        )
-    connection.executemany("DELETE FROM trials WHERE number = ?", ids)
-    kept = connection.execute("SELECT trial_id FROM trials ORDER BY number").fetchall()
-    connection.executemany("UPDATE trials SET number = ? WHERE trial_id = ?", [(n, i) for n, (i,) in enumerate(kept)])
+    known = trial_ids(connection)
+    ids = [(known.pop(n),) for n in foreign]
+    for table in (*_OF_TRIALS, *_OF_OTHERS, "trials"):
+        connection.executemany(f"DELETE FROM {table} WHERE trial_id = ?", ids)
+    connection.executemany(
+        "UPDATE trials SET number = ? WHERE trial_id = ?", [(n, i) for n, i in enumerate(known.values())]
+    )
 
 
-def stored_digest(connection: Connection, first: int, count: int) -> str:
+def stored_digest(connection: Connection, ids: Collection[int]) -> str:
     """The digest that ``OptunaTables.insert`` gave of trials, of what is stored of them now.
 
     Args:
         connection: reads the database.
-        first: Optuna's number of the first trial.
-        count: how many trials.
+        ids: keys of the trials in Optuna's tables, of a whole generation.
     """
     rows = []
     for table, columns in _WRITTEN.items():
-        names = ", ".join(f"{table}.{column}" for column in columns)
-        rows.append(
-            connection.execute(
-                f"SELECT {names} FROM {table} "
-                + ("" if table == "trials" else "JOIN trials USING (trial_id) ")
-                + f"WHERE trials.number >= ? AND trials.number < ? ORDER BY trials.trial_id, {table}.{_KEYS[table]}",
-                (first, first + count),
-            ).fetchall()
+        found = connection.execute(
+            f"SELECT {', '.join(columns)} FROM {table} "
+            f"WHERE trial_id BETWEEN ? AND ? ORDER BY trial_id, {_KEYS[table]}",
+            (min(ids), max(ids)),
         )
+        # The keys of a generation follow one another, but for those of trials that somebody has put in between.
+        rows.append([row for row in found if row[0] in ids])
     return _digest(rows)
 
 

@@ -203,7 +203,7 @@ def _read_study(db: StudyPlace) -> StudyData:
         sealed = has_seals(connection)
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = trial_frame([entry[0] for entry in cursor.description], cursor.fetchall(), db)
+        trials = trial_frame([entry[0] for entry in cursor.description], cursor, db)
         seals = read_seals(connection, db) if sealed else None
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")

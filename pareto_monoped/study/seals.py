@@ -54,6 +54,8 @@ UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed
 """What is said of a study of version 0.2.0 or earlier."""
 
 _DIGITS = 16
+_BLOCK = 20_000
+"""Trials that are checked at once, which takes as much memory as they do. Our own choice."""
 _KNOWN = frozenset(column.name for column in COLUMNS)
 _TEXTS = frozenset(column.name for column in COLUMNS if column.dtype == "str")
 _BEFORE_ALL = ""
@@ -158,21 +160,22 @@ class Seals:
         places = np.asarray(numbers, dtype=np.int64)
         known = np.zeros(len(places), dtype=bool)
         for first, names, digests in self.parts:
-            chosen = np.arange(*np.searchsorted(places, (first, first + len(digests) // _DIGITS)))
-            if len(chosen) == 0:
-                continue
-            known[chosen] = True
-            if lost := [name for name in names if name not in values]:
+            begin, end = np.searchsorted(places, (first, first + len(digests) // _DIGITS))
+            known[begin:end] = True
+            if begin < end and (lost := [name for name in names if name not in values]):
                 return [f"its trials lack the column {lost[0]!r}"]
-            part = {name: np.asarray(column)[chosen] for name, column in values.items()}
-            found = trial_digests(names, part)
-            wrong = {
-                int(number)
-                for number, digest in zip(places[chosen], found, strict=True)
-                if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
-            }
-            wrong.update(places[chosen][_not_default(part, _KNOWN & set(values) - set(names), len(chosen))].tolist())
-            findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
+            for chosen in (slice(k, min(k + _BLOCK, end)) for k in range(begin, end, _BLOCK)):
+                numbers_there = places[chosen]
+                part = {name: np.asarray(column[chosen]) for name, column in values.items()}
+                found = trial_digests(names, part)
+                wrong = {
+                    int(number)
+                    for number, digest in zip(numbers_there, found, strict=True)
+                    if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
+                }
+                without = _KNOWN & set(values) - set(names)
+                wrong.update(numbers_there[_not_default(part, without, len(numbers_there))].tolist())
+                findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
         return findings + [f"trial {number} has no hash" for number in places[~known]]
 
     def row_findings(self, table: str, rows: Iterable[Sequence[Any]]) -> list[str]:

@@ -35,6 +35,7 @@ from pareto_monoped.study.optuna_tables import (
     drop_trials,
     stored_digest,
     study_digests,
+    trial_ids,
 )
 from pareto_monoped.study.place import StudyPlace
 from pareto_monoped.study.seals import BY_OPTUNA, OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
@@ -263,9 +264,13 @@ class Store:
         """
         with self._writing():
             drop_trials(self._connection, numbers)
+            ids = trial_ids(self._connection)
             self._sealer.add(
                 {
-                    "optuna": {str(n): stored_digest(self._connection, n, count) for n, count in generations.items()},
+                    "optuna": {
+                        str(first): stored_digest(self._connection, {ids[n] for n in range(first, first + count)})
+                        for first, count in generations.items()
+                    },
                     "optuna_first": {str(n): str(n) for n in generations},
                 }
             )

@@ -1,8 +1,10 @@
 import sqlite3
 
+import pandas as pd
 import pytest
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.study import seals, trial_frame
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
 from tests.study.support import made_database
@@ -42,6 +44,17 @@ def test_a_study_without_trials(tmp_path):
     data = read_study(tmp_path / "s.db")
     assert len(data.trials) == len(data.history) == len(data.audits) == len(data.front()) == 0
     assert {"trial", "state", "hip_ratio", "height_m", "violation"} <= set(data.trials.columns)
+
+
+def test_trials_are_the_same_however_many_are_read_at_once(tmp_path, monkeypatch):
+    """A million trials needed eight times their size while they were read and checked in one piece."""
+    made_database(tmp_path / "s.db")
+    whole = read_study(tmp_path / "s.db").trials
+    monkeypatch.setattr(trial_frame, "_BLOCK", 2)
+    monkeypatch.setattr(seals, "_BLOCK", 2)
+    blocks = read_study(tmp_path / "s.db").trials
+    assert len(blocks) == 6
+    pd.testing.assert_frame_equal(blocks, whole)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DatabaseError, InputError
+from pareto_monoped.study import seals, trial_frame
 from pareto_monoped.study.database import FORMAT
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
@@ -98,7 +99,10 @@ def test_every_value_is_guarded(path, tmp_path):
         ("DROP TABLE monoped_seals", "lacks the table 'monoped_seals'"),
     ],
 )
-def test_the_row_is_named(path, statement, words):
+@pytest.mark.parametrize("block", [20_000, 2])
+def test_the_row_is_named(path, statement, words, block, monkeypatch):
+    monkeypatch.setattr(trial_frame, "_BLOCK", block)
+    monkeypatch.setattr(seals, "_BLOCK", block)
     change(path, statement)
     with pytest.raises(DatabaseError, match="is damaged") as caught:
         read_study(path)
