@@ -81,6 +81,56 @@ def test_who_accepts_a_connection_and_stays_silent_is_no_scheduler(monkeypatch):
     assert time.monotonic() - began_s < 60.0
 
 
+def test_a_connection_that_comes_too_late_is_closed(tmp_path, monkeypatch):
+    """Nobody would ever end it: the scheduler kept a client, this process its threads."""
+    import distributed
+
+    may_connect, made = threading.Event(), []
+
+    class Late(distributed.Client):
+        """The real client, which a slow network keeps from connecting."""
+
+        def __init__(self, address, *, timeout, set_as_default):
+            assert may_connect.wait(120.0)
+            super().__init__(address, timeout=max(timeout, 60.0), set_as_default=set_as_default)
+            made.append(self)
+
+    monkeypatch.setattr(distributed, "Client", Late)
+    for name in ("_CONNECT_S", "_ANSWER_S"):
+        monkeypatch.setattr(f"pareto_monoped.compute.cluster.{name}", 0.2)
+    with DaskHere(tmp_path) as dask:
+        with pytest.raises(WorkerError, match="does not answer"):
+            DaskWorkers(dask.address)
+        may_connect.set()
+        until(lambda: made)
+        until(lambda: made[0].status == "closed", 30.0)
+
+
+@pytest.mark.parametrize("how", ["cut off", "closed between two questions"])
+def test_after_a_connection_has_ended_workers_have_executors_of_the_next_one(tmp_path, monkeypatch, how):
+    """The workers have stayed where they were; their old executors would send tasks into the ended connection."""
+    monkeypatch.setattr("pareto_monoped.compute.cluster._CONNECT_S", 4.0)  # so long the client tries to come back
+    with DaskHere(tmp_path, workers=1) as dask, Proxy(dask.port) as proxy:
+        staff = DaskWorkers(proxy.address)
+        try:
+            until(staff.present)
+            ended, (before,) = staff._client, staff.present().values()
+            if how == "cut off":
+                proxy.broken = True
+                until(lambda: ended.status == "closed")
+                assert staff.present() == {}
+                proxy.broken = False
+            else:
+                ended.close()
+            until(lambda: staff._client is not ended and staff.present())
+            (after,) = staff.present().values()
+            assert after.name == before.name
+            assert after.executor.submit(tasks.square, 3).result(timeout=60) == 9
+        finally:
+            proxy.broken = False
+            staff.close()
+
+
 def test_a_worker_with_two_threads_has_two_tasks_at_a_time(tmp_path):
     with DaskHere(tmp_path) as dask:
         dask.workers.append(dask.add(threads=2))
