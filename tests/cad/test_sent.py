@@ -1,5 +1,8 @@
 """Exports that an executor makes: the same bytes as here, whole folders only, and nothing outside them."""
 
+import shutil
+import threading
+import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 
@@ -33,9 +36,14 @@ class Counting(ThreadPoolExecutor):
 
 def test_exports_of_an_executor_are_those_made_here(here, tmp_path):
     two = [replace(here, folder=tmp_path / name) for name in ("one", "two")]
-    told = []
+    told, whole = [], []
+
+    def tell(progress):
+        told.append(progress)
+        whole.append(is_made(progress.job))
+
     with Counting(2) as pool:
-        assert batch.run_all(two, workers=1, executor=pool, progress=told.append) == 2
+        assert batch.run_all(two, workers=1, executor=pool, progress=tell) == 2
         assert batch.run_all(two, workers=1, executor=pool) == 0
         assert pool.tasks == 2
     for job in two:
@@ -43,6 +51,7 @@ def test_exports_of_an_executor_are_those_made_here(here, tmp_path):
         assert is_made(job)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "two"]
     assert {progress.job.folder for progress in told} == {job.folder for job in two}
+    assert whole == [True, True]
 
 
 def test_a_failure_names_the_folder_of_the_job_and_leaves_nothing(here, tmp_path, monkeypatch):
@@ -81,3 +90,74 @@ def test_a_folder_with_foreign_files_is_refused_before_any_work(here, tmp_path):
     with Counting(1) as pool, pytest.raises(OutputError, match="is not empty"):
         batch.run_all([replace(here, folder=tmp_path / "mine")], workers=1, executor=pool)
     assert pool.tasks == 0
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory):
+    """A job that nobody has done."""
+    return jobs.case_job("C", folder=tmp_path_factory.mktemp("asked") / "c", formats=FORMATS, strength=False)
+
+
+def test_a_worker_makes_what_the_job_asks_for(asked, tmp_path, monkeypatch):
+    seen = []
+
+    def record(design, maps, calibration, folder, **named):
+        seen.append((design, calibration, named))
+        folder.mkdir()
+        (folder / "a").write_bytes(b"x")
+
+    monkeypatch.setattr(sent, "export_design", record)
+    source = {"trial": 7}
+    job = replace(asked, folder=tmp_path / "mine", source=source, strength=True, hip_rad=0.1, knee_rad=-0.2)
+    assert sent.made_files(job, "mine") == {"a": b"x"}
+    wanted = {"formats": job.formats, "source": source, "strength": True, "hip_rad": 0.1, "knee_rad": -0.2}
+    assert seen == [(job.design, job.calibration, wanted)]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_process_makes_one_export_at_a_time(asked, monkeypatch):
+    """Its CAD kernel is not made for two."""
+    at_work, most = [], []
+
+    def busy(*arguments, **named):
+        at_work.append(1)
+        most.append(len(at_work))
+        time.sleep(0.1)
+        at_work.pop()
+        arguments[3].mkdir()
+
+    monkeypatch.setattr(sent, "export_design", busy)
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(sent.made_files, [asked] * 4, ["x"] * 4)) == [{}] * 4
+    assert most == [1] * 4
+
+
+def test_after_a_failure_exports_that_have_not_begun_are_called_off(asked, tmp_path, monkeypatch):
+    begun, told = [], threading.Event()
+
+    def fail(*arguments, **named):
+        begun.append(1)
+        if len(begun) > 1:  # it may have begun before the first one's failure was heard of
+            told.wait(60.0)
+        raise CheckError("fails")
+
+    monkeypatch.setattr(sent, "export_design", fail)
+    many = [replace(asked, folder=tmp_path / str(number)) for number in range(6)]
+    with ThreadPoolExecutor(1) as pool:
+        with pytest.raises(CheckError):
+            list(sent.exported(many, pool))
+        told.set()
+    assert len(begun) <= 2
+
+
+@pytest.mark.parametrize("force", [True, False])
+def test_an_earlier_export_is_replaced_only_by_force(here, tmp_path, force):
+    job = replace(here, folder=tmp_path / "mine", force=force)
+    shutil.copytree(here.folder, job.folder)
+    other = contents(here.folder) | {"own.txt": b"new"}
+    if force:
+        assert list(sent.exported([job], Answering(other))) == [job]
+    else:
+        with pytest.raises(OutputError, match=r"is not empty; .* or --force"):
+            list(sent.exported([job], Answering(other)))
+    assert (job.folder / "own.txt").exists() is force

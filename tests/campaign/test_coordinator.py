@@ -1,5 +1,6 @@
 """Studies side by side in processes of their own: equal to those run alone, whatever happens to the processes."""
 
+import multiprocessing
 import os
 import signal
 
@@ -60,6 +61,7 @@ def test_what_fails_says_why_and_stops_nothing_else(tmp_path):
     assert reasons.keys() == {"Nope_study", "Nope_mass_kg-max-0.1", "U8_mass_kg-max-0.1"}
     assert "no such file; check the path" in reasons["Nope_study"]
     assert "mass" in reasons["U8_mass_kg-max-0.1"]
+    assert multiprocessing.active_children() == []  # idle workers are let go
     # Ended is ended: only what could not be run is tried again.
     seen = []
     again = standings(tmp_path, axes, head)

@@ -1,8 +1,12 @@
 """A worker process between two studies."""
 
+import os
+import signal
+
 import pytest
 
-from pareto_monoped.campaign.processes import WorkerProcess, speakers
+from pareto_monoped.campaign import processes
+from pareto_monoped.campaign.processes import WorkerProcess, dismiss, speakers
 from pareto_monoped.campaign.worker import Failed, Task
 from tests.campaign.test_coordinator import SMALL, standings
 
@@ -32,3 +36,37 @@ def test_it_is_heard_when_it_dies(idle):
     assert list(speakers([idle], 60.0)) == [idle]
     assert idle.said() is None
     assert idle.death() == "its process was ended by SIGKILL"
+
+
+def test_ctrl_c_is_for_the_coordinator_which_still_hears_it(idle):
+    """The terminal sends it to all processes at once."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        os.kill(idle.process_id, number)
+    assert list(speakers([idle], 0.5)) == []
+    assert idle._process.exitcode is None
+    assert not signal.pthread_sigmask(signal.SIG_BLOCK, ()) & {signal.SIGINT, signal.SIGHUP}
+
+
+def test_what_is_said_to_one_that_has_died_is_no_error(idle, tmp_path):
+    """It is found out when it is listened to."""
+    idle._process.kill()
+    idle._process.join()
+    (one,) = standings(tmp_path, "seeds = [1]", SMALL)
+    idle.begin(Task(study=one.place.study, db=one.place.db, threads=1))
+    idle.stop()
+    assert idle.said() is None
+    dismiss([idle])
+
+
+def test_one_that_is_dismissed_ends_by_itself_and_leaves_no_connection(idle, monkeypatch):
+    monkeypatch.setattr(processes, "GRACE_S", 60.0)
+    dismiss([idle])
+    assert idle._process.exitcode == 0
+    assert idle.connection.closed
+
+
+def test_one_that_is_dismissed_and_hangs_is_killed(idle, monkeypatch):
+    monkeypatch.setattr(processes, "GRACE_S", 0.2)
+    os.kill(idle.process_id, signal.SIGSTOP)
+    dismiss([idle])
+    assert idle._process.exitcode == -signal.SIGKILL

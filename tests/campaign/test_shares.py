@@ -1,20 +1,36 @@
-"""How a coordinator shares out cores: rules that need no process."""
+"""How a coordinator shares out cores and what it makes of its workers' words: rules that need no process."""
+
+import os
+import signal
+import time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pareto_monoped.campaign import coordinator as module
 from pareto_monoped.campaign.coordinator import WORTH_S, _Coordinator, _Job
+from pareto_monoped.campaign.worker import Advanced, Ended, Noted
 from tests.campaign.test_coordinator import standings
 
 
 class Stopping:
-    """A worker that is told to stop."""
+    """A worker that is told to stop, and says what it is given to say."""
 
-    stopped = 0
+    stopped = killed = 0
+    words = None
 
     def stop(self):
         self.stopped += 1
+
+    def kill(self):
+        self.killed += 1
+
+    def said(self):
+        return self.words
+
+    def death(self):
+        return "its process was ended by SIGKILL"
 
 
 class Recording(_Coordinator):
@@ -97,3 +113,117 @@ def test_idle_cores_go_to_one_study_that_still_takes_long(several, left_s, chose
     made._widen()  # while one stops, no other does
     assert [job.worker.stopped for job in made.jobs] == chosen
     assert [job.again_with for job in made.jobs] == [2 if one else None for one in chosen]
+
+
+@pytest.mark.parametrize(("scheduler", "waiting"), [("tcp://x:1", 0), (None, 1)])
+def test_a_study_does_not_widen_over_a_scheduler_or_while_others_wait(several, scheduler, waiting):
+    """A scheduler's workers simulate, whatever the threads are; and cores that have become free are for who waits."""
+    made = coordinator(1, several[:1], scheduler)
+    made._fill()
+    made.cores = 4
+    made.jobs[0].standing.seconds_left = 3.0 * WORTH_S
+    made.waiting.extend(several[1 : 1 + waiting])
+    made._widen()
+    assert made.jobs[0].worker.stopped == 0
+
+
+def ended(**other):
+    fields = {"evaluations": 60, "new_evaluations": 30, "front_size": 4, "hypervolume": 1.0, "remarks": ()}
+    return Ended(**fields, **{"stop_reason": "interrupted"} | other)
+
+
+def test_what_stops_to_widen_goes_on_unless_the_user_has_interrupted_meanwhile(several):
+    for interrupted, threads in ((False, [4]), (True, [])):
+        made = coordinator(1, several[:1])
+        made._fill()
+        made.cores = 4
+        made.jobs[0].standing.seconds_left = 3.0 * WORTH_S
+        made._widen()
+        if interrupted:
+            made._stop_all()
+        made._end(made.jobs[0], ended())
+        assert [job.standing.threads for job in made.jobs] == threads
+        assert several[0].state == ("unfinished" if interrupted else "running")
+
+
+def test_trials_of_earlier_sessions_are_not_new(several):
+    """The rate of a campaign, and how long it still takes, are of its new trials."""
+    made = coordinator(1, several[:1])
+    made._fill()
+    (job,) = made.jobs
+    job.before = 30
+    job.worker.words = Advanced(evaluations=50, per_second=1.0, seconds_left=1.0, hypervolume=0.5)
+    made._hear(job)
+    assert (job.standing.evaluations, job.standing.new_evaluations) == (50, 20)
+    job.worker.words = ended(stop_reason="budget")
+    made._hear(job)
+    assert (job.standing.evaluations, job.standing.new_evaluations) == (60, 30)
+
+
+def test_notes_of_a_study_name_it_and_those_of_its_audit_are_left_out(several):
+    told = []
+    made = Recording(1, None, lambda _: None, told.append)
+    made.waiting.append(several[0])
+    made._fill()
+    (job,) = made.jobs
+    job.worker.words = Noted(line="worker a has gone")
+    job.standing.evaluations = job.standing.budget - 1
+    made._hear(job)
+    assert told == [f"{several[0].name}: worker a has gone"]
+    job.standing.evaluations = job.standing.budget
+    made._hear(job)
+    assert len(told) == 1
+
+
+def test_a_worker_whose_study_has_ended_gets_the_next_one_and_a_dead_one_is_buried(several, monkeypatch):
+    made_workers = []
+
+    class Listening(Stopping):
+        def __init__(self):
+            made_workers.append(self)
+
+        def begin(self, task):
+            pass
+
+    monkeypatch.setattr(module, "WorkerProcess", Listening)
+    made = _Coordinator(1, None, lambda _: None, lambda _: None)
+    made.waiting.extend(several[:2])
+    for one in several[:2]:
+        one.deaths = 0
+    made._fill()
+    made._end(made.jobs[0], ended(stop_reason="budget"))
+    made._fill()
+    assert len(made_workers) == 1
+    made._hear(made.jobs[0])
+    assert made_workers[0].killed == 1
+    assert made.idle == []
+    made._fill()
+    assert len(made_workers) == 2
+
+
+def test_a_worker_that_does_not_stop_after_an_interrupt_is_killed(several, monkeypatch):
+    """A generation that takes minutes does not keep the user waiting."""
+    made_workers, looks = [], []
+
+    class Deaf(Stopping):
+        def __init__(self):
+            made_workers.append(self)
+
+        def begin(self, task):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    def nobody(workers, timeout_s):
+        looks.append(timeout_s)
+        assert len(looks) < 500, "waits for ever"
+        time.sleep(0.01)
+        return iter(())
+
+    monkeypatch.setattr(module, "WorkerProcess", Deaf)
+    monkeypatch.setattr(module, "speakers", nobody)
+    monkeypatch.setattr(module, "GRACE_S", 0.1)
+    several[0].deaths, several[0].evaluations = 0, 0
+    told = []
+    assert not _Coordinator(1, None, lambda _: None, told.append).run(several[:1])
+    assert [(one.stopped, one.killed) for one in made_workers] == [(1, 1)]
+    assert (several[0].state, several[0].threads) == ("unfinished", 0)
+    assert told == ["interrupted: ending after these generations; press Ctrl-C again to end at once"]

@@ -1,7 +1,10 @@
 """The page of a campaign: its tables as text, its charts in headless Chromium without a network."""
 
+import json
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from pareto_monoped.campaign.page import campaign_page
@@ -62,6 +65,73 @@ def test_a_campaign_without_a_finished_study_has_a_page(tmp_path):
     assert "0 of 12 studies are finished" in campaign_page(campaign, results)
 
 
+def payload(text):
+    """What the charts are drawn from."""
+    return json.loads(re.search(r'id="payload">(.*?)</script>', text, re.S)[1])
+
+
+HEAD = 'name = "made"\ndescription = "links < 0.4 m <script>"\n[study]\nevaluations = 40\nstrength = false\n'
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    """One group of three seeds, which need 10, 11 and 12 J at 0.7 m; the last does not get to 1.0 m."""
+
+    def front(number, _):
+        return [0.7, 1.0 - 0.1 * (number == 2)], [10.0 + number, 30.0 + number]
+
+    campaign, results = made_campaign(tmp_path_factory.mktemp("three"), "seeds = [1, 2, 3]", front, HEAD)
+    grown = [np.array([[1.0, 5.0 + n], [2.0, 20.0 + n]]) for n in range(3)]
+    return campaign, [replace(result, history=grown[n]) for n, result in enumerate(results)]
+
+
+def test_curves_are_medians_and_bands_at_their_levels(three):
+    (section,) = payload(campaign_page(*three))["sections"]
+    assert (section["pair"], section["first"]) == (["height_m", "energy_j"], [0])
+    assert (section["levels"][0], section["levels"][-1]) == (0.7, 1.0)
+    (group,) = section["groups"]
+    assert (group["label"], group["studies"]) == ("all", 3)
+    needs = group["attainment"]
+    assert [needs[side][0] for side in ("low", "median", "high")] == [10.0, 11.0, 12.0]
+    assert [needs[side][-1] for side in ("low", "median", "high")] == [30.0, 31.0, None]
+    assert group["evaluations"] == [1, 2]
+    assert group["growth"] == {"low": [5, 20], "median": [6, 21], "high": [7, 22]}
+
+
+def test_the_description_is_escaped(three):
+    text = campaign_page(*three)
+    assert '<p class="small">links &lt; 0.4 m &lt;script&gt;</p>' in text
+    assert "0.4 m <script>" not in text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(39.0, "117 seconds"), (41.0, "2 minutes"), (2300.0, "115 minutes"), (2700.0, "2.2 hours")]
+)
+def test_the_summary_counts_jumps_that_were_made_and_their_time(three, seconds, words):
+    campaign, results = three
+    slow = [replace(result, stored=replace(result.stored, seconds=seconds)) for result in results]
+    text = campaign_page(campaign, slow)
+    assert f"3 of 3 studies are finished: 6 jumps in {words} of running time." in text
+
+
+def test_studies_that_cannot_be_compared_have_sections_that_links_lead_to(tmp_path):
+    axes = 'objectives = [["height_m", "energy_j"], ["height_m", "gear_safety"]]'
+    text = campaign_page(*made_campaign(tmp_path, axes, lambda *_: ([0.7, 1.0], [10.0, 30.0]), HEAD))
+    assert "Studies with other objectives or another calibration cannot be compared" in text
+    assert set(re.findall(r'href="#(.*?)"', text)) == {"section-0", "section-1", "studies"}
+    assert set(re.findall(r'<section id="(.*?)"', text)) == {"section-0", "section-1", "studies"}
+    headings = re.findall(r"<figure><h3>(.*?)</h3>", text)[::2]
+    assert headings == ["Least mechanical energy over height", "Most strength of the gears over height"]
+    assert text.count("One study each: there are no bands.") == 2
+
+
+def test_a_group_of_several_studies_has_bands_and_one_section_is_compared_with_none(three):
+    text = campaign_page(*three)
+    assert "bands go from what the best tenth" in text
+    assert "One study each" not in text
+    assert "cannot be compared" not in text
+
+
 @pytest.fixture(scope="module")
 def wide(tmp_path_factory):
     """Twelve groups of two studies; the later ones need less energy."""
@@ -77,6 +147,7 @@ def wide(tmp_path_factory):
 def test_a_median_of_two_studies_is_one_of_them_and_the_page_says_so(wide):
     text = wide.read_text()
     assert "of an even number, one of the middle two" in text
+    assert payload(text)["sections"][0]["first"] == [4, 5, 6, 7, 8, 9, 10, 11]
     first = cells(text, "By motor and gearbox rules and variables")[0]
     assert first[2][0] == first[2][1]
 

@@ -1,0 +1,94 @@
+"""Options that say where the work is done: they lead there, exclude each other, and tell what befalls the workers."""
+
+import json
+import os
+import signal
+
+import pytest
+
+from pareto_monoped import cli
+from pareto_monoped.cli.computing import Where, executor_at, where
+from pareto_monoped.compute.crew import Crew
+from pareto_monoped.compute.staff import Limits
+from tests.compute import tasks
+from tests.compute.dask_here import DaskHere, until
+
+STUDY = 'name = "s"\nevaluations = 20\naudit = false\nalgorithm = { name = "nsga2", population = 10 }\n'
+
+
+def test_each_option_says_one_place():
+    assert where(None, None, None) == where(None, None, 3) == Where()
+    assert where(2, None, None) == Where(processes=2)
+    assert where(None, "tcp://x:1", None) == Where(scheduler="tcp://x:1")
+
+
+@pytest.mark.parametrize("command", ["run s.toml", "resume s.db", "robust s.db"])
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--processes 2 --scheduler tcp://x:1", "--processes and --scheduler exclude each other; drop one"),
+        ("--workers 2 --processes 2", "--processes and --workers exclude each other; drop one"),
+        ("--workers 2 --scheduler tcp://x:1", "--scheduler and --workers exclude each other; drop one"),
+    ],
+)
+def test_two_places_are_refused(tmp_path, monkeypatch, capsys, command, options, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(STUDY)
+    assert cli._run([*command.split(), *options.split()]) == 2
+    assert capsys.readouterr().err == f"error: {words} (see 'pareto-monoped {command.split()[0]} --help')\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_without_an_option_threads_do_the_work():
+    with executor_at(Where()) as executor:
+        assert executor is None
+
+
+def test_processes_are_as_many_as_asked_for_and_losses_are_told_on_standard_error(capsys):
+    limits = Limits(absent_s=7.0)
+    with executor_at(Where(processes=1), limits=limits) as crew:
+        first = crew.submit(tasks.short, 1).result(timeout=120)[1]
+        assert len(crew._staff.present()) == 1
+        assert crew._limits is limits
+        os.kill(first, signal.SIGKILL)
+        assert crew.submit(tasks.short, 2).result(timeout=120)[1] != first
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("process 1 ")
+    with pytest.raises(RuntimeError):
+        crew.submit(tasks.short, 3)
+
+
+def test_a_scheduler_is_that_of_the_address(tmp_path):
+    pytest.importorskip("distributed")
+    limits = Limits(absent_s=7.0)
+    with DaskHere(tmp_path) as dask, executor_at(Where(scheduler=dask.address), limits=limits) as crew:
+        assert crew._staff.label == f"scheduler {dask.address}"
+        assert crew._limits is limits
+        until(lambda: crew._staff.state() == "has no worker")
+
+
+def test_run_resume_and_robust_have_their_jumps_made_there(tmp_path, monkeypatch, capsys):
+    """The results are the same wherever they are made, so the tasks are counted."""
+    given = []
+
+    class Counting(Crew):
+        def submit(self, function, /, *arguments, **named):
+            given.append(function)
+            return super().submit(function, *arguments, **named)
+
+    monkeypatch.setattr("pareto_monoped.jump.peers.Crew", Counting)
+    file, db = tmp_path / "s.toml", str(tmp_path / "s.db")
+    file.write_text(STUDY)
+    for words in (
+        ["run", str(file), "--db", db, "--json"],
+        ["resume", db, "--evaluations", "30", "--json"],
+        ["robust", db, "--trial", "{trial}", "--samples", "256"],
+    ):
+        before = len(given)
+        if words[0] == "robust":
+            capsys.readouterr()
+            assert cli._run(["front", db, "--json"]) == 0
+            words[3] = str(json.loads(capsys.readouterr().out)[0]["trial"])
+        assert cli._run([*words, "--processes", "1"]) == 0, capsys.readouterr().err
+        assert len(given) > before, words
