@@ -13,20 +13,18 @@ from pareto_monoped.actuator.motors import Motor, motor_source, motor_values, st
 from pareto_monoped.actuator.motors import load_motor as motor_of
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.api.designs import one_design, with_motors
 from pareto_monoped.api.own import own_calibration
 from pareto_monoped.design import (
     CONTROL,
     DEFAULT_RULES,
-    DEFAULTS,
     NAMES,
     PAPER_MOTOR,
-    PAPER_NAMES,
     Design,
     RuleSet,
     columns,
-    complete,
 )
-from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint, unknown_name
+from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
 from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
@@ -36,7 +34,7 @@ from pareto_monoped.robot.build import build_robot as robot_of
 from pareto_monoped.study.counts import count_of
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
+    from pandas import DataFrame, Series
 
 StrPath = str | PathLike[str]
 AnyMotor = Motor | StrPath
@@ -128,7 +126,7 @@ def joint_maps_of(
 
 
 def build_robot(
-    design: Design,
+    design: "Design | Mapping[str, Any] | Series[Any]",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,
@@ -138,7 +136,7 @@ def build_robot(
     """The robot of a design with every part that has a mass, as it is simulated and exported.
 
     Args:
-        design: its variables.
+        design: its variables, in one of the forms that ``trace`` takes.
         motor: of both joints: a motor, the name of a shipped one, or a TOML file.
         hip_motor: of the hip, instead of ``motor``.
         knee_motor: of the knee, likewise.
@@ -146,19 +144,19 @@ def build_robot(
 
     Raises:
         MotorError: an unusable motor, or one that no gearbox or no leg fits.
-        DesignError: a gear ratio without a gearbox.
+        DesignError: a gear ratio without a gearbox, a missing or unknown variable, or a row that names other motors.
 
     Example:
         >>> from pareto_monoped import PAPER_CASES, build_robot
         >>> round(build_robot(PAPER_CASES["C"].design).mass_kg, 1)
         4.8
     """
-    checked = Design.from_array(as_values(require_design(design))[0])
-    return robot_of(checked, joint_maps_of(motor, hip_motor, knee_motor, rules))
+    maps = joint_maps_of(motor, hip_motor, knee_motor, rules)
+    return robot_of(one_design(design, maps), maps)
 
 
 def simulate(
-    designs: "Design | Mapping[str, float] | Sequence[Design] | DataFrame | ArrayLike",
+    designs: "Design | Mapping[str, Any] | Series[Any] | Sequence[Any] | DataFrame | ArrayLike",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,
@@ -170,9 +168,10 @@ def simulate(
     """Let designs jump, and measure it.
 
     Args:
-        designs: one ``Design`` or several; a mapping or a data frame with a column per variable; or an array of shape
-            (n, 7), the paper's variables, or (n, number of variables), in the order of ``VARIABLES``. Optional
-            variables that are left out have their defaults.
+        designs: one ``Design`` or several; a mapping or a data frame with a column per variable, a row of such a frame,
+            or a list of these; or an array of shape (n, 7), the paper's variables, or (n, number of variables), in the
+            order of ``VARIABLES``. Optional variables that are left out have their defaults. A frame may have the other
+            columns of stored trials; the motors that it names must be those used here.
         motor: of both joints: a motor, the name of a shipped one, or a TOML file.
         hip_motor: of the hip, instead of ``motor``.
         knee_motor: of the knee, likewise.
@@ -185,8 +184,9 @@ def simulate(
         ``MEASURES`` in the unit of its name, NaN where the jump failed.
 
     Raises:
-        DesignError: a missing or unknown variable, or an array of another shape. A design that cannot be built or does
-            not jump is a row with its status, not an error.
+        DesignError: a missing or unknown variable, an array of another shape, or a row that names other motors, which
+            ``StoredStudy.simulate`` would take. A design that cannot be built or does not jump is a row with its
+            status, not an error.
         MotorError: an unusable motor, or one that no gearbox or no leg fits.
         CalibrationError: an unusable calibration.
 
@@ -197,23 +197,38 @@ def simulate(
         ok 1.05 m
     """
     model, chosen = calibrated(calibration, rules)
-    return jumps_of(designs, joint_maps_of(motor, hip_motor, knee_motor, chosen), model, workers)
+    maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
+    return jumps_of(with_motors(designs, maps), [maps], model, workers)
 
 
-def jumps_of(designs: Any, maps: JointMaps, calibration: Calibration, workers: int | None) -> "DataFrame":
-    """As ``simulate``, with gearboxes that are already made."""
+def jumps_of(
+    values: NDArray[np.float64],
+    kits: Sequence[JointMaps],
+    calibration: Calibration,
+    workers: int | None,
+    motors: NDArray[np.intp] | None = None,
+) -> "DataFrame":
+    """The rows of ``simulate``, with gearboxes that are already made.
+
+    Args:
+        values: of the designs, shape (n, number of variables).
+        kits: the gearboxes of each kit of motors.
+        calibration: the jump model.
+        workers: number of threads, all cores if None.
+        motors: which of ``kits`` each design has, shape (n,); the first if None.
+    """
     import pandas as pd
 
     from pareto_monoped.jump.evaluate import Evaluator
     from pareto_monoped.study.run import default_workers
 
-    values, threads = as_values(designs), count_of("workers", workers)
-    result = Evaluator(maps, calibration, workers=threads or default_workers())(values)
+    threads = count_of("workers", workers) or default_workers()
+    result = Evaluator(kits[0], calibration, workers=threads, others=kits[1:])(values, motors)
     return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | result.as_columns())
 
 
 def trace(
-    design: Design | Mapping[str, float],
+    design: "Design | Mapping[str, Any] | Series[Any] | DataFrame | ArrayLike",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,
@@ -224,7 +239,7 @@ def trace(
     """One jump step by step: states, torques, forces and energies, in the units of their names.
 
     Args:
-        design: one design, see ``simulate``.
+        design: one design: a ``Design``, a mapping of variables, or a row of a data frame; see ``simulate``.
         motor: see ``simulate``.
         hip_motor: see ``simulate``.
         knee_motor: see ``simulate``.
@@ -251,81 +266,16 @@ def trace(
     from pareto_monoped.jump.single import trace_of
     from pareto_monoped.robot.population import robot_arrays
 
-    values = as_values(design)
-    if len(values) != 1:
-        raise DesignError(complaint("number of designs", len(values), "1 for a trace", "trace them one by one"))
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
-    one = jumps_of(values, maps, model, workers=1)
+    values = with_motors(design, maps)
+    if len(values) != 1:
+        raise DesignError(complaint("number of designs", len(values), "1 for a trace", "trace them one by one"))
+    one = jumps_of(values, [maps], model, workers=1)
     if one["status"][0] in ("bad_input", "no_gearbox", "cannot_stand"):
         raise DesignError(f"design: has no jump to trace ({one['reason'][0]}); change it")
     robots = robot_arrays(values, maps, model.mass)
     return pd.DataFrame(trace_of(robots, columns(values, CONTROL), model))
-
-
-def as_values(designs: Any) -> NDArray[np.float64]:
-    """Designs in any form that ``simulate`` takes, as an array of shape (n, number of variables).
-
-    Raises:
-        DesignError: a missing or unknown variable, a value that is no number, or an array of another shape.
-    """
-    if isinstance(designs, Design):
-        return _of_designs([designs])
-    one = designs[0] if isinstance(designs, list | tuple) and designs else designs
-    if isinstance(getattr(one, "design", None), Design):
-        raise DesignError(f"designs: are of class {type(one).__name__}, must be Designs; {_cure_of_holder(one)}")
-    if isinstance(designs, Mapping) or hasattr(designs, "columns"):
-        return _of_columns(designs)
-    if isinstance(designs, Sequence) and designs and all(isinstance(one, Design) for one in designs):
-        return _of_designs(designs)
-    try:
-        values = np.atleast_2d(np.asarray(designs, dtype=np.float64))
-    except (TypeError, ValueError, OverflowError):
-        allowed = "a Design, a list of them, a mapping or data frame of variables, or an array of numbers"
-        raise DesignError(complaint("designs", designs, allowed, "give one of these")) from None
-    if values.ndim != 2:
-        raise DesignError(complaint("dimensions of designs", values.ndim, "1 or 2", "give one row per design"))
-    return complete(values)
-
-
-def require_design(given: Any) -> Design:
-    """One design.
-
-    Raises:
-        DesignError: something else.
-    """
-    if isinstance(given, Design):
-        return given
-    if isinstance(getattr(given, "design", None), Design):
-        raise DesignError(f"design: is of class {type(given).__name__}, must be a Design; {_cure_of_holder(given)}")
-    raise DesignError(complaint("design", given, "a Design", "give for example PAPER_CASES['C'].design"))
-
-
-def _cure_of_holder(given: Any) -> str:
-    """What to do with an object that has a design: one that was picked from a study has the study's motors, too."""
-    if hasattr(given, "trial"):
-        return "use its .design and the motors of its study, or what knows them: StoredStudy.simulate, export_trial"
-    return "use its .design"
-
-
-def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
-    try:
-        return np.array([one.as_array() for one in designs])
-    except (TypeError, ValueError, OverflowError):
-        raise DesignError("designs: must have a number for each variable; correct them") from None
-
-
-def _of_columns(table: "Mapping[str, Any] | DataFrame") -> NDArray[np.float64]:
-    """Designs from one column per variable; a data frame may have other columns, a mapping of one design may not."""
-    if missing := [name for name in PAPER_NAMES if name not in table]:
-        raise DesignError(f"designs: lack {', '.join(missing)}; add them")
-    if isinstance(table, Mapping) and (unknown := [name for name in table if name not in NAMES]):
-        raise DesignError(unknown_name("design variable", unknown[0], NAMES))
-    given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
-    try:
-        return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given)))
-    except (TypeError, ValueError, OverflowError):
-        raise DesignError("designs: must have numbers, as many of each variable; correct them") from None
 
 
 def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Calibration, RuleSet]:

@@ -1,18 +1,23 @@
 """What leaves the program: an export of one design, and the report of studies."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+from pareto_monoped.api.designs import one_design
 from pareto_monoped.api.given import truth_of
-from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of, require_design
+from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.extras import require_extra
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
+from pareto_monoped.study.plain import as_list
+
+if TYPE_CHECKING:
+    from pandas import Series
 
 
 def export(
-    design: Design,
+    design: "Design | Mapping[str, Any] | Series[Any]",
     folder: StrPath,
     *,
     motor: AnyMotor = PAPER_MOTOR,
@@ -30,7 +35,8 @@ def export(
     checked. Nothing is written if a check fails.
 
     Args:
-        design: its variables. For a trial of a study use ``export_trial``, which takes the study's own motors.
+        design: its variables, in one of the forms that ``trace`` takes. For a trial of a study use ``export_trial``,
+            which takes the study's own motors.
         folder: where to; made if missing.
         motor: of both joints: a motor, the name of a shipped one, or a TOML file.
         hip_motor: of the hip, instead of ``motor``.
@@ -60,19 +66,19 @@ def export(
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.cad.write.formats import chosen_formats
 
-    require_design(design)
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
+    one = one_design(design, maps)
     job = Job(
-        design=design,
+        design=one,
         motor=maps.hip.motor,
         knee_motor=maps.knee.motor if maps.knee is not maps.hip else None,
         calibration=model,
         rules=chosen,
         folder=as_path(folder, "folder"),
-        formats=chosen_formats(formats),
+        formats=chosen_formats(as_list(formats)),
         force=truth_of("force", force),
-        source={"design": design.as_dict()},
+        source={"design": one.as_dict()},
         strength=strength_for(model.name) if strength is None else truth_of("strength", strength),
     )
     return run(job)
@@ -122,7 +128,7 @@ def export_trial(
             stored.data,
             number,
             folder=as_path(folder, "folder"),
-            formats=formats,
+            formats=as_list(formats),
             force=truth_of("force", force),
             strength=None if strength is None else truth_of("strength", strength),
         )

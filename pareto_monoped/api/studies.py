@@ -6,10 +6,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.design import NAMES, Design
-from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
+from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.measures import is_own
 from pareto_monoped.pareto.conditions import CONDITION_NAMES
 from pareto_monoped.pareto.selectors import (
@@ -202,23 +204,42 @@ class StoredStudy:
         """Let other designs jump as this study does: with its motors, calibration and gearbox rules, as stored.
 
         Args:
-            designs: see ``pareto_monoped.simulate``; or what ``pick`` returned, with the motors of its trial.
-            trial: whose motors they have, where the study has a choice of motors; else its first ones.
+            designs: see ``pareto_monoped.simulate``; or what ``pick`` returned, or a list of that. Rows of a frame that
+                names motors, such as the front, have these.
+            trial: whose motors the designs have that name none, where the study has a choice of motors; by default its
+                first ones.
             workers: number of threads, all cores if None.
 
+        Returns:
+            One row per design, in the order given, see ``pareto_monoped.simulate``.
+
         Raises:
-            DesignError: see ``pareto_monoped.simulate``.
+            DesignError: see ``pareto_monoped.simulate``; or motors that the study does not have.
             SelectionError: no trial has this number.
+
+        Example:
+            >>> import pareto_monoped as pm
+            >>> stored = pm.load_study("light.db")
+            >>> bool((stored.simulate(stored.front()).height_m == stored.front().height_m).all())
+            True
         """
+        from pareto_monoped.api.designs import given_designs
         from pareto_monoped.api.jumps import jumps_of
 
-        if isinstance(designs, Picked):
-            designs, trial = designs.design, designs.trial if trial is None else trial
-        kit = self.data.kits[0]
+        given = given_designs(_rows(designs))
+        kits = self.data.kits
+        unsaid = kits[0]
         if trial is not None:
             self._row(trial)
-            kit = self.data.kit_of_trial(trial)
-        return jumps_of(designs, kit, self.data.calibration, workers)
+            unsaid = self.data.kit_of_trial(trial)
+        known = {kit.label.casefold(): k for k, kit in enumerate(kits)} | {"": kits.index(unsaid)}
+        for row, motor in enumerate(given.motors):
+            if motor.casefold() not in known:
+                labels = " or ".join(repr(kit.label) for kit in kits)
+                cure = "take rows of this study, or drop the columns of motors"
+                raise DesignError(complaint(f"motor of design {row}", motor, f"{labels}, as the study has", cure))
+        motors = np.array([known[motor.casefold()] for motor in given.motors], dtype=np.intp)
+        return jumps_of(given.values, kits, self.data.calibration, workers, motors)
 
     def _row(self, trial: int) -> "Series[Any]":
         rows = self.data.trials[self.data.trials["trial"] == trial_of(trial)]
@@ -236,6 +257,13 @@ class StoredStudy:
         if lacking := [name for name in chosen.names if name not in self.data.trials]:
             raise StudyError(f"front: objective {lacking[0]!r} is not stored with this study; choose another")
         return chosen
+
+
+def _rows(designs: Any) -> Any:
+    """Designs, with the rows of the trials, which name their motors, in place of what ``pick`` returned."""
+    if isinstance(designs, list | tuple):
+        return [_rows(one) if isinstance(one, Picked) else one for one in designs]
+    return designs.row if isinstance(designs, Picked) else designs
 
 
 def load_study(path: StrPath | StudyPlace) -> StoredStudy:

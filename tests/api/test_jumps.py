@@ -24,7 +24,7 @@ FORMS = {
     "paper's variables": np.array([design.as_array() for design in CASES])[:, : len(PAPER_NAMES)],
     "all variables": np.array([design.as_array() for design in CASES]),
     "nested list": [design.as_array().tolist() for design in CASES],
-    "data frame": pd.DataFrame([design.as_dict() for design in CASES]).assign(note="x"),
+    "data frame": pd.DataFrame([design.as_dict() for design in CASES]).assign(state="feasible"),
     "mapping of columns": {name: [getattr(design, name) for design in CASES] for name in NAMES},
 }
 

@@ -1,0 +1,168 @@
+"""Designs in every form that scripts have them, and what they say of their motors."""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.actuator.joint_maps import JointMaps, motor_label
+from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, Design, complete
+from pareto_monoped.errors import DesignError, complaint
+from pareto_monoped.measures import GOAL_NAMES, is_own
+from pareto_monoped.study.columns import COLUMNS
+from pareto_monoped.study.named_motors import MOTOR_KEYS
+from pareto_monoped.study.plain import as_table, is_series
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+_FORMS = "a Design, a list of them, a mapping or data frame of variables, or an array of numbers"
+_COLUMNS = tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
+"""Columns that frames of designs may have: those of stored trials."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Given:
+    """Designs, and the motors that they were found with.
+
+    Attributes:
+        values: of the n designs, shape (n, number of variables), in the order of ``NAMES``.
+        motors: names of each one's motors as ``JointMaps.label`` has them; '' where nothing is said of them.
+    """
+
+    values: NDArray[np.float64]
+    motors: tuple[str, ...]
+
+
+def given_designs(designs: Any) -> Given:
+    """Designs in any form that ``simulate`` takes.
+
+    Raises:
+        DesignError: a missing or unknown variable, a value that is no number, or an array of another shape.
+    """
+    several = designs if isinstance(designs, list | tuple) and designs else [designs]
+    for one in several:
+        if isinstance(getattr(one, "design", None), Design):
+            raise DesignError(f"designs: are of class {type(one).__name__}, must be Designs; {_cure_of_holder(one)}")
+    if all(isinstance(one, Design) for one in several):
+        return _unsaid(_of_designs(several))
+    if _is_named(designs):
+        return _of_columns(as_table(designs))
+    if all(isinstance(one, Design) or _is_named(one) for one in several):
+        parts = [given_designs(one) for one in several]
+        motors = tuple(motor for part in parts for motor in part.motors)
+        return Given(values=np.concatenate([part.values for part in parts]), motors=motors)
+    try:
+        values = np.asarray(designs, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError(complaint("designs", designs, _FORMS, "give one of these")) from None
+    if values.ndim == 0:
+        raise DesignError(complaint("designs", designs, _FORMS, "give one of these"))
+    if values.ndim > 2:
+        raise DesignError(complaint("dimensions of designs", values.ndim, "1 or 2", "give one row per design"))
+    return _unsaid(complete(np.atleast_2d(values)))
+
+
+def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
+    """Designs as an array of shape (n, number of variables), of which none says that it has other motors than these.
+
+    Args:
+        designs: in any form that ``simulate`` takes.
+        maps: the gearboxes of the motors that they get.
+
+    Raises:
+        DesignError: see ``given_designs``; or other motors, which would jump otherwise than what the frame says.
+    """
+    given = given_designs(designs)
+    for row, motor in enumerate(given.motors):
+        if motor and motor.casefold() != maps.label.casefold():
+            cure = "let StoredStudy.simulate take each row's own motors, name them here, or drop the columns of motors"
+            raise DesignError(complaint(f"motor of design {row}", motor, f"{maps.label!r}, which is used here", cure))
+    return given.values
+
+
+def one_design(design: Any, maps: JointMaps) -> Design:
+    """One design in any form that ``trace`` takes, see ``with_motors``.
+
+    Raises:
+        DesignError: see ``with_motors``; or another number of designs.
+    """
+    if not isinstance(design, Design) and not _is_named(design):
+        if isinstance(getattr(design, "design", None), Design):
+            cure = _cure_of_holder(design)
+            raise DesignError(f"design: is of class {type(design).__name__}, must be a Design; {cure}")
+        allowed = "a Design, or a mapping or row of variables"
+        raise DesignError(complaint("design", design, allowed, "give for example PAPER_CASES['C'].design"))
+    values = with_motors(design, maps)
+    if len(values) != 1:
+        raise DesignError(complaint("number of designs", len(values), "1", "give one"))
+    return Design.from_array(values[0])
+
+
+def _unsaid(values: NDArray[np.float64]) -> Given:
+    return Given(values=values, motors=("",) * len(values))
+
+
+def _is_named(given: Any) -> bool:
+    """Whether something has names of variables: a mapping, a data frame, or a row of one."""
+    if is_series(given):
+        return any(isinstance(label, str) for label in given.index)
+    return isinstance(given, Mapping) or hasattr(given, "columns")
+
+
+def _cure_of_holder(given: Any) -> str:
+    """What to do with an object that has a design: one that was picked from a study has the study's motors, too."""
+    if hasattr(given, "trial"):
+        return "use its .design and the motors of its study, or what knows them: StoredStudy.simulate, export_trial"
+    return "use its .design"
+
+
+def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
+    try:
+        return np.array([one.as_array() for one in designs])
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError("designs: must have a number for each variable; correct them") from None
+
+
+def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
+    """Designs from one column per variable, or one value; other columns may be those of stored trials."""
+    for name in table:
+        if name not in _COLUMNS and not is_own(name):
+            raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
+    if missing := [name for name in PAPER_NAMES if name not in table]:
+        raise DesignError(f"designs: lack {', '.join(missing)}; add them")
+    given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
+    try:
+        columns = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given))
+        values = np.column_stack(columns)
+        said = [_said(table, key, len(values)) for key in MOTOR_KEYS]
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError("designs: must have numbers, as many of each variable; correct them") from None
+    return Given(values=values, motors=tuple(_label(*names) for names in zip(*said, strict=True)))
+
+
+def _near(name: object) -> str:
+    """What to do about an unknown column."""
+    for known in (NAMES, _COLUMNS):
+        if near := difflib.get_close_matches(str(name), known, n=1):
+            return f"did you mean {near[0]!r}?"
+    return "correct the name, or drop it"
+
+
+def _said(table: "Mapping[str, Any] | DataFrame", key: str, count: int) -> list[str]:
+    """What a column says of each row's motor; '' where it says nothing."""
+    column = np.asarray(table.get(key, ""), dtype=object)
+    return [_text(value) for value in np.broadcast_to(np.atleast_1d(column), (count,)).tolist()]
+
+
+def _text(motor: Any) -> str:
+    """The name of a motor; '' for what pandas has in place of a missing one."""
+    return "" if motor is None or isinstance(motor, float) or str(motor) == "<NA>" else str(motor)
+
+
+def _label(motor: str, hip: str, knee: str) -> str:
+    """The motors of one row as ``JointMaps.label`` has them."""
+    return motor_label(hip or motor or "unknown", knee or motor or "unknown") if hip or knee else motor
