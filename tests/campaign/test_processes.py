@@ -47,6 +47,16 @@ def test_ctrl_c_is_for_the_coordinator_which_still_hears_it(idle):
     assert not signal.pthread_sigmask(signal.SIG_BLOCK, ()) & {signal.SIGINT, signal.SIGHUP}
 
 
+def test_it_is_heard_when_it_dies_without_having_read_what_was_said_to_it(idle):
+    """The system then says that the connection was reset rather than that it ended."""
+    os.kill(idle.process_id, signal.SIGSTOP)
+    os.waitpid(idle.process_id, os.WUNTRACED)  # until it has stopped
+    idle.stop()
+    idle._process.kill()
+    assert list(speakers([idle], 60.0)) == [idle]
+    assert idle.said() is None
+
+
 def test_what_is_said_to_one_that_has_died_is_no_error(idle, tmp_path):
     """It is found out when it is listened to."""
     idle._process.kill()

@@ -81,6 +81,19 @@ def test_who_accepts_a_connection_and_stays_silent_is_no_scheduler(monkeypatch):
     assert time.monotonic() - began_s < 60.0
 
 
+def test_each_worker_answers_for_itself_and_whoever_leaves_closes_the_connection(two):
+    """The same task for two workers, such as the greeting, is two tasks: else one would vouch for the other."""
+    staff = DaskWorkers(two.address)
+    try:
+        until(lambda: len(staff.present()) == 2)
+        answers = [member.executor.submit(tasks.greeting, 1) for member in staff.present().values()]
+        assert {answer.result(timeout=60) for answer in answers} == {worker.pid for worker in two.workers}
+    finally:
+        staff.close()
+    assert staff._client.status == "closed"
+    assert not staff._thread.is_alive()
+
+
 def test_a_connection_that_comes_too_late_is_closed(tmp_path, monkeypatch):
     """Nobody would ever end it: the scheduler kept a client, this process its threads."""
     import distributed
