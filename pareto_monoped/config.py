@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from pareto_monoped.errors import DiskError, InputError, complaint
-from pareto_monoped.files import cure_of, is_failure
+from pareto_monoped.files import SQLITE, cure_of, is_failure
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -64,7 +64,14 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
         return tomllib.loads(content.decode())
     except RecursionError:
         raise error(f"{source}: is nested beyond reason; correct it") from None
-    except ValueError as problem:  # not TOML, not UTF-8, or a number of too many digits
+    except UnicodeDecodeError as problem:
+        if content.startswith(SQLITE):
+            raise error(
+                f"{source}: is a database, not a TOML file; give the TOML file, or go on with the study in it: "
+                "'resume', load_study"
+            ) from None
+        raise error(f"{source}: is no text in UTF-8 (byte {problem.start}); give a TOML file, saved as UTF-8") from None
+    except ValueError as problem:  # not TOML, or a number of too many digits
         raise error(f"{source}: not valid TOML ({problem}); correct that line") from None
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from pareto_monoped.errors import DiskError, OutputError
 
-_DATABASE = b"SQLite format 3\x00"
+SQLITE = b"SQLite format 3\x00"
+"""How a database begins (SQLite's file format, section 1.3)."""
 _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
@@ -91,7 +92,7 @@ def refuse_database(path: Path) -> None:
         raise OutputError(f"output {str(path)!r}: is a device; give the name of a file")
     beside = next((end for end in _BESIDE_A_DATABASE if path.name.endswith(end)), None)
     database = path if beside is None else path.with_name(path.name.removesuffix(beside))
-    if _beginning(database).startswith(_DATABASE):
+    if _beginning(database).startswith(SQLITE):
         what = "is a database" if beside is None else f"belongs to the database {str(database)!r}"
         raise OutputError(f"output {str(path)!r}: {what}, which no output replaces; give another name")
 

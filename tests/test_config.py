@@ -87,7 +87,7 @@ def test_unreadable_toml_is_one_line(tmp_path):
     with pytest.raises(InputError, match="not valid TOML"):
         read_toml(path, what="motor file")
     path.write_bytes(b"a = '\xff\xfe'")
-    with pytest.raises(InputError, match="not valid TOML"):
+    with pytest.raises(InputError, match=r"no text in UTF-8 \(byte 5\); give a TOML file"):
         read_toml(path, what="motor file")
     with pytest.raises(InputError, match="cannot be read"):
         read_toml(tmp_path, what="motor file")
@@ -105,7 +105,9 @@ def test_a_complaint_of_a_records_own_ends_with_one_cure():
     [
         (b"a = " + b"[" * 3000, "nested beyond reason"),
         (b"a = " + b"9" * 5000, "not valid TOML"),
-        (b"\xff\xfe", "not valid TOML"),
+        (b"\xff\xfe", "no text in UTF-8"),
+        # The codec's own words on it named a byte and told to correct a line.
+        (b"SQLite format 3\x00\x10\x00\x02\x02\xfb", "is a database, not a TOML file; .* 'resume', load_study"),
         (b"a = 'x", "not valid TOML"),
         (b"#" * (MAX_TOML_BYTES + 1), f"has more than {MAX_TOML_BYTES} bytes"),
     ],

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from pareto_monoped.cli import completing
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import CSV_FILE_OR_DASH, force_option
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
@@ -66,7 +66,7 @@ class _WithRules(click.Command):
     "--csv",
     "csv_file",
     metavar="FILE.csv",
-    type=click.Path(dir_okay=False, path_type=Path, allow_dash=True),
+    type=CSV_FILE_OR_DASH,
     help="Also write the table to a CSV file; `-` prints it as CSV instead.",
 )
 @click.option(

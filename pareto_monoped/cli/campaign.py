@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.computing import scheduler_option
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import CSV_FILE, HTML_FILE, force_option
 from pareto_monoped.cli.terminal import echo, name, note
 
 if TYPE_CHECKING:
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 @click.option(
     "--report",
     "page",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=HTML_FILE,
     metavar="FILE.html",
     help="Write a page that compares them.",
 )
 @click.option(
     "--csv",
     "table",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=CSV_FILE,
     metavar="FILE.csv",
     help="Write a table with a row per study.",
 )

@@ -14,7 +14,7 @@ from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, w
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
 from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.cli.terminal import echo, new_console, note
+from pareto_monoped.cli.terminal import echo, new_console, note, wrapped
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
 from pareto_monoped.study.place import StudyPlace
 
@@ -140,7 +140,7 @@ def export(
             study, wanted = _given(db), required(selector)
             data = _read(study)
             picked = pick(with_numbered(data, data.front(), wanted), wanted, data.study.objectives)
-            _note(picked.why)
+            _note(wrapped(picked.why))
             trial = picked.trial
             job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)
             _one(_without(dropped, job))

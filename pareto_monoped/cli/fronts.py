@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pareto_monoped.cli import completing
-from pareto_monoped.cli.options import DATABASE, force_option
+from pareto_monoped.cli.options import CSV_FILE, DATABASE, force_option
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
 from pareto_monoped.design import VARIABLES, Variable, in_use
@@ -48,9 +48,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 @click.command()
 @click.argument("db", type=DATABASE)
 @click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
-@click.option(
-    "--csv", "csv_file", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write the designs to a CSV file."
-)
+@click.option("--csv", "csv_file", type=CSV_FILE, metavar="FILE.csv", help="Write the designs to a CSV file.")
 @force_option
 @click.option("--all", "include_all", is_flag=True, help="Include designs that failed their audit.")
 @click.option(

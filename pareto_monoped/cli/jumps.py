@@ -10,7 +10,7 @@ import click
 
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
-from pareto_monoped.cli.options import force_option
+from pareto_monoped.cli.options import CSV_FILE, force_option
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
@@ -75,7 +75,7 @@ _VARIABLES = "\n".join(
 @motor_options()
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--trace", metavar="FILE.csv", type=_OUTPUT, help="Write one row per time step.")
+@click.option("--trace", metavar="FILE.csv", type=CSV_FILE, help="Write one row per time step.")
 @click.option("--model", metavar="FILE.xml", type=_OUTPUT, help="Write the simulated model as MJCF.")
 @click.option("--gif", metavar="FILE.gif", type=_OUTPUT, help="Write the jump as an animated picture.")
 @click.option("--video", metavar="FILE.mp4", type=_OUTPUT, help="Write the jump as a video, .mp4 or .webm.")

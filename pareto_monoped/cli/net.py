@@ -7,13 +7,14 @@ is an error of the system, or a fault of this program; both end in one line as w
 import difflib
 import os
 import re
+import sys
 import traceback
 from contextlib import suppress
 from pathlib import Path
 
 import click
 
-from pareto_monoped.cli.terminal import name
+from pareto_monoped.cli.terminal import name, wrapped
 from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.files import cure_of, is_failure
 
@@ -104,5 +105,6 @@ def report(error: BaseException) -> int:
     if os.environ.get(TRACEBACK) and isinstance(error, Exception):
         traceback.print_exception(error)
     with suppress(OSError, ValueError):
-        click.echo(line, err=True)
+        # One line for programs; a terminal would break it within words.
+        click.echo(wrapped(line) if sys.stderr.isatty() else line, err=True)
     return code

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DatabaseError, InputError, complaint
 from pareto_monoped.study.place import place_of
 from pareto_monoped.study.server.address import is_address
 
@@ -33,6 +33,31 @@ class _Database(click.Path):
             )
         return place
 
+
+class _OutputFile(click.Path):
+    """The name of a file to write, whose ending does not say that it is of another kind; it may have none."""
+
+    def __init__(self, *endings: str, allow_dash: bool = False) -> None:
+        super().__init__(dir_okay=False, path_type=Path, allow_dash=allow_dash)
+        self._endings = endings
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path.
+
+        Raises:
+            InputError: it has the ending of another kind of file.
+        """
+        path = Path(super().convert(value, param, ctx))
+        if path.suffix and path.suffix.lower() not in self._endings:
+            option = max(param.opts, key=len) if param else "file"
+            raise InputError(complaint(option, str(path), f"a file ending in {self._endings[0]}", "correct the name"))
+        return path
+
+
+CSV_FILE = _OutputFile(".csv", ".txt", ".dat")
+CSV_FILE_OR_DASH = _OutputFile(".csv", ".txt", ".dat", allow_dash=True)
+PARQUET_FILE = _OutputFile(".parquet", ".pq")
+HTML_FILE = _OutputFile(".html", ".htm")
 
 DATABASE = _Database(servers=True)
 DATABASE_FILE = _Database(servers=False)

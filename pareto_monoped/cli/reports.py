@@ -4,16 +4,14 @@ from pathlib import Path
 
 import click
 
-from pareto_monoped.cli.options import DATABASE, force_option
+from pareto_monoped.cli.options import DATABASE, HTML_FILE, force_option
 from pareto_monoped.cli.terminal import echo, note
 from pareto_monoped.study.place import StudyPlace
 
 
 @click.command()
 @click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
-@click.option(
-    "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.html", help="The HTML page."
-)
+@click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
 @click.option(
     "--figures",
     type=click.Path(file_okay=False, path_type=Path),

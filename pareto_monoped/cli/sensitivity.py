@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.options import DATABASE, force_option, sample_seed_option, uncertainty_option, workers_option
+from pareto_monoped.cli.options import (
+    DATABASE,
+    HTML_FILE,
+    force_option,
+    sample_seed_option,
+    uncertainty_option,
+    workers_option,
+)
 from pareto_monoped.cli.robustness import asked
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, wrapped
@@ -41,9 +48,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
 @sample_seed_option
 @uncertainty_option
 @workers_option
-@click.option(
-    "--plot", type=click.Path(path_type=Path), metavar="FILE.html", help="Write a chart that needs no network."
-)
+@click.option("--plot", type=HTML_FILE, metavar="FILE.html", help="Write a chart that needs no network.")
 @force_option
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def sensitivity(

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.options import DATABASE, force_option
+from pareto_monoped.cli.options import CSV_FILE, DATABASE, PARQUET_FILE, force_option
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.extras import require_extra
 from pareto_monoped.study.place import StudyPlace
@@ -13,13 +13,11 @@ from pareto_monoped.study.place import StudyPlace
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_FILE = click.Path(dir_okay=False, path_type=Path)
-
 
 @click.command()
 @click.argument("db", type=DATABASE)
-@click.option("--csv", "csv_file", metavar="FILE.csv", type=_FILE, help="Write a table of text.")
-@click.option("--parquet", metavar="FILE.parquet", type=_FILE, help="Write a table of Apache Parquet.")
+@click.option("--csv", "csv_file", metavar="FILE.csv", type=CSV_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE.parquet", type=PARQUET_FILE, help="Write a table of Apache Parquet.")
 @click.option(
     "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
 )

@@ -4,6 +4,7 @@ import math
 import os
 import sys
 import time
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -44,10 +45,22 @@ def require_what_shows(gif: Path | None, video: Path | None, view: bool) -> None
         require_gif(gif)
     if video is not None:
         require_video(video)
-    if view and sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise InputError(
-            "--view: there is no display (DISPLAY and WAYLAND_DISPLAY are not set); use --gif FILE or --video FILE"
-        )
+    if view and sys.platform == "linux":
+        _require_display()
+
+
+def _require_display() -> None:
+    """Refuse to view where no window can be opened; MuJoCo would end the process, and leave a log behind."""
+    import glfw
+
+    wanted = [f"{key} is {os.environ[key]!r}" for key in ("DISPLAY", "WAYLAND_DISPLAY") if os.environ.get(key)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", glfw.GLFWError)
+        there = bool(wanted) and glfw.init()
+        glfw.terminate()
+    if not there:
+        said = f"cannot be opened ({', '.join(wanted)})" if wanted else "is not set (DISPLAY, WAYLAND_DISPLAY)"
+        raise InputError(f"--view: the display {said}; use --gif FILE or --video FILE")
 
 
 def write_films(

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pareto_monoped.config import MAX_JSON_CHARACTERS
 from pareto_monoped.errors import DatabaseError, DiskError
+from pareto_monoped.files import SQLITE
 from pareto_monoped.study.connection import Connection, FileConnection
 from pareto_monoped.study.lock import holder, locked
 from pareto_monoped.study.place import StudyPlace, inaccessible, require_file_name
@@ -154,8 +155,8 @@ def _reading_file(path: Path) -> Iterator[Connection]:
     if not path.is_file():
         raise DatabaseError(f"study database {str(path)!r}: no such file; check the path, or run a study first")
     with translated(path), path.open("rb") as stream:
-        header = stream.read(16)
-    if header != b"SQLite format 3\x00":
+        header = stream.read(len(SQLITE))
+    if header != SQLITE:
         raise DatabaseError(f"study database {str(path)!r}: is not a study database; give a file that 'run' made")
     roll_back(path)
     with translated(path), undamaged(path):

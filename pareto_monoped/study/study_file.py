@@ -23,6 +23,7 @@ from pareto_monoped.study.algorithm_settings import (
 from pareto_monoped.study.free_variables import number_of
 from pareto_monoped.study.goals import flattened
 from pareto_monoped.study.named_motors import MOTOR_KEYS
+from pareto_monoped.study.shipped import shipped_studies
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
@@ -78,6 +79,11 @@ def file_values(path: Path) -> dict[str, Any]:
     Raises:
         StudyError: no readable TOML.
     """
+    if not path.exists() and (name := path.name.removesuffix(".toml")) in shipped_studies():
+        raise StudyError(
+            f"study file {str(path)!r}: no such file; 'pareto-monoped init {name}' copies the one that comes with the "
+            "package"
+        )
     return with_paths(read_toml(path, what="study file", error=StudyError), path.parent)
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from pareto_monoped.cli import main
 from pareto_monoped.cli.exports import _duration
+from tests.cli.support import STORED
 
 
 def run(capsys, *words):
@@ -48,6 +49,13 @@ def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypat
     assert message in err
     assert len(err.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal(capsys, tmp_path):
+    code, _, err = run(capsys, "export", STORED, "--knee", "--formats", "dxf", "-o", tmp_path / "knee")
+    assert code == 0
+    assert re.search(r"\ntrial 64 .*\n  ", err)  # in more than one line, and no line is too long
+    assert max(len(line) for line in err.splitlines() if str(tmp_path) not in line) <= 80
 
 
 def test_a_case_of_the_paper_is_exported(capsys, tmp_path):

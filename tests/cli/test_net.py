@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import pty
 import sqlite3
 import subprocess
 import sys
@@ -11,8 +12,9 @@ import click
 import pytest
 
 from pareto_monoped import cli
+from pareto_monoped.cli import net
 from pareto_monoped.cli.net import told
-from pareto_monoped.errors import DatabaseError, DiskError
+from pareto_monoped.errors import DatabaseError, DiskError, InputError
 from tests.cli.support import ROOT, STORED, own_process
 
 
@@ -102,3 +104,21 @@ def test_more_threads_than_any_machine_has_are_refused(capsys, command):
     """Found by the fuzzer: a number of 400 digits reached the simulation."""
     assert cli._run([command, "x", "--workers", "9" * 400]) == 2
     assert "1024" in capsys.readouterr().err
+
+
+def test_on_a_terminal_an_error_breaks_between_words(monkeypatch):
+    """A line of 350 characters was broken by the terminal itself, within words. A pipe still gets one line."""
+    ours, theirs = pty.openpty()
+    with os.fdopen(theirs, "w") as stream:
+        monkeypatch.setattr(net.sys, "stderr", stream)
+        net.report(InputError("design: " + "width_mm and " * 20 + "height_mm are missing; give them"))
+        stream.flush()
+        shown = os.read(ours, 4096).decode()
+    os.close(ours)
+    lines = shown.splitlines()
+    assert len(lines) > 3
+    assert max(map(len, lines)) <= 80
+    assert " ".join(line.strip() for line in lines).startswith("error: design: width_mm and width_mm and ")
+    assert all(
+        line.split()[-1] in ("and", "width_mm", "them", "give", "height_mm", "are", "missing;") for line in lines
+    )

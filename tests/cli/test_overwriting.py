@@ -10,24 +10,23 @@ from pareto_monoped.cli import _run as cli
 STORED = Path(__file__).parent.parent / "study" / "data" / "plain.db"
 
 COMMANDS = {
-    "front": ("front", "s.db", "--csv"),
-    "report": ("report", "s.db", "-o"),
-    "trace": ("simulate", "--trace"),
-    "model": ("simulate", "--model"),
-    "actuators": ("actuators", "--csv"),
-    "figure": ("actuators", "--figure"),
+    "front": (("front", "s.db", "--csv"), ".csv"),
+    "report": (("report", "s.db", "-o"), ".html"),
+    "trace": (("simulate", "--trace"), ".csv"),
+    "model": (("simulate", "--model"), ".xml"),
+    "actuators": (("actuators", "--csv"), ".csv"),
+    "figure": (("actuators", "--figure"), ".svg"),
 }
 
 
-@pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
-def test_targets(tmp_path, monkeypatch, capsys, words):
+@pytest.mark.parametrize(("words", "ending"), COMMANDS.values(), ids=COMMANDS)
+def test_targets(tmp_path, monkeypatch, capsys, words, ending):
     monkeypatch.chdir(tmp_path)
     shutil.copy(STORED, "s.db")
     study = (tmp_path / "s.db").read_bytes()
-    # The ending says which picture is drawn; for other outputs it says nothing.
-    target, notes = tmp_path / "out.svg", tmp_path / "notes.svg"
+    target, notes = tmp_path / f"out{ending}", tmp_path / f"notes{ending}"
     notes.write_text("my notes\n")
-    victim = tmp_path / "victim.svg"
+    victim = tmp_path / f"victim{ending}"
     victim.symlink_to("s.db")
     for force in ([], ["--force"]):
         assert cli([*words, str(victim), *force]) == 2

@@ -65,3 +65,16 @@ def test_pareto_in_an_empty_folder_begins_with_case_c(tmp_path, monkeypatch, cap
     assert cli(["pareto", "-o", "case_c.txt/reports"]) == 2
     assert (tmp_path / "studies" / "case_c.toml").read_text() == (STUDIES / "case_c.toml").read_text()
     assert "wrote studies/case_c.toml" in capsys.readouterr().err
+
+
+def test_who_runs_a_shipped_study_by_its_name_is_told_to_copy_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name in ("quick", "quick.toml"):
+        assert cli(["run", name]) == 2
+        said = capsys.readouterr().err
+        assert said == (
+            f"error: study file {name!r}: no such file; 'pareto-monoped init quick' copies the one that comes with the "
+            "package\n"
+        )
+    assert cli(["run", "quickest.toml"]) == 2
+    assert "no such file; check the path" in capsys.readouterr().err

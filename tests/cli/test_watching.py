@@ -27,9 +27,24 @@ def test_a_viewer_without_display_says_what_to_do(monkeypatch, capsys):
     monkeypatch.setattr(watching.sys, "platform", "linux")
     assert cli(["simulate", "--view"]) == 2
     said = capsys.readouterr()
-    assert "there is no display" in said.err
+    assert "the display is not set" in said.err
     assert "--gif FILE" in said.err
     assert len(said.err.splitlines()) == 1
+
+
+def test_a_display_that_cannot_be_opened_is_told_before_anything_is_simulated(monkeypatch, capsys, tmp_path):
+    """MuJoCo ended the process with a message of its own, and left a log in the user's folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("DISPLAY", ":77")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr(watching.sys, "platform", "linux")
+    assert cli(["simulate", "--view"]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == (
+        "error: --view: the display cannot be opened (DISPLAY is ':77'); use --gif FILE or --video FILE\n"
+    )
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", ["jump.avi", "jump"])
