@@ -47,7 +47,7 @@ class _OutputFile(click.Path):
         Raises:
             InputError: it has the ending of another kind of file.
         """
-        path = Path(super().convert(value, param, ctx))
+        path: Path = super().convert(value, param, ctx)  # type: ignore[assignment]  # click knows no ``path_type``
         if path.suffix and path.suffix.lower() not in self._endings:
             option = max(param.opts, key=len) if param else "file"
             raise InputError(complaint(option, str(path), f"a file ending in {self._endings[0]}", "correct the name"))
