@@ -144,14 +144,21 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
         raise error(f"{source}: {_line(kind, problem)}") from None
 
 
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+"""What pydantic calls an unknown key."""
+
+
 def _line(kind: type, problem: ValidationError) -> str:
-    """The first error in one line. Pydantic lists them in the order of the fields."""
-    first = problem.errors(include_url=False)[0]
+    """The first error in one line. Pydantic lists them in the order of the fields, and unknown keys behind them."""
+    errors = problem.errors(include_url=False)
+    first = errors[0]
+    if first["type"] == "missing":  # an unknown key may be the missing one, misspelt
+        first = next((one for one in errors if one["type"] in _UNKNOWN), first)
     # For a field of a union type, pydantic adds the name of the type to the location, which does not help the user.
     key = ".".join(str(step) for step in first["loc"] if not str(step).startswith(("tagged-union", "function-")))
     if first["type"] == "missing":
         return f"{key} is missing; add it"
-    if first["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
+    if first["type"] in _UNKNOWN:
         allowed = sorted(getattr(kind, "__dataclass_fields__", {}))
         name = str(first["loc"][-1])
         near = difflib.get_close_matches(name, allowed, n=1)

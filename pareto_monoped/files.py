@@ -14,6 +14,8 @@ from pareto_monoped.errors import DiskError, OutputError
 
 SQLITE = b"SQLite format 3\x00"
 """How a database begins (SQLite's file format, section 1.3)."""
+FORCE = "--force (in Python force=True)"
+"""What allows an output to be replaced, on the command line and in Python."""
 _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
@@ -42,7 +44,7 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
             raise unwritable(path, error, "") from error
         if not force and path.is_file() and (old := _kind(path)) and old != _kind(temporary):
             raise OutputError(
-                f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or --force"
+                f"output {str(path)!r}: is a file of another kind, which would be lost; give another name, or {FORCE}"
             )
         try:
             temporary.replace(path)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.study.plain import as_list, as_table
 
 
 def executor_of(given: Any) -> Any:
@@ -73,22 +74,24 @@ def number_of(what: str, given: Any) -> float:
 
 
 def numbers_of(what: str, given: Any) -> tuple[float, ...]:
-    """Finite numbers from a list.
+    """Finite numbers from a list, an array or a series.
 
     Raises:
         InputError: something else.
     """
-    if isinstance(given, str | bytes | Mapping) or not isinstance(given, Sequence):
+    values = as_list(given)
+    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Sequence):
         raise InputError(complaint(what, given, "a list of numbers", "give one"))
-    return tuple(number_of(what, value) for value in given)
+    return tuple(number_of(what, value) for value in values)
 
 
 def table_of(what: str, given: Any) -> dict[str, float]:
-    """Finite numbers by name.
+    """Finite numbers by name, from a mapping or a series.
 
     Raises:
         InputError: something else.
     """
-    if not isinstance(given, Mapping):
+    values = as_table(given)
+    if not isinstance(values, Mapping):
         raise InputError(complaint(what, given, "a mapping of names to numbers", "give one"))
-    return {name: number_of(f"{what}[{name!r}]", value) for name, value in given.items()}
+    return {name: number_of(f"{what}[{name!r}]", value) for name, value in values.items()}

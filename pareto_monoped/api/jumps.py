@@ -90,7 +90,8 @@ def actuator_map(motor: AnyMotor = PAPER_MOTOR, *, rules: RuleSet = DEFAULT_RULE
         raise MotorError(complaint("rules", rules, " or ".join(map(repr, get_args(RuleSet))), "correct it"))
     if isinstance(motor, Motor):
         return map_of(_own_motor(motor), rules)
-    return map_of(load_motor(motor), rules, source=motor_source(fspath(motor)))
+    name = _name(motor, "motor", MotorError, f"a Motor, {_NAME}")
+    return map_of(motor_of(name), rules, source=motor_source(name))
 
 
 def _own_motor(motor: Motor) -> Motor:
@@ -283,10 +284,14 @@ def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Cali
     if isinstance(calibration, Calibration):
         model = own_calibration(calibration)
         return model, rules_for(model.name, rules)
-    return load_calibration(calibration), rules_for(fspath(calibration), rules)
+    name = _name(calibration, "calibration", CalibrationError, f"a Calibration, {_NAME}")
+    return calibration_of(name), rules_for(name, rules)
 
 
-def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationError]) -> str:
+_NAME = "a name or the path of a TOML file"
+
+
+def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationError], allowed: str = _NAME) -> str:
     """A name or path as text."""
     if isinstance(given, str | PathLike) and isinstance(text := fspath(given), str):
         try:
@@ -294,4 +299,4 @@ def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationE
         except (OSError, ValueError) as problem:
             raise error(f"{what}: cannot be the name of a file ({problem.args[-1]}); check the path") from None
         return text
-    raise error(complaint(what, given, "a name or the path of a TOML file", "give one of these"))
+    raise error(complaint(what, given, allowed, "give one of these"))

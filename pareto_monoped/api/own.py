@@ -14,6 +14,7 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration import load_calibration as shipped_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.study.own_functions import OwnFunction, functions_of, own_name
+from pareto_monoped.study.plain import as_list, as_plain, as_table
 
 Goal = str | OwnFunction
 """A measure by its name, or an own function."""
@@ -26,11 +27,12 @@ def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, Ow
     Raises:
         StudyError: no list, or something in it that is neither a name nor a function.
     """
-    if isinstance(objectives, str | Mapping) or not isinstance(objectives, Sequence):
+    several = as_list(objectives)
+    if isinstance(several, str | Mapping) or not isinstance(several, Sequence):
         allowed = "a list of two or three measures or functions, such as ['height_m', 'energy_j']"
         raise StudyError(complaint("objectives", objectives, allowed, "give one"))
-    functions = functions_of([one for one in objectives if not isinstance(one, str)])
-    return [one if isinstance(one, str) else own_name(one) for one in objectives], functions
+    functions = functions_of([one for one in several if not isinstance(one, str)])
+    return [one if isinstance(one, str) else own_name(one) for one in several], functions
 
 
 def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
@@ -43,7 +45,8 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
     Raises:
         StudyError: something else, or a limit that is given twice, in whatever spelling.
     """
-    parts = [constraints] if isinstance(constraints, Mapping) or callable(constraints) else constraints
+    given = as_table(constraints)
+    parts = [given] if isinstance(given, Mapping) or callable(given) else given
     if isinstance(parts, str) or not isinstance(parts, Sequence):
         allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a list of these and of functions that hold at <= 0"
         raise StudyError(complaint("constraints", constraints, allowed, "give one of these"))
@@ -57,7 +60,7 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
         functions += [key for key in table if not isinstance(key, str)]
         for key, limits in table.items():
             name = key if isinstance(key, str) else own_name(key)
-            new = _flattened(name, limits)
+            new = as_plain(_flattened(name, limits))
             if twice := [stored for stored in new if stored in flat]:
                 side, _, measured = twice[0].partition("_")
                 raise StudyError(f"constraints: the {side} of {measured} is given twice; drop one")

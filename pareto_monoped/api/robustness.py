@@ -3,19 +3,22 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from numpy.typing import ArrayLike
+
 from pareto_monoped.api.given import seed_of, trial_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, load_study
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.study.counts import count_of
+from pareto_monoped.study.plain import as_list
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
+    from pandas import DataFrame, Series
 
 
 def robust(
     study: StoredStudy | StrPath,
-    trials: int | Picked | Sequence[int | Picked] | None = None,
+    trials: "int | Picked | Sequence[int | Picked] | ArrayLike | Series[Any] | None" = None,
     *,
     samples: int | None = None,
     seed: int | None = None,
@@ -29,7 +32,8 @@ def robust(
 
     Args:
         study: the study or its database.
-        trials: a trial by its number or as ``pick`` returned it, or several; by default the front.
+        trials: a trial by its number or as ``pick`` returned it, or several, such as a column ``trial``; by default the
+            front.
         samples: jumps per design, a power of two of at least 256; by default 256, or the study's if it asks for more.
         seed: of the samples, by default the study's.
         uncertainty: TOML file of the ranges; by default the study's, or the shipped ones.
@@ -86,7 +90,8 @@ def _numbers(trials: Any) -> list[int] | None:
     """Numbers of trials."""
     if trials is None:
         return None
-    several = list(trials) if isinstance(trials, Sequence) and not isinstance(trials, str | bytes) else [trials]
+    listed = as_list(trials)
+    several = list(listed) if isinstance(listed, Sequence) and not isinstance(listed, str | bytes) else [listed]
     if not several:
         raise InputError(complaint("number of trials", 0, "at least 1", "name one, or leave it out for the front"))
     return [one.trial if isinstance(one, Picked) else trial_of(one) for one in several]

@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from pareto_monoped.study.session import Progress
 
 
+_STUDY = "a Study, or the path of a study file"
+_CALIBRATION = "a Calibration, the name of a shipped one, or the path of a TOML file"
+
+
 def run(
     study: Study | StrPath,
     db: StrPath | StudyPlace | None = None,
@@ -100,14 +104,14 @@ def run(
     """
     from pareto_monoped.study.run import run as run_study
 
-    one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study"))
+    one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study", allowed=_STUDY))
     target = _database(study, db)
     changes, functions = _goals(one, objectives, constraints)
     if isinstance(calibration, Calibration):
         calibration = own_calibration(calibration)
         changes["calibration"] = stored_calibration_name(calibration)
     elif calibration is not None:
-        changes["calibration"] = str(as_path(calibration, "calibration"))
+        changes["calibration"] = str(as_path(calibration, "calibration", allowed=_CALIBRATION))
     if "calibration" in changes and rules_for(changes["calibration"]) == "paper":
         changes["rules"] = "paper"
     own = _own_algorithm(algorithm)

@@ -28,6 +28,7 @@ from pareto_monoped.pareto.selectors import (
 )
 from pareto_monoped.study.counts import count_of
 from pareto_monoped.study.place import StudyPlace, place_of
+from pareto_monoped.study.plain import as_list
 from pareto_monoped.study.server.address import Server, is_address
 
 if TYPE_CHECKING:
@@ -253,7 +254,7 @@ class StoredStudy:
 
         if names is None:
             return None
-        chosen = objectives_of(names, source="front")
+        chosen = objectives_of(as_list(names), source="front")
         if lacking := [name for name in chosen.names if name not in self.data.trials]:
             raise StudyError(f"front: objective {lacking[0]!r} is not stored with this study; choose another")
         return chosen

@@ -28,7 +28,7 @@ from pareto_monoped.study.goals import (
     stored_objectives,
 )
 from pareto_monoped.study.named_motors import MOTOR_KEYS, Named, all_names, kits_of, named_motors, names_of, text_of
-from pareto_monoped.study.study_file import Stop, StudyFile, algorithm_of, file_values, with_objectives
+from pareto_monoped.study.study_file import Stop, StudyFile, algorithm_of, file_values, plain_values, with_objectives
 from pareto_monoped.study.weighted_budget import within_budget
 from pareto_monoped.uncertainty.settings import Sampling, sampling_of
 
@@ -96,7 +96,8 @@ class Study:
         """
         if not isinstance(path, str | PathLike) or not isinstance(fspath(path), str):
             raise StudyError(complaint("study file", path, "text or a path", "give one"))
-        return filled(file_values(Path(path)) | changes, source=f"study file {str(path)!r}")
+        source = f"study file {str(path)!r}"
+        return filled(file_values(Path(path)) | plain_values(changes, source), source=source)
 
     @classmethod
     def define(cls, **values: Any) -> "Study":
@@ -104,7 +105,7 @@ class Study:
 
         Args:
             values: the keys. ``name`` and ``evaluations`` are required; the others have the defaults of a study file.
-                Tables are mappings, and an algorithm may be a name.
+                Tables are mappings, an algorithm may be a name, and files of motors and calibrations may be paths.
 
         Raises:
             StudyError: an unknown key, a wrong type, or impossible bounds.
@@ -117,7 +118,7 @@ class Study:
             >>> study.free[0]
             'thigh_length_m'
         """
-        return filled(dict(values), source="study")
+        return filled(plain_values(values, "study"), source="study")
 
     @property
     def motors(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from pareto_monoped.errors import DatabaseError, OutputError
 from pareto_monoped.files import is_failure
-from pareto_monoped.study.place import StudyPlace, inaccessible, require_file_name
+from pareto_monoped.study.place import BY_NAME, StudyPlace, inaccessible, require_file_name
 from pareto_monoped.study.server.address import Server
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _locked_file(db: Path) -> Iterator[Lock]:
                 ) from None
             raise OutputError(
                 f"study database {str(db)!r}: its folder cannot be written to ({error.strerror}); "
-                "give a database file in a writable folder (--db)"
+                f"give a database file in a writable folder {BY_NAME}"
             ) from None
         try:
             try:
@@ -92,7 +92,7 @@ def _locked_file(db: Path) -> Iterator[Lock]:
             except BlockingIOError:
                 raise DatabaseError(
                     f"study database {str(db)!r}: is being run by process {_words(descriptor)[0]}; wait for it, stop "
-                    "it, or give another database file (--db)"
+                    f"it, or give another database file {BY_NAME}"
                 ) from None
             # The previous holder removes the file. If that happened between our opening and our locking it, we have
             # locked a file that nobody else can find, and must try again.
@@ -125,7 +125,7 @@ def _locked_file(db: Path) -> Iterator[Lock]:
 
 def _in_the_way(path: Path) -> OutputError:
     return OutputError(
-        f"lock file {str(path)!r}: something else has its name; move that away, or give another database file (--db)"
+        f"lock file {str(path)!r}: something else has its name; move that away, or give another database file {BY_NAME}"
     )
 
 

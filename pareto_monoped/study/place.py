@@ -8,6 +8,8 @@ from pareto_monoped.extras import require_extra
 from pareto_monoped.files import cure_of, is_failure
 from pareto_monoped.study.server.address import Server, is_address, server_of
 
+BY_NAME = "(--db, in Python db=...)"
+"""How a database is named, on the command line and in Python."""
 StudyPlace = Path | Server
 """A database file, or a schema on a server."""
 

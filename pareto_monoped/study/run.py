@@ -21,7 +21,7 @@ from pareto_monoped.study.lock import Lock, locked
 from pareto_monoped.study.meta import StudyMeta
 from pareto_monoped.study.own import NOTHING, Own
 from pareto_monoped.study.own_functions import refuse_other_functions, require_functions, with_functions
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.study.place import BY_NAME, StudyPlace
 from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
 from pareto_monoped.study.server.address import Server, schema_for
@@ -214,7 +214,7 @@ def _refuse_changes(data: StudyData, study: Study, simulator: Simulator, db: Stu
     if changes:
         raise StudyError(
             f"study database {str(db)!r}: began with other settings ({'; '.join(changes)}); undo the change, "
-            "or give another database file (--db) to start anew"
+            f"or give another database file {BY_NAME} to start anew"
         )
 
 
@@ -233,7 +233,7 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: StudyPlace)
         raise StudyError(
             f"study database {str(db)!r}: began with other results: height and energy of the probe designs were "
             f"{before}, are {now} with this code and machine; continue where it began, or start anew with another "
-            "database file (--db)"
+            f"database file {BY_NAME}"
         )
 
 

@@ -23,6 +23,7 @@ from pareto_monoped.study.algorithm_settings import (
 from pareto_monoped.study.free_variables import number_of
 from pareto_monoped.study.goals import flattened
 from pareto_monoped.study.named_motors import MOTOR_KEYS
+from pareto_monoped.study.plain import as_plain
 from pareto_monoped.study.shipped import shipped_studies
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -85,6 +86,28 @@ def file_values(path: Path) -> dict[str, Any]:
             "package"
         )
     return with_paths(read_toml(path, what="study file", error=StudyError), path.parent)
+
+
+def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """The keys of a study file from a script, which may have paths, arrays and numbers of NumPy.
+
+    Raises:
+        StudyError: a motor or a calibration itself; a study has their names.
+    """
+    from pareto_monoped.actuator.motor import Motor
+    from pareto_monoped.jump.calibration import Calibration
+
+    plain = {key: as_plain(value) for key, value in values.items()}
+    for key in MOTOR_KEYS:
+        several = plain.get(key)
+        if any(isinstance(one, Motor) for one in (several if isinstance(several, list) else [several])):
+            raise StudyError(f"{source}: {key}: is a Motor, must be its name or file; give the path of its TOML file")
+    if isinstance(plain.get("calibration"), Calibration):
+        raise StudyError(
+            f"{source}: calibration: is a Calibration, must be its name or file; give it where the study starts: "
+            "pareto_monoped.run(study, db, calibration=...)"
+        )
+    return plain
 
 
 def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:

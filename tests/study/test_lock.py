@@ -66,8 +66,9 @@ def test_two_studies_do_not_block_each_other(tmp_path, other):
 
 
 def test_messages_say_what_to_do_on_the_command_line_and_in_python(tmp_path, other):
-    with pytest.raises(DatabaseError, match=r"give another database file \(--db\)$"), locked(tmp_path / "s.db"):
+    named = r"\(--db, in Python db=\.\.\.\)$"
+    with pytest.raises(DatabaseError, match=f"give another database file {named}"), locked(tmp_path / "s.db"):
         pass
-    with pytest.raises(OutputError, match=r"give a database file in a writable folder \(--db\)$"):  # noqa: SIM117
+    with pytest.raises(OutputError, match=f"give a database file in a writable folder {named}"):  # noqa: SIM117
         with locked(tmp_path / "nowhere" / "s.db"):
             pass

@@ -13,7 +13,7 @@ from pareto_monoped.cad.write.formats import ALWAYS, FILES, RECORD
 from pareto_monoped.cad.write.unbroken import noted, unbroken
 from pareto_monoped.config import read_json
 from pareto_monoped.errors import OutputError
-from pareto_monoped.files import unwritable
+from pareto_monoped.files import FORCE, unwritable
 
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
 
@@ -33,7 +33,7 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         raise unwritable(out_dir, error, "give a folder that can be read and written") from error
     if filled and not force:
         raise OutputError(
-            f"output {str(out_dir)!r}: is not empty; give another folder, or --force to replace an export"
+            f"output {str(out_dir)!r}: is not empty; give another folder, or {FORCE} to replace an export"
         )
     if filled:  # before the work of an export, not only after it
         _require_own(out_dir, ALWAYS, _earlier_files(out_dir))
