@@ -88,6 +88,8 @@ def test_each_worker_answers_for_itself_and_whoever_leaves_closes_the_connection
         until(lambda: len(staff.present()) == 2)
         answers = [member.executor.submit(tasks.greeting, 1) for member in staff.present().values()]
         assert {answer.result(timeout=60) for answer in answers} == {worker.pid for worker in two.workers}
+        for member in staff.present().values():
+            assert len({process for _, process in member.executor.map(tasks.short, range(6), timeout=60)}) == 1
     finally:
         staff.close()
     assert staff._client.status == "closed"
