@@ -154,6 +154,7 @@ class StoredStudy:
             0.5
         """
         from pareto_monoped.pareto.pick import pick
+        from pareto_monoped.study.infeasible import refuse_empty
 
         chosen = self._objectives(objectives) or self.study.objectives
         front = self.data.front(objectives=chosen)
@@ -163,6 +164,7 @@ class StoredStudy:
             raise SelectionError(
                 "pick: nothing is asked for; give by='knee', or min_height_m, or one of the other arguments"
             )
+        refuse_empty(front, self.data)
         found = pick(front, Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
         return Picked(trial=found.trial, design=self.design(found.trial), row=self._row(found.trial), why=found.why)
 

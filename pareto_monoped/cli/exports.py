@@ -108,6 +108,7 @@ def export(
             kernel.start()
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
+        from pareto_monoped.study.infeasible import refuse_empty
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
@@ -131,6 +132,7 @@ def export(
             _one(_without(dropped, job))
         elif whole_front:
             data = _read(_given(db))
+            refuse_empty(data.front(), data)
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
             _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1, place)
         else:
@@ -139,7 +141,9 @@ def export(
 
             study, wanted = _given(db), required(selector)
             data = _read(study)
-            picked = pick(with_numbered(data, data.front(), wanted), wanted, data.study.objectives)
+            rows = with_numbered(data, data.front(), wanted)
+            refuse_empty(rows, data)
+            picked = pick(rows, wanted, data.study.objectives)
             _note(wrapped(picked.why))
             trial = picked.trial
             job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)

@@ -94,6 +94,8 @@ def front(
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
             note(f"designs without an audit: {unaudited} of {len(rows)}")
     say_of_study(study, sealed=sealed)
+    if len(rows) == 0:
+        _say_why_empty(db)
     rows = _spread(rows[shown_columns(study, used, chosen)], most)
     if csv_file is not None:
         from pareto_monoped.files import write_text
@@ -106,6 +108,16 @@ def front(
         _print_table(rows, chosen)
         if most is None and len(rows) > _MANY:
             note(f"the front has {len(rows)} designs; --most 40 shows 40 of them, evenly spread")
+
+
+def _say_why_empty(db: StudyPlace) -> None:
+    """Note why a study with trials has no front."""
+    from pareto_monoped.study.infeasible import why_no_front
+    from pareto_monoped.study.reader import read_study
+
+    data = read_study(db)
+    if len(data.trials):
+        note(why_no_front(data))
 
 
 _MANY = 100
@@ -213,6 +225,7 @@ def pick(
     from pareto_monoped.study.behind import better_than, numbered, with_numbered
     from pareto_monoped.study.binding import binding_limits, front_alone
     from pareto_monoped.study.front_reader import read_front
+    from pareto_monoped.study.infeasible import refuse_empty
     from pareto_monoped.study.reader import read_study
 
     wanted = required(selector)
@@ -228,6 +241,7 @@ def pick(
         whole = known if compared is None else replace(known, trials=compared.rows)
         rows = with_numbered(whole, rows, wanted)
     names = shown_columns(data.study, data.used, data.study.objectives)
+    refuse_empty(rows, db)
     picked = pick_design(rows, wanted, data.study.objectives)
     step = one_more(rows, picked.trial, data.study.objectives)
     limits = binding_limits(whole, picked.trial)

@@ -60,6 +60,7 @@ def pareto(
     from pareto_monoped.pareto.selectors import Knee
     from pareto_monoped.study.choices import counterpart
     from pareto_monoped.study.definition import NO_STRENGTH, load_study
+    from pareto_monoped.study.infeasible import refuse_empty
     from pareto_monoped.study.reader import read_study
 
     study_file = study_file or _first_study()
@@ -84,7 +85,9 @@ def pareto(
         dbs.append(_beside(db, other))
         steps.do("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options)
     studies = [read_study(path) for path in dbs]
-    knee = pick(studies[0].front(), Knee(), study.objectives)
+    whole = studies[0].front()
+    refuse_empty(whole, studies[0])
+    knee = pick(whole, Knee(), study.objectives)
     design = cad / f"trial_{knee.trial}"
     job = trial_job(studies[0], knee.trial, folder=design)
     again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []

@@ -71,12 +71,16 @@ def sensitivity(
     from pareto_monoped.pareto.pick import pick as pick_design
     from pareto_monoped.pareto.selectors import Trial
     from pareto_monoped.study.front_reader import read_front
+    from pareto_monoped.study.infeasible import refuse_empty
     from pareto_monoped.study.sensitivity import sensitivity as find
 
     wanted, kept = required(selector), read_front(db)
     ranges, _, chosen_seed = asked(kept.study, uncertainty, None, seed)
-    # A trial that is asked for by its number need not be on the front.
-    trial = wanted.number if isinstance(wanted, Trial) else pick_design(kept.rows, wanted, kept.study.objectives).trial
+    if isinstance(wanted, Trial):
+        trial = wanted.number  # which need not be on the front
+    else:
+        refuse_empty(kept.rows, db)
+        trial = pick_design(kept.rows, wanted, kept.study.objectives).trial
     found = find(db, trial, ranges, blocks=samples, within=0.01 * within, seed=chosen_seed, workers=workers)
     if plot is not None:
         from pareto_monoped.files import write_text

@@ -10,7 +10,7 @@ from pareto_monoped.design import VARIABLES
 from pareto_monoped.measures import measure
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.free_variables import Bounds
-from pareto_monoped.study.goals import Limit
+from pareto_monoped.study.infeasible import why_no_front
 from pareto_monoped.study.motor_choice import MotorCoordinates
 from pareto_monoped.study.reader import StudyData
 from pareto_monoped.study.weighted_budget import sweep_evaluations
@@ -59,7 +59,7 @@ def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
     """What keeps a study from its result: no feasible design, or a budget that ended too early."""
     if len(data.trials) == 0:
         return []
-    return _unfinished_sweep(data) if len(front) else [_why_not_feasible(data)]
+    return _unfinished_sweep(data) if len(front) else [why_no_front(data)]
 
 
 def bound_lines(data: StudyData, front: pd.DataFrame) -> list[str]:
@@ -134,40 +134,3 @@ def _bound_line(data: StudyData, found: AtBound) -> str:
         f"{found.name} is at its {found.side} bound of {found.bound:.4g}{unit}{whose} in {100.0 * found.share:.0f} % "
         f"of the front ({entry.short} {where})"
     )
-
-
-def _why_not_feasible(data: StudyData) -> str:
-    """The limits that stand in the way: those that every design misses, else the one that most designs miss."""
-    jumped = data.trials[data.trials["state"] != "failed"]
-    total, failed = len(data.trials), len(data.trials) - len(jumped)
-    if len(jumped) == 0:
-        reason = data.trials["reason"].mode().iloc[0]
-        return f"no design is feasible: none of {total} jumps, most often because: {reason}"
-    if (jumped["state"] == "feasible").any():
-        return f"no design is on the front: all of {int((jumped['state'] == 'feasible').sum())} failed their audit"
-    missed = {limit: _missing(jumped, limit) for limit in data.study.constraints.limits}
-    most = max(int(rows.sum()) for rows in missed.values())
-    lines = [
-        f"{most} of {len(jumped)} miss {limit.measure} {'<=' if limit.side == 'max' else '>='} {limit.value:g}; "
-        f"{_closest(jumped, limit)}"
-        for limit, rows in missed.items()
-        if rows.sum() == most
-    ]
-    also = [f"{failed} did not jump"] if failed else []
-    return f"no design is feasible: {'. '.join([*lines, *also])}"
-
-
-def _missing(trials: pd.DataFrame, limit: Limit) -> NDArray[np.bool_]:
-    values = trials[limit.measure].to_numpy(dtype=np.float64)
-    return np.asarray(~(limit.shares(values) <= 0.0))
-
-
-def _closest(trials: pd.DataFrame, limit: Limit) -> str:
-    """The value nearest to the limit, such as "the least is 4.218 kg"."""
-    values = trials[limit.measure].to_numpy(dtype=np.float64)
-    if np.isnan(values).all():
-        return "no design has a value"
-    entry = measure(limit.measure)
-    word, value = ("least", np.nanmin(values)) if limit.side == "max" else ("greatest", np.nanmax(values))
-    unit = "" if entry.unit == "1" else f" {entry.unit}"
-    return f"the {word} is {value:.4g}{unit}"

@@ -1,6 +1,5 @@
 """What a user hears of a result: variables at their bounds along the front, limits that no design holds."""
 
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -8,7 +7,6 @@ import pytest
 
 from pareto_monoped.errors import StudyError
 from pareto_monoped.study.definition import load_study, study_from_dict
-from pareto_monoped.study.goals import constraints_of
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.remarks import at_bounds, remarks
 from pareto_monoped.study.run import run
@@ -87,37 +85,6 @@ def test_each_motor_s_gearboxes_have_bounds_of_their_own(tmp_path):
 
 def test_a_front_between_all_bounds_needs_no_remark(data):
     assert remarks(data, front_of(data, np.linspace(0.6, 1.0, 10))) == []
-
-
-def test_a_run_without_a_feasible_design_names_the_limit_and_the_closest_value(tmp_path, data):
-    study = replace(made(), constraints=constraints_of({"mass_kg": {"max": 2.0}, "drift_m": {"max": 10.0}}))
-    summary = run(study, tmp_path / "s.db")
-    found = read_study(tmp_path / "s.db").trials
-    jumped = found[found["state"] != "failed"]
-    assert (found["state"] == "feasible").sum() == 0
-    (line,) = summary.remarks
-    assert line.startswith(
-        f"no design is feasible: {len(jumped)} of {len(jumped)} miss mass_kg <= 2; the least is "
-        f"{jumped['mass_kg'].min():.4g} kg"
-    )
-    assert "drift_m" not in line
-
-
-def test_limits_that_only_together_leave_no_design_are_named_by_how_many_miss_them(data):
-    trials = data.trials.iloc[:10].copy()
-    trials["state"], trials["mass_kg"] = "infeasible", np.linspace(3.0, 3.9, 10)
-    trials["height_m"] = np.linspace(0.5, 0.59, 10)
-    constraints = constraints_of({"mass_kg": {"max": 3.25}, "height_m": {"min": 0.575}})
-    infeasible = replace(data, trials=trials, study=replace(data.study, constraints=constraints))
-    assert remarks(infeasible) == ["no design is feasible: 8 of 10 miss height_m >= 0.575; the greatest is 0.59 m"]
-
-
-def test_a_search_in_which_nothing_jumps_says_why(data):
-    trials = data.trials.iloc[:10].copy()
-    trials["state"], trials["reason"] = "failed", ["fell"] * 7 + ["sank"] * 3
-    assert remarks(replace(data, trials=trials)) == [
-        "no design is feasible: none of 10 jumps, most often because: fell"
-    ]
 
 
 WEIGHTED = 'name = "w"\nevaluations = {}\naudit = false\n[algorithm]\nname = "weighted_cmaes"\nheight_weights = {}\n'
