@@ -13,7 +13,7 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import executor_at, where, where_options
 from pareto_monoped.cli.options import DATABASE, workers_option
-from pareto_monoped.cli.terminal import echo, name, new_console, notes, wrapped
+from pareto_monoped.cli.terminal import echo, name, new_console, note, wrapped
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.study.place import StudyPlace
 
@@ -234,7 +234,8 @@ def _print_end(summary: "RunSummary") -> None:
     strength = () if summary.strength else (NO_STRENGTH,)
     # Without a front, the first remark says why there is none.
     said = (*strength, *summary.remarks) if summary.front_size else (*summary.remarks, *strength)
-    notes(said, others="'report'")
+    for line in said:
+        note(line)
 
 
 @contextmanager

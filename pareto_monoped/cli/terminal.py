@@ -8,7 +8,6 @@ obeys or hides (control characters, changes of writing direction, halves of char
 import re
 import textwrap
 import unicodedata
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -65,24 +64,6 @@ def wrapped(text: str, indent: int = 2) -> str:
 def note(text: str) -> None:
     """Print what a user should know besides the result."""
     echo(wrapped(f"note: {name(text)}"), err=True)
-
-
-_MOST_NOTES = 5
-"""At most so many notes on one result are read; our own choice."""
-
-
-def notes(texts: Sequence[str], *, others: str) -> None:
-    """Print notes on one result, the most important first, and of those that are too many how to see them.
-
-    Args:
-        texts: the notes, by descending importance.
-        others: what shows the others.
-    """
-    shown = texts if len(texts) <= _MOST_NOTES else texts[: _MOST_NOTES - 1]
-    for text in shown:
-        note(text)
-    if left := len(texts) - len(shown):
-        note(f"{left} more notes are left out; {others} shows them")
 
 
 def new_console(**options: Any) -> "Console":

@@ -34,9 +34,9 @@ from pareto_monoped.report.trials import (
 )
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.study.algorithm_settings import WeightedSettings
+from pareto_monoped.study.at_bounds import bound_lines
 from pareto_monoped.study.free_variables import Bounds
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.remarks import bound_lines
 from pareto_monoped.study.robust_rows import Stored
 from pareto_monoped.study.sensitivity_rows import StoredSensitivity
 from pareto_monoped.study.weighted_cost import weighted_cost
@@ -140,7 +140,7 @@ def study_card(
             name: list(data.coordinates.limits(name)) if isinstance(value, Bounds) else [value, value]
             for name, value in study.variables.items()
         },
-        at_bounds=bound_lines(data, front),
+        at_bounds=list(bound_lines(data, front).values()),
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
         trials=trial_columns(

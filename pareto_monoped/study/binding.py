@@ -3,11 +3,10 @@
 import numpy as np
 import pandas as pd
 
-from pareto_monoped.design import VARIABLES
 from pareto_monoped.measures import measure
+from pareto_monoped.study.at_bounds import at_bounds
 from pareto_monoped.study.front_reader import StudyFront
 from pareto_monoped.study.reader import Checkpoint, StudyData
-from pareto_monoped.study.remarks import at_bounds
 
 _AT = 0.01
 """Share of a constraint's limit within which a design is at it. Our own choice: 1 percent is 40 g of a 4 kg robot."""
@@ -41,11 +40,7 @@ def front_alone(front: StudyFront) -> StudyData:
 
 
 def _bounds(data: StudyData, row: pd.DataFrame) -> list[str]:
-    units = {variable.name: variable.unit for variable in VARIABLES}
-    return [
-        f"{found.name} at its {found.side} bound of {found.bound:.4g} {units[found.name]}".removesuffix(" 1")
-        for found in at_bounds(data, row)
-    ]
+    return [f"{found.name} at {found.words}{found.within}" for found in at_bounds(data, row)]
 
 
 def _constraints(data: StudyData, row: pd.DataFrame) -> list[str]:

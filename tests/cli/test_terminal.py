@@ -119,15 +119,6 @@ def test_a_note_fits_eighty_columns_and_goes_to_stderr(capsys):
     assert " ".join(said.err.split()) == "note: " + "word " * 40 + "end"
 
 
-@pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (5, 5), (6, 4), (30, 4)])
-def test_of_many_notes_the_first_few_are_printed_and_the_rest_counted(capsys, count, shown):
-    terminal.notes([f"number {k}" for k in range(count)], others="'report'")
-    lines = capsys.readouterr().err.splitlines()
-    assert lines[:shown] == [f"note: number {k}" for k in range(shown)]
-    left = count - shown
-    assert lines[shown:] == ([f"note: {left} more notes are left out; 'report' shows them"] if left else [])
-
-
 def test_every_note_of_the_command_line_goes_through_one_function():
     """Those printed by hand were longer than a line of the terminal."""
     folder = Path(terminal.__file__).parent

@@ -1,91 +1,11 @@
-"""What a user hears of a result: variables at their bounds along the front, limits that no design holds."""
+"""What a user hears of a result: few lines, warnings first, and budgets of weighted searches."""
 
-
-import numpy as np
-import pandas as pd
 import pytest
 
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.definition import load_study, study_from_dict
+from pareto_monoped.study.definition import load_study
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.remarks import at_bounds, remarks
 from pareto_monoped.study.run import run
-
-
-def made(**more):
-    settings = {"name": "s", "evaluations": 40, "audit": False, "algorithm": {"name": "random"}, "gear_list": True}
-    return study_from_dict(settings | more, source="test")
-
-
-@pytest.fixture(scope="module")
-def data(tmp_path_factory):
-    path = tmp_path_factory.mktemp("random") / "s.db"
-    run(made(), path)
-    return read_study(path)
-
-
-def front_of(data, height_m, **columns):
-    """A front with these heights, all variables in the middle of their ranges but for the columns given."""
-    middle = {name: np.mean(data.coordinates.limits(name)) for name in data.study.free}
-    return pd.DataFrame(middle | {"height_m": height_m, "energy_j": 10.0} | columns)
-
-
-def test_bounds_are_told_with_the_share_of_the_front_and_its_parts(data):
-    height = np.linspace(0.6, 1.0, 41)
-    lowest, highest = data.coordinates.limits("knee_ratio")
-    front = front_of(
-        data,
-        height,
-        stiffness_n_per_m=np.where((height < 0.705) | (height > 0.895), 5.4, 60.0),
-        damping_n_s_per_m=np.where(height > 0.8951, 9.99, 9.9),
-        knee_ratio=np.where(height < 0.785, lowest, np.where(height > 0.9951, highest, 6.0)),
-    )
-    found = {(one.name, one.side): one for one in at_bounds(data, front)}
-    assert list(found) == [
-        ("stiffness_n_per_m", "lower"),
-        ("knee_ratio", "lower"),
-        ("damping_n_s_per_m", "upper"),
-    ]
-    stiffness = found["stiffness_n_per_m", "lower"]
-    assert (stiffness.share, stiffness.bound) == (pytest.approx(22 / 41), 5.0)
-    assert np.allclose(stiffness.parts, [(0.6, 0.7), (0.9, 1.0)])
-    assert np.allclose(found["damping_n_s_per_m", "upper"].parts, [(0.9, 1.0)])
-    assert remarks(data, front)[:2] == [
-        "stiffness_n_per_m is at its lower bound of 5 N/m in 54 % of the front (height 0.600 to 0.700 m and 0.900 to "
-        "1.000 m)",
-        f"knee_ratio is at its lower bound of {lowest:.4g} in 46 % of the front (height 0.600 to 0.780 m)",
-    ]
-
-
-def test_each_motor_s_gearboxes_have_bounds_of_their_own(tmp_path):
-    """The greatest of all ratios is one motor's alone: designs with another motor are at a bound below it."""
-    path = tmp_path / "s.db"
-    listed = {"hip_motor": ["VT8020", "U8"], "knee_motor": ["U8", "MN8014"], "rules": "iso6336"}
-    run(made(**listed), path, evaluations=8)
-    data = read_study(path)
-    ends = {motor: data.actuator_maps[motor] for motor in ("VT8020", "U8", "MN8014")}
-    top = {motor: found.lookup(8.7).ratio for motor, found in ends.items()}
-    assert top["U8"] != top["MN8014"]
-    knee = np.repeat(["U8", "MN8014"], 10)
-    front = front_of(
-        data,
-        np.linspace(0.6, 1.0, 20),
-        knee_ratio=[top[name] for name in knee],
-        hip_ratio=5.0,
-        hip_motor="VT8020",
-        knee_motor=knee,
-    )
-    assert [(one.name, one.side, one.motor, one.bound, one.share) for one in at_bounds(data, front)] == [
-        ("knee_ratio", "upper", name, top[name], 0.5) for name in ("U8", "MN8014")
-    ]
-    assert remarks(data, front)[1].startswith(
-        f"knee_ratio is at its upper bound of {top['MN8014']:.4g} with MN8014 in 50 % of the front (height 0.8"
-    )
-
-
-def test_a_front_between_all_bounds_needs_no_remark(data):
-    assert remarks(data, front_of(data, np.linspace(0.6, 1.0, 10))) == []
-
 
 WEIGHTED = 'name = "w"\nevaluations = {}\naudit = false\n[algorithm]\nname = "weighted_cmaes"\nheight_weights = {}\n'
 
