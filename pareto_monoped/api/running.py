@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.api.given import executor_of, seed_of
@@ -22,12 +21,11 @@ from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import rules_for
 from pareto_monoped.study.counts import count_of
-from pareto_monoped.study.definition import Study, study_from_dict
+from pareto_monoped.study.definition import Study, budgeted, study_from_dict
 from pareto_monoped.study.own import Own
 from pareto_monoped.study.own_algorithm import own_algorithm_name
 from pareto_monoped.study.own_functions import OwnFunction, functions_of, listed
 from pareto_monoped.study.place import StudyPlace
-from pareto_monoped.study.weighted_budget import within_budget
 
 if TYPE_CHECKING:
     from pareto_monoped.study.run import RunSummary
@@ -238,7 +236,5 @@ def _changed(study: Study, changes: Mapping[str, Any]) -> Study:
     values = study.as_dict() | dict(changes)
     if values == study.as_dict():
         return study
-    changed = study_from_dict(values, source="study")
-    given = "iterations" in values["algorithm"]
-    settings = within_budget(changed.algorithm, changed.evaluations, given=given, source="study")
-    return replace(changed, algorithm=settings)
+    given = "iterations" in changes["algorithm"] if "algorithm" in changes else not study.shared_iterations
+    return budgeted(study_from_dict(values, source="study"), given=given, source="study")

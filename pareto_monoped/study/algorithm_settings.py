@@ -80,6 +80,8 @@ class RandomSettings:
 
 
 _NOMINAL = PAPER_CASES["nominal"]
+PAPER_ITERATIONS = 200
+"""Greatest number of iterations per weight (paper: M = 200)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +94,7 @@ class WeightedSettings:
         height_weights: weight of the first objective in each run (lambda1); the other's is 1 - lambda1.
         population: designs per iteration (paper: N = 8).
         sigma: first step size, in variables scaled to their bounds (paper: 0.1).
-        iterations: greatest number of iterations per run (paper: M = 200).
+        iterations: greatest number of iterations per run.
         start: where each run starts, by variable name. Other variables start at the paper's nominal design, which is
             its start vector [0.4, 0.4, 6, 6, 50, 2.5, 10].
         height_scale_j: Kh. The paper chooses it "to ensure that the order of both terms is similar". The default makes
@@ -105,7 +107,7 @@ class WeightedSettings:
     height_weights: Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1.0)], ...], Field(min_length=1)] = (0.5,)
     population: Population = 8
     sigma: Annotated[float, Field(gt=0.0, le=1.0)] = 0.1
-    iterations: Annotated[int, Field(ge=1)] = 200
+    iterations: Annotated[int, Field(ge=1)] = PAPER_ITERATIONS
     start: dict[str, float] = field(default_factory=_NOMINAL.design.as_dict)
     height_scale_j: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = _NOMINAL.energy_j * math.exp(
         _NOMINAL.height_m

@@ -1,7 +1,7 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.strength.groups import GROUP_MEASURES
-from pareto_monoped.study.algorithm_settings import AlgorithmSettings
+from pareto_monoped.study.algorithm_settings import AlgorithmSettings, WeightedSettings
 from pareto_monoped.study.free_variables import Bounds, variables_of
 from pareto_monoped.study.goals import (
     LEAST_SAFETY,
@@ -47,6 +47,8 @@ class Study:
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
     gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``uncertainty``
     is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
+    ``shared_iterations`` says whether the iterations of a weighted search are each weight's share of the budget,
+    because the file gives none; it is not stored.
 
     Example:
         >>> from pareto_monoped import Study
@@ -75,6 +77,7 @@ class Study:
     gear_list: bool = False
     uncertainty: Sampling | None = None
     algorithm: AlgorithmSettings
+    shared_iterations: bool = field(default=False, compare=False)
 
     @classmethod
     def from_toml(cls, path: str | PathLike[str], **changes: Any) -> "Study":
@@ -185,6 +188,7 @@ class Study:
         before there were others keep their hash.
         """
         plain = asdict(self)
+        del plain["shared_iterations"]
         if self.rules == "paper":
             del plain["rules"]
         if not self.strength:
@@ -258,7 +262,13 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
     study = study_from_dict(values, source=source)
     _require_names(study, source)
     given = "iterations" in values.get("algorithm", {})
-    return replace(study, algorithm=within_budget(study.algorithm, study.evaluations, given=given, source=source))
+    return budgeted(study, given=given, source=source)
+
+
+def budgeted(study: Study, *, given: bool, source: str) -> Study:
+    """A study whose search comes to its end within the budget, see ``within_budget``."""
+    settings = within_budget(study.algorithm, study.evaluations, given=given, source=source)
+    return replace(study, algorithm=settings, shared_iterations=not given and isinstance(settings, WeightedSettings))
 
 
 def _require_names(study: Study, source: str) -> None:
@@ -309,4 +319,5 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         gear_list=file.gear_list,
         uncertainty=None if table is None else sampling_of(table, source=source),
         algorithm=algorithm_of(file, corner, source),
+        shared_iterations=False,
     )

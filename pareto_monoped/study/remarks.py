@@ -6,7 +6,7 @@ from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.at_bounds import bound_lines
 from pareto_monoped.study.infeasible import why_no_front
 from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.weighted_budget import sweep_evaluations
+from pareto_monoped.study.weighted_budget import share_of, sweep_evaluations
 
 _MOST_LINES = 4
 """At most so many remarks on one result are read; our own choice."""
@@ -35,17 +35,24 @@ def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
     """What keeps a study from its result: no feasible design, or a budget that ended too early."""
     if len(data.trials) == 0:
         return []
-    return _unfinished_sweep(data) if len(front) else [why_no_front(data)]
+    return _sweep(data) if len(front) else [why_no_front(data)]
 
 
-def _unfinished_sweep(data: StudyData) -> list[str]:
-    """A line if the budget of a weighted search ended before its last weight."""
+def _sweep(data: StudyData) -> list[str]:
+    """A line if the budget of a weighted search ended before its last weight, or is more than all weights take."""
     settings = data.study.algorithm
     if not isinstance(settings, WeightedSettings) or not data.meta.finished:
         return []
     run, weights = int(data.checkpoint.state.get("run", 0)), len(settings.height_weights)
     if run >= weights:
-        return []
+        share = share_of(settings, data.meta.budget)
+        if len(data.trials) >= data.meta.budget or share <= settings.iterations:
+            return []
+        return [
+            f"of {data.meta.budget} evaluations, {len(data.trials)} were made: each weight's iterations were fixed at "
+            f"{settings.iterations} when the database was made; for {share}, run into a new one (--db), with "
+            "iterations left out of the study file"
+        ]
     return [
         f"the budget of {len(data.trials)} ended at weight {run + 1} of {weights}; all weights need up to "
         f"{sweep_evaluations(settings)}: continue with --evaluations {sweep_evaluations(settings)}"

@@ -26,6 +26,7 @@ from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.remarks import remarks
 from pareto_monoped.study.server.address import Server, schema_for
 from pareto_monoped.study.session import Progress, Session
+from pareto_monoped.study.shared_iterations import shared_anew, shared_as_stored
 from pareto_monoped.study.simulator import (
     Simulator,
     continued_simulator,
@@ -117,6 +118,7 @@ def run(
         threads = workers or default_workers()
         if is_vacant(db):
             lock.acknowledge(0)
+            study = shared_anew(study, evaluations)
             require_functions(study.own_names, own.functions, _source(db))
             simulator = load_simulator(study, workers=threads, executor=executor, calibration=own.calibration)
             algorithm = make_algorithm(study, simulator.coordinates(study), own.algorithm)
@@ -124,6 +126,7 @@ def run(
             data = read_study(db)
         else:
             data = _checked(db, lock)
+            study = shared_as_stored(study, data.study)
             simulator = continued_simulator(
                 data, study, workers=threads, executor=executor, calibration=own.calibration
             )
@@ -269,7 +272,8 @@ def _go_on(
             # A kill at the very end has left a log; opening the study for writing makes it a single file again.
             with Store(db, study, lock=lock):
                 pass
-        return _summary(db, data, data, 0.0)
+        asked = replace(data.meta, budget=max(budget, data.meta.budget))
+        return _summary(db, data, replace(data, meta=asked), 0.0)
     require_functions(study.own_names, own.functions, _source(db))
     refuse_other_functions(data.trials, own.functions, _source(db))
     _refuse_other_results(data, simulator, db)

@@ -3,12 +3,17 @@
 from dataclasses import replace
 
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.algorithm_settings import AlgorithmSettings, WeightedSettings
+from pareto_monoped.study.algorithm_settings import PAPER_ITERATIONS, AlgorithmSettings, WeightedSettings
 
 
 def sweep_evaluations(settings: WeightedSettings) -> int:
     """The most evaluations that all weights together can take; runs that converge early take fewer."""
     return len(settings.height_weights) * settings.population * settings.iterations
+
+
+def share_of(settings: WeightedSettings, evaluations: int) -> int:
+    """Iterations of each weight if all have an equal share of a budget, up to the paper's 200."""
+    return min(PAPER_ITERATIONS, evaluations // (len(settings.height_weights) * settings.population))
 
 
 def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool, source: str) -> AlgorithmSettings:
@@ -27,9 +32,9 @@ def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool,
     if not isinstance(settings, WeightedSettings):
         return settings
     weights = len(settings.height_weights)
-    share = evaluations // (weights * settings.population)
+    share = share_of(settings, evaluations)
     if not given:
-        settings = replace(settings, iterations=max(1, min(settings.iterations, share)))
+        settings = replace(settings, iterations=max(1, share))
     needed = sweep_evaluations(settings)
     if needed <= evaluations:
         return settings

@@ -2,10 +2,11 @@
 
 import pytest
 
+import pareto_monoped as pm
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.definition import load_study
+from pareto_monoped.study.definition import load_study, study_from_dict
 from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.run import run
+from pareto_monoped.study.run import resume, run
 
 WEIGHTED = 'name = "w"\nevaluations = {}\naudit = false\n[algorithm]\nname = "weighted_cmaes"\nheight_weights = {}\n'
 
@@ -46,3 +47,52 @@ def test_a_shared_budget_reaches_the_last_weight_and_a_cut_one_says_where_it_end
     whole = run(study, tmp_path / "w.db")
     assert not any("weight" in line for line in whole.remarks)
     assert read_study(tmp_path / "w.db").trials["height_weight"].tolist() == [0.2] * 16 + [0.5] * 16 + [0.8] * 16
+
+
+def iterations_in(path):
+    return read_study(path).study.algorithm.iterations
+
+
+def test_a_larger_budget_given_to_a_new_database_is_shared_out_and_spent(tmp_path):
+    """The search ended at the budget of its file, without a word."""
+    file, db = written(tmp_path, 48, [0.2, 0.5, 0.8]), tmp_path / "w.db"
+    larger = run(load_study(file), db, evaluations=96)
+    assert (larger.evaluations, larger.stop_reason, iterations_in(db)) == (96, "budget", 4)
+    assert not any("iterations" in line for line in larger.remarks)
+    # The file goes on with its own database, whatever budget it says.
+    assert run(load_study(file), db).evaluations == 96
+    assert run(load_study(written(tmp_path, 72, [0.2, 0.5, 0.8])), db).new_evaluations == 0
+
+
+def test_a_larger_budget_given_to_a_stored_database_says_that_its_iterations_are_fixed(tmp_path):
+    """``resume`` added nothing, and the file was refused for a key that it does not have."""
+    db = tmp_path / "w.db"
+    first = run(load_study(written(tmp_path, 48, [0.2, 0.5, 0.8])), db)
+    assert not any("iterations" in line for line in first.remarks)
+    told = (
+        "of 96 evaluations, 48 were made: each weight's iterations were fixed at 2 when the database was made; for 4, "
+        "run into a new one (--db), with iterations left out of the study file"
+    )
+    for more in (
+        resume(db, evaluations=96),
+        resume(db, evaluations=96),
+        run(load_study(written(tmp_path, 96, [0.2, 0.5, 0.8])), db),
+    ):
+        assert (more.evaluations, more.remarks[0]) == (48, told)
+    with pytest.raises(StudyError, match=r"study\.algorithm\.iterations: 2 -> 3\)"):
+        run(load_study(written(tmp_path, 96, [0.2, 0.5, 0.8], "iterations = 3\n")), db)
+
+
+def test_goals_given_from_python_keep_that_iterations_are_shares(tmp_path):
+    file = written(tmp_path, 48, [0.2, 0.5, 0.8])
+    stored = pm.run(file, tmp_path / "w.db", constraints={"mass_kg": {"max": 9.0}}, evaluations=96)
+    assert len(stored.trials) == 96
+
+
+@pytest.mark.parametrize("more", ["", "iterations = 2\n"])
+def test_iterations_are_never_stored_but_as_a_number(tmp_path, more):
+    """The hash of a study must not know where its iterations come from."""
+    study = load_study(written(tmp_path, 48, [0.2, 0.5, 0.8], more))
+    assert study.shared_iterations == (not more)
+    assert study.as_dict() == load_study(written(tmp_path, 48, [0.2, 0.5, 0.8])).as_dict()
+    assert study == study_from_dict(study.as_dict(), source="test")
