@@ -3,11 +3,18 @@
 Everything in ``__all__`` is for scripts and notebooks and stays as it is within a major version; the rest of the
 package may change. Names are imported when they are first used, so that importing the package costs nothing.
 
+Three tables say what there is: ``VARIABLES`` has a record of each design variable, ``MEASURES`` of each measure of a
+jump, with its unit, meaning and better direction, and ``PAPER_CASES`` the designs of the paper's Table I by name.
+
 Example:
     >>> import pareto_monoped as pm
     >>> jump = pm.simulate(pm.PAPER_CASES["C"].design)
     >>> print(f"{jump.height_m[0]:.2f} m")
     1.05 m
+    >>> print(*(f"{one.name}, {one.lower:g} to {one.upper:g} {one.unit}" for one in pm.VARIABLES[:2]), sep="; ")
+    thigh_length_m, 0.3 to 0.5 m; shank_length_m, 0.3 to 0.5 m
+    >>> [one.name for one in pm.MEASURES if one.unit == "J" and one.direction == "minimise"][:2]
+    ['energy_j', 'energy_hip_j']
 """
 
 from typing import TYPE_CHECKING, Any

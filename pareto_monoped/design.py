@@ -2,6 +2,18 @@
 
 Order and symbols of the first seven are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T]. The
 others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
+
+``VARIABLES`` is a tuple of ``Variable`` records, in the order of the columns of every array of designs. ``PAPER_CASES``
+has a ``PaperCase`` for each row of Table I, by its name.
+
+Example:
+    >>> from pareto_monoped import PAPER_CASES, VARIABLES
+    >>> for one in VARIABLES[-2:]:
+    ...     print(f"{one.name}: {one.meaning}, {one.lower:g} to {one.upper:g} {one.unit}, default {one.default:g}")
+    rest_length_m: rest length of the virtual spring, 1 to 20 m, default 10
+    start_height_m: height of the base above the floor at rest, 0.35 to 0.7 m, default 0.5
+    >>> list(PAPER_CASES), PAPER_CASES["C"].design.thigh_length_m, PAPER_CASES["C"].height_m
+    (['nominal', 'A', 'B', 'C'], 0.49, 0.8)
 """
 
 import math
@@ -95,7 +107,7 @@ VARIABLES: tuple[Variable, ...] = (
         default=BASE_START_HEIGHT_M,
     ),
 )
-"""The records of all design variables, the paper's seven first."""
+"""The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
 """The names of all variables; the order of the columns of every array of designs."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
@@ -313,7 +325,13 @@ class PaperCase:
 
 
 class _Cases(dict[str, PaperCase]):
-    """Cases by name, with an error of ours for an unknown one."""
+    """The rows of the paper's Table I by name, see ``PAPER_CASES``; an unknown name is a ``DesignError``.
+
+    Example:
+        >>> from pareto_monoped import PAPER_CASES
+        >>> [f"{name}: {case.height_m} m for {case.energy_j} J" for name, case in PAPER_CASES.items()][1:3]
+        ['A: 0.743 m for 15.51 J', 'B: 0.771 m for 17.02 J']
+    """
 
     def __missing__(self, name: object) -> PaperCase:
         raise DesignError(unknown_name("case", name, self))
@@ -332,7 +350,8 @@ PAPER_CASES: Mapping[str, PaperCase] = _Cases(
         "C": _case("C", (0.490, 0.360, 6.0, 4.0, 7.9, 2.2, 8.4), 0.800, 15.36, LENGTHS + RATIOS + PAPER_CONTROL),
     }
 )
-"""The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``."""
+"""The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``; each has its ``design``, and the height
+and energy that the authors report."""
 PAPER_MOTOR = "VT8020"
 """The motor of all rows of Table I; the default wherever a motor may be named."""
 RuleSet = Literal["paper", "iso6336"]

@@ -2,6 +2,14 @@
 
 This is the only table of measures. ``jump.evaluate.Evaluations`` and ``jump.audit.Audits`` have one field per measure,
 the database has one column per measure, and the report takes its labels from here.
+
+``MEASURES`` is a tuple of ``Measure`` records, one for each measure of a jump.
+
+Example:
+    >>> from pareto_monoped import MEASURES
+    >>> energy = next(one for one in MEASURES if one.name == "energy_j")
+    >>> energy.unit, energy.direction, energy.text(15.36)
+    ('J', 'minimise', '15.36 J')
 """
 
 import re
@@ -430,7 +438,10 @@ MEASURES: tuple[Measure, ...] = (
         short="agility",
     ),
 )
-"""Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
+"""Every measure of a jump, with its name, unit, meaning and which way is better.
+
+They stand in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns.
+"""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
 
 _PERTURBED = "links moved by 1e-6"

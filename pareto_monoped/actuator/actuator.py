@@ -99,6 +99,13 @@ class Actuator:
     parts: tuple[Part, ...]
     rating: Rating | None = None
 
+    def __repr__(self) -> str:
+        """One line: motor, gearbox, ratio, mass and torque."""
+        return (
+            f"Actuator({self.motor.name!r}, {self.family} {self.gears}, {self.ratio:.4f}:1, {self.mass_kg:.3f} kg, "
+            f"peak {self.peak_torque_n_m:.1f} N m)"
+        )
+
     @property
     def parts_bolted_at_back(self) -> tuple[Part, ...]:
         """The parts if something is bolted to the back: its screws then hold the framed motor instead of its own."""

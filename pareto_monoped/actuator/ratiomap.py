@@ -79,6 +79,11 @@ class MapEntry:
     runner_up: Candidate | None
     families: Mapping[Family, FamilyResult]
 
+    def __repr__(self) -> str:
+        """One line: the interval and its gearbox."""
+        found = "no gearbox" if self.actuator is None else repr(self.actuator)
+        return f"MapEntry([{self.ratio_low:.1f}, {self.ratio_high:.1f}), {found})"
+
     @property
     def ratio_high(self) -> float:
         """Upper end, which belongs to the next interval."""
@@ -116,6 +121,13 @@ class ActuatorMap:
     motor: Motor
     settings: ActuatorSettings
     entries: tuple[MapEntry, ...]
+
+    def __repr__(self) -> str:
+        """One line: the motor, the rules, and how many ratios have a gearbox, of which mass."""
+        masses = [entry.actuator.mass_kg for entry in self.entries if entry.actuator is not None]
+        range_kg = f", {min(masses):.3f} to {max(masses):.3f} kg" if masses else ""
+        counted = f"{len(masses)} of {len(self.entries)} intervals have a gearbox"
+        return f"ActuatorMap({self.motor.name!r}, rules {self.settings.rules!r}, {counted}{range_kg})"
 
     def require_gearbox(self, source: str) -> None:
         """Refuse a motor that has no gearbox at any ratio: nothing can be built or simulated with it.

@@ -90,12 +90,6 @@ def one_design(design: Any, maps: JointMaps) -> Design:
     Raises:
         DesignError: see ``with_motors``; or another number of designs.
     """
-    if not isinstance(design, Design) and not _is_named(design):
-        if isinstance(getattr(design, "design", None), Design):
-            cure = _cure_of_holder(design)
-            raise DesignError(f"design: is of class {type(design).__name__}, must be a Design; {cure}")
-        allowed = "a Design, or a mapping or row of variables"
-        raise DesignError(complaint("design", design, allowed, "give for example PAPER_CASES['C'].design"))
     values = with_motors(design, maps)
     if len(values) != 1:
         raise DesignError(complaint("number of designs", len(values), "1", "give one"))

@@ -34,7 +34,7 @@ from pareto_monoped.robot.build import build_robot as robot_of
 from pareto_monoped.study.counts import count_of
 
 if TYPE_CHECKING:
-    from pandas import DataFrame, Series
+    from pandas import DataFrame
 
 StrPath = str | PathLike[str]
 AnyMotor = Motor | StrPath
@@ -127,7 +127,7 @@ def joint_maps_of(
 
 
 def build_robot(
-    design: "Design | Mapping[str, Any] | Series[Any]",
+    design: "Design | Mapping[str, Any] | DataFrame | ArrayLike",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,
@@ -157,7 +157,7 @@ def build_robot(
 
 
 def simulate(
-    designs: "Design | Mapping[str, Any] | Series[Any] | Sequence[Any] | DataFrame | ArrayLike",
+    designs: "Design | Mapping[str, Any] | Sequence[Any] | DataFrame | ArrayLike",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,
@@ -229,7 +229,7 @@ def jumps_of(
 
 
 def trace(
-    design: "Design | Mapping[str, Any] | Series[Any] | DataFrame | ArrayLike",
+    design: "Design | Mapping[str, Any] | DataFrame | ArrayLike",
     *,
     motor: AnyMotor = PAPER_MOTOR,
     hip_motor: AnyMotor | None = None,

@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from numpy.typing import ArrayLike
+
 from pareto_monoped.api.designs import one_design
 from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
@@ -13,11 +15,11 @@ from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 from pareto_monoped.study.plain import as_list
 
 if TYPE_CHECKING:
-    from pandas import Series
+    from pandas import DataFrame
 
 
 def export(
-    design: "Design | Mapping[str, Any] | Series[Any]",
+    design: "Design | Mapping[str, Any] | DataFrame | ArrayLike",
     folder: StrPath,
     *,
     motor: AnyMotor = PAPER_MOTOR,

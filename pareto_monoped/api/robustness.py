@@ -13,12 +13,12 @@ from pareto_monoped.study.counts import count_of
 from pareto_monoped.study.plain import as_list
 
 if TYPE_CHECKING:
-    from pandas import DataFrame, Series
+    from pandas import DataFrame
 
 
 def robust(
     study: StoredStudy | StrPath,
-    trials: "int | Picked | Sequence[int | Picked] | ArrayLike | Series[Any] | None" = None,
+    trials: int | Picked | Sequence[int | Picked] | ArrayLike | None = None,
     *,
     samples: int | None = None,
     seed: int | None = None,

@@ -76,8 +76,8 @@ def run(
         workers: threads that simulate, all cores if None. It does not change the trials.
         executor: does the jumps in their place, such as ``concurrent.futures.ProcessPoolExecutor``; it does not change
             the trials either.
-        callback: called after each generation with the progress. If it returns True, the run stops there and can be
-            resumed.
+        callback: called after each generation is stored, with the progress. If it returns True, the run ends with the
+            next generation, which is computed by then: it is stored and told of, too. The study can be resumed.
 
     Warns:
         UserWarning: no design is feasible; it says which limits are missed, and by how much.

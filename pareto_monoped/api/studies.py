@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 By = Literal["knee", "tradeoff"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Picked:
     """A design picked from a front.
 
@@ -64,8 +64,12 @@ class Picked:
     row: "Series[Any]"
     why: str
 
+    def __repr__(self) -> str:
+        """One line: the trial and the reason."""
+        return f"Picked(trial={self.trial}, why={self.why!r})"
 
-@dataclass(frozen=True)  # without slots: cached properties need a place to keep their values
+
+@dataclass(frozen=True, eq=False)  # without slots: cached properties need a place to keep their values
 class StoredStudy:
     """A study in its database, finished or still growing; each property reads what was there at ``load_study``.
 
@@ -84,6 +88,12 @@ class StoredStudy:
     path: StudyPlace
     study: "Study"
     data: "StudyData"
+
+    def __repr__(self) -> str:
+        """One line: name, place, trials and objectives."""
+        trials, state = len(self.data.trials), "finished" if self.finished else "not finished"
+        names = ", ".join(self.study.objectives.names)
+        return f"StoredStudy({self.study.name!r}, {str(self.path)!r}, {trials} trials, {state}, objectives {names})"
 
     @cached_property
     def trials(self) -> "DataFrame":

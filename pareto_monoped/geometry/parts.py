@@ -108,7 +108,7 @@ class Ball:
         return tuple(a - b for a, b in zip(whole, self.pocket.integrals(), strict=True))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MassProperties:
     """Mass and its first and second moments about the frame's origin; the sum over parts is that of the whole.
 

@@ -16,7 +16,7 @@ from pareto_monoped.robot.frames import BODIES, Floats, in_body
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Unit:
     """A group of parts of one robot that a body carries as a whole, made from a row of ``units.UNITS``.
 
@@ -34,12 +34,16 @@ class Unit:
     turn: Floats
     z_mm: float
 
+    def __repr__(self) -> str:
+        """One line: the body that carries it and the number of parts."""
+        return f"Unit({self.name!r}, on {self.body!r}, {len(self.parts)} parts)"
+
     def mass_properties(self) -> MassProperties:
         """All parts together, in the body frame."""
         return in_body(total(part.mass_properties() for part in self.parts), self.turn, self.z_mm)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Robot:
     """One robot with every part that has a mass.
 
@@ -55,6 +59,15 @@ class Robot:
     knee: Actuator
     leg: LegDimensions
     units: tuple[Unit, ...]
+
+    def __repr__(self) -> str:
+        """One line: motors, real ratios, link lengths and mass."""
+        design = self.design
+        return (
+            f"Robot(hip {self.hip.motor.name!r} {self.hip.ratio:.4f}:1, knee {self.knee.motor.name!r} "
+            f"{self.knee.ratio:.4f}:1, thigh {design.thigh_length_m:.4g} m, shank {design.shank_length_m:.4g} m, "
+            f"{self.mass_kg:.3f} kg)"
+        )
 
     def body_mass_properties(self) -> Mapping[str, MassProperties]:
         """Each body's parts together, in its body frame (see ``RobotArrays``)."""

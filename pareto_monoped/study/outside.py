@@ -20,7 +20,7 @@ from pareto_monoped.study.scoring import FAILED_VIOLATION, judge, scores
 from pareto_monoped.study.simulator import evaluation_of, load_simulator
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Judged:
     """What n points came to.
 

@@ -29,6 +29,9 @@ _CHECKED = 8
 _SAME = 1e-9
 """Relative difference up to which a value is the stored one: NumPy may round an array of another length otherwise."""
 
+_SAME_NEAR_ZERO = 1e-12
+"""Difference up to which a value near zero is the same; our own choice, above what rounding leaves of a difference."""
+
 
 class Jumps(dict[str, NDArray[Any]]):
     """Name of each variable and measure -> values of n jumps, shape (n,), NaN where the jump failed."""
@@ -62,9 +65,13 @@ class OwnEvaluations(Evaluations):
 
 
 def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -> Callable[..., Evaluations]:
-    """What a study's trials are evaluated with, and its own functions after that."""
+    """What a study's trials are evaluated with, and its own functions after that.
+
+    In the first generation, the functions must give some jumps alone the same values as among the others.
+    """
     if not functions:
         return evaluate
+    unchecked = dict(functions)
 
     def evaluated(designs: ArrayLike, *motors: ArrayLike) -> Evaluations:
         jumps = evaluate(designs, *motors)
@@ -73,6 +80,8 @@ def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -
         table |= dict(zip(NAMES, np.atleast_2d(complete(designs)).T, strict=True))
         failed = ~jumps.ok
         own = {name: np.where(failed, np.nan, called(function, table, failed)) for name, function in functions.items()}
+        for name in [*unchecked] if np.count_nonzero(~failed) > 1 else []:
+            _refuse_mixing(unchecked.pop(name), table, own[name])
         given = {name: getattr(jumps, name) for name in Evaluations.__dataclass_fields__}
         return OwnEvaluations(**given, jumps=jumps, own=own)
 
@@ -103,6 +112,28 @@ def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Fl
     if not np.isfinite(values[~failed]).all():
         raise StudyError(f"{source}: must be finite where the jump did not fail; correct it")
     return values
+
+
+def _refuse_mixing(function: OwnFunction, table: Jumps, values: Floats) -> None:
+    """Refuse a function that takes a jump's value from other jumps, too; asked of the first and the last one.
+
+    Args:
+        function: the own function.
+        table: n jumps.
+        values: of the function, shape (n,); NaN where the jump failed.
+
+    Raises:
+        StudyError: a value of another size than that of the same jump alone.
+    """
+    jumped = np.flatnonzero(np.isfinite(values))
+    for k in (jumped[0], jumped[-1]):
+        alone = Jumps({name: column[k : k + 1] for name, column in table.items()})
+        (value,) = called(function, alone, np.zeros(1, dtype=bool))
+        if not np.isclose(value, values[k], rtol=_SAME, atol=_SAME_NEAR_ZERO):
+            raise StudyError(
+                f"own function {name_of(function)!r}: gives {values[k]:.9g} for a jump among {len(values)} and "
+                f"{value:.9g} for the same jump alone; compute each value from its own jump"
+            )
 
 
 def _has_truth(given: NDArray[Any]) -> bool:

@@ -57,7 +57,7 @@ class MotorChoice:
     motors: tuple[MotorKind, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Space:
     """What is searched, and for what.
 
@@ -84,6 +84,10 @@ class Space:
     objectives: Objectives = HEIGHT_AND_ENERGY
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
     choices: tuple[MotorChoice, ...] = ()
+
+    def __repr__(self) -> str:
+        """One line: what is varied, and for what."""
+        return f"Space({len(self.names)} variables: {', '.join(self.names)}; for {', '.join(self.objectives.names)})"
 
     @property
     def whole(self) -> NDArray[np.bool_]:
@@ -143,7 +147,7 @@ class Space:
         return np.array([len(motor.gears[name]) - 1 for motor in self.choice_for(name).motors], dtype=np.intp)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Proposal:
     """Designs to evaluate.
 
@@ -157,7 +161,7 @@ class Proposal:
     height_weight: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scores:
     """What a search algorithm may know about n evaluated designs.
 
@@ -184,6 +188,11 @@ class Scores:
     values: Floats
     violation: Floats
     constraints: Floats
+
+    def __repr__(self) -> str:
+        """One line: how many designs, how many of them feasible, and the objectives."""
+        feasible = int((self.violation <= 0.0).sum())
+        return f"Scores({len(self.values)} designs, {feasible} feasible, {', '.join(self.objectives.names)})"
 
     def minimised(self) -> Floats:
         """All objectives as minimisation, shape (n, m). Failed jumps get zeros; their violation tells them apart."""

@@ -44,7 +44,7 @@ class Checkpoint:
     state: dict[str, Any]
 
 
-@dataclass(frozen=True, kw_only=True)  # without slots: cached properties need a place to keep their values
+@dataclass(frozen=True, kw_only=True, eq=False)  # without slots: cached properties need a place to keep their values
 class StudyData:
     """All of a study.
 
@@ -69,6 +69,10 @@ class StudyData:
     checkpoint: Checkpoint
     sealed: bool = True
     links: int = 0
+
+    def __repr__(self) -> str:
+        """One line: name, place and how many trials."""
+        return f"StudyData({self.study.name!r}, {str(self.db)!r}, {len(self.trials)} trials)"
 
     @cached_property
     def motors(self) -> "tuple[Motor, ...]":

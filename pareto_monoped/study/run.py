@@ -101,7 +101,8 @@ def run(
         seed: instead of the study's.
         workers: number of threads that simulate, all cores if None. It does not change the trials.
         executor: does the jumps in their place, here or elsewhere; it does not change the trials either.
-        progress: called after each stored generation; the run stops there if it returns True.
+        progress: called after each stored generation. If it returns True, the run ends with the next generation, which
+            is computed by then; it is stored and told of, too.
         notify: called with a line for the user, for example on Ctrl-C.
         own: functions, algorithm and calibration of the user's own.
 
@@ -155,7 +156,8 @@ def resume(
         evaluations: the new total; by default the total of the last run.
         workers: number of threads that simulate, all cores if None.
         executor: does the jumps in their place.
-        progress: called after each stored generation; the run stops there if it returns True.
+        progress: called after each stored generation. If it returns True, the run ends with the next generation, which
+            is computed by then; it is stored and told of, too.
         notify: called with a line for the user.
         own: the functions and the algorithm that the study names, which its database does not hold.
 

@@ -217,7 +217,9 @@ class Session:
         return present
 
     def _report(self, writing: "Future[Progress] | None") -> None:
-        if writing is not None and self._progress(writing.result()) is True:
+        """Tell of a generation that is stored. The next one is computed by then, and is stored even after a halt."""
+        answer = None if writing is None else self._progress(writing.result())
+        if isinstance(answer, bool | np.bool_) and answer:
             self._halted = True
 
 

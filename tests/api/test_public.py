@@ -4,6 +4,7 @@ import ast
 import doctest
 import importlib
 import inspect
+import pydoc
 import subprocess
 import sys
 from pathlib import Path
@@ -68,6 +69,15 @@ def test_every_function_says_what_it_takes_gives_and_raises(name):
         for parameter in inspect.signature(thing).parameters:
             assert parameter in described or len(inspect.signature(thing).parameters) == 1, parameter
     assert "Example:" in text
+
+
+@pytest.mark.parametrize("name", [name for name in pm.__all__ if not callable(getattr(pm, name)) and name.isupper()])
+def test_every_table_is_described_where_help_looks_and_has_an_example(name):
+    """``help`` of a tuple tells of tuples; it tells of the tables for the package and for the module of each."""
+    for module in (pm, importlib.import_module(f"pareto_monoped.{pm._HOME[name]}")):
+        description, _, example = pydoc.render_doc(module, renderer=pydoc.plaintext).partition("Example:")
+        assert f"``{name}``" in description
+        assert name in example.partition("DATA")[0]
 
 
 @pytest.mark.parametrize("home", ["", *pm._HOMES])

@@ -1,5 +1,6 @@
 """Studies that are run from scripts: the trials of the command line, other goals, and a callback that stops."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -51,6 +52,24 @@ def test_a_callback_that_returns_true_stops_the_run_and_resume_ends_it(file, tmp
     assert pm.resume(stopped.path, callback=seen.append).finished
     pm.run(file)
     same(stopped.path, file.with_suffix(".db"))
+
+
+@pytest.mark.parametrize("yes", [True, np.True_, np.float64(3.0) > 2.0])
+def test_a_callback_that_returns_the_true_of_numpy_stops_the_run_after_the_generation_under_way(yes, file, tmp_path):
+    seen = []
+
+    def second(progress):
+        seen.append(progress.evaluations)
+        return yes if len(seen) == 2 else None
+
+    stopped = pm.run(file, tmp_path / "stopped.db", callback=second)
+    assert seen == [20, 40, 60]
+    assert (len(stopped.trials), stopped.finished) == (60, False)
+
+
+@pytest.mark.parametrize("other", [1, "yes", np.array([True, False]), pd.DataFrame(), np.False_])
+def test_a_callback_that_returns_something_else_does_not_stop_the_run(other, file):
+    assert pm.run(file, callback=lambda _: other).finished
 
 
 def test_goals_of_a_call_replace_those_of_the_study(file, tmp_path):

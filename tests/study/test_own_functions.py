@@ -293,3 +293,34 @@ def test_one_limit_in_two_spellings_is_refused(constraints, tmp_path):
     with pytest.raises(StudyError, match=r"^constraints: the max of mass_kg is given twice; drop one$"):
         pm.run(pm.Study.define(name="s", evaluations=10), tmp_path / "s.db", constraints=constraints)
     assert list(tmp_path.iterdir()) == []
+
+
+MIXING = {
+    "the mean": lambda jumps: np.nanmean(jumps["height_m"]) - jumps["height_m"],
+    "the last": lambda jumps: jumps["mass_kg"] - jumps["mass_kg"][-1],
+    "those before": lambda jumps: np.nancumsum(jumps["mass_kg"]),
+    "places": lambda jumps: np.argsort(np.argsort(-jumps["mass_kg"])),
+}
+
+
+@pytest.mark.parametrize("mixing", MIXING.values(), ids=MIXING.keys())
+def test_a_function_that_mixes_jumps_is_refused_in_the_first_generation(mixing, tmp_path):
+    mixing.__name__ = "mixing"
+    words = (
+        r"^own function 'mixing': gives \S+ for a jump among \d+ and \S+ for the same jump alone; compute each value"
+    )
+    with pytest.raises(StudyError, match=words) as caught:
+        pm.run(pm.Study.define(**STUDY), tmp_path / "s.db", objectives=["height_m", mixing])
+    assert "\n" not in str(caught.value)
+    assert len(pm.load_study(tmp_path / "s.db").trials) == 0
+
+
+def test_functions_are_asked_of_single_jumps_in_the_first_generation_only(tmp_path):
+    counts = []
+
+    def counting(jumps):
+        counts.append(len(jumps["mass_kg"]))
+        return jumps["mass_kg"] - 5.0
+
+    pm.run(pm.Study.define(**STUDY), tmp_path / "s.db", constraints=counting)
+    assert counts == [20, 1, 1, 20, 20]
