@@ -1,7 +1,11 @@
 """What a user should hear of a study's result: what keeps it from its front, and which bounds limit the front."""
 
+import math
+
+import numpy as np
 import pandas as pd
 
+from pareto_monoped.measures import Measure, is_own
 from pareto_monoped.study.algorithm_settings import WeightedSettings
 from pareto_monoped.study.at_bounds import bound_lines
 from pareto_monoped.study.infeasible import why_no_front
@@ -32,10 +36,10 @@ def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
 
 
 def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
-    """What keeps a study from its result: no feasible design, or a budget that ended too early."""
+    """What keeps a study from its result: no feasible design, a budget that ended early, or a corner amid the front."""
     if len(data.trials) == 0:
         return []
-    return _sweep(data) if len(front) else [why_no_front(data)]
+    return [*_sweep(data), *_beyond_corner(data, front)] if len(front) else [why_no_front(data)]
 
 
 def _sweep(data: StudyData) -> list[str]:
@@ -57,3 +61,29 @@ def _sweep(data: StudyData) -> list[str]:
         f"the budget of {len(data.trials)} ended at weight {run + 1} of {weights}; all weights need up to "
         f"{sweep_evaluations(settings)}: continue with --evaluations {sweep_evaluations(settings)}"
     ]
+
+
+def _beyond_corner(data: StudyData, front: pd.DataFrame) -> list[str]:
+    """A line if designs of the front are no better than the reference point, with the values that lie behind them."""
+    corner, beyond, cures = data.reference_point, np.full(len(front), False), []
+    for entry, limit in zip(corner.objectives.measures, corner.values, strict=True):
+        sign = -1.0 if entry.direction == "maximise" else 1.0
+        loss = sign * front[entry.name].to_numpy(dtype=np.float64)
+        further = _further(entry, sign, float(loss.max()))
+        if loss.max() >= sign * limit and further is not None:
+            beyond |= loss >= sign * limit
+            cures.append(f"{entry.name} = {further:g}")
+    if not cures:
+        return []
+    return [
+        f"{int(beyond.sum())} of the front's {len(front)} designs are beyond the reference point ({corner.text()}) and "
+        f"add nothing to the hypervolume, nor to a plateau; set {' and '.join(cures)} in [reference_point] of a new "
+        "study"
+    ]
+
+
+def _further(entry: Measure, sign: float, worst: float) -> float | None:
+    """The next number of one digit that is worse than ``worst``, a value times its sign; None if none is allowed."""
+    step = 10.0 ** math.floor(math.log10(abs(worst))) if worst else 1.0
+    further = sign * (math.floor(round(worst / step, 9)) + 1.0) * step
+    return None if further < 0.0 and not is_own(entry.name) else further

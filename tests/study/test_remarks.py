@@ -1,13 +1,20 @@
 """What a user hears of a result: few lines, warnings first, and budgets of weighted searches."""
 
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
 import pytest
 
 import pareto_monoped as pm
 from pareto_monoped.errors import StudyError
 from pareto_monoped.study.definition import load_study, study_from_dict
 from pareto_monoped.study.reader import read_study
+from pareto_monoped.study.remarks import warnings
 from pareto_monoped.study.run import resume, run
 
+STUDIES = Path(__file__).parents[2] / "studies"
 WEIGHTED = 'name = "w"\nevaluations = {}\naudit = false\n[algorithm]\nname = "weighted_cmaes"\nheight_weights = {}\n'
 
 
@@ -96,3 +103,48 @@ def test_iterations_are_never_stored_but_as_a_number(tmp_path, more):
     assert study.shared_iterations == (not more)
     assert study.as_dict() == load_study(written(tmp_path, 48, [0.2, 0.5, 0.8])).as_dict()
     assert study == study_from_dict(study.as_dict(), source="test")
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    path = tmp_path_factory.mktemp("random") / "s.db"
+    settings = {"name": "s", "evaluations": 8, "audit": False, "algorithm": {"name": "random"}}
+    run(study_from_dict(settings, source="test"), path)
+    return read_study(path)
+
+
+@pytest.mark.parametrize(
+    ("heights_m", "energies_j", "told"),
+    [
+        ([0.6, 1.0, 1.2], [20.0, 99.9, 99.99], ""),
+        ([0.6, 1.0, 1.2], [20.0, 100.0, 168.0], "2 of the front's 3 .* set energy_j = 200 in "),
+        ([0.3, 1.0, 1.2], [20.0, 50.0, 60.0], "1 of the front's 3 .* set height_m = 0.2 in "),
+        ([0.5, 1.0, 1.2], [20.0, 50.0, 200.0], "2 of the front's 3 .* set height_m = 0.4 and energy_j = 300 in "),
+    ],
+)
+def test_designs_beyond_the_reference_point_are_counted_with_the_values_to_set(stored, heights_m, energies_j, told):
+    """They added nothing to the hypervolume, and nobody was told."""
+    front = pd.DataFrame({"height_m": heights_m, "energy_j": energies_j})
+    lines = warnings(stored, front)
+    assert len(lines) == bool(told)
+    assert re.match(told, "".join(lines))
+    if not told:
+        return
+    cure = re.search(r"set (.*) in", lines[0])[1].split(" and ")
+    corner = {name: float(value) for name, value in (pair.split(" = ") for pair in cure)}
+    further = study_from_dict(stored.study.as_dict() | {"reference_point": corner}, source="test")
+    assert warnings(replace(stored, study=further), front) == []
+
+
+def test_an_objective_whose_corner_cannot_be_further_is_not_told(stored):
+    """No share can be less than 0, where its corner is."""
+    objectives = {"objectives": ["height_m", "efficiency"], "reference_point": {}}
+    study = study_from_dict(stored.study.as_dict() | objectives, source="test")
+    front = pd.DataFrame({"height_m": [0.6, 0.8], "efficiency": [0.0, 0.5]})
+    assert warnings(replace(stored, study=study), front) == []
+
+
+def test_the_study_of_any_motor_has_the_corner_of_its_most_powerful_motors():
+    """Its highest jumps were beyond the default of 100 J."""
+    corners = {name: load_study(STUDIES / f"{name}.toml").reference_point for name in ("any_motor", "motor_u12")}
+    assert corners["any_motor"] == corners["motor_u12"]
