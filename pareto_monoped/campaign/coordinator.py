@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Stored, is_ended, stored_state
 from pareto_monoped.campaign.processes import GRACE_S, WorkerProcess, dismiss, speakers
 from pareto_monoped.campaign.worker import Advanced, Ended, Failed, Noted, Said, Task
+from pareto_monoped.compute.threads import cores as cores_here
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.lock import holder
 
@@ -16,6 +17,9 @@ MOST_DEATHS = 2
 WORTH_S = 10.0
 """Time left above which a study is stopped and continued with more threads: our own choice, ten times what it takes."""
 _LISTEN_S = 0.1
+_SAME_S = 30.0
+"""Within which the same line about scheduler or workers is of the same event. Our own choice: studies hear of a worker
+that was killed within a second of each other, and of one that hangs once they have waited for it."""
 _HELD_S = 3.0
 """How long to wait for the workers of a coordinator that was killed a moment ago: our own choice."""
 
@@ -86,7 +90,7 @@ Changed = Callable[[Standing], object]
 def run_campaign(
     standings: Sequence[Standing],
     *,
-    cores: int,
+    cores: int | None = None,
     scheduler: str | None = None,
     changed: Changed,
     notify: Callable[[str], None],
@@ -97,12 +101,23 @@ def run_campaign(
 
     Args:
         standings: of the studies, see ``standings_of``; they are brought up to date.
-        cores: threads of all studies together.
-        scheduler: address of a Dask scheduler whose workers simulate; then so many studies run at a time.
+        cores: threads of all studies together, or with ``scheduler`` how many run at a time; None: as many as this
+            machine has cores, or the scheduler's workers threads.
+        scheduler: address of a Dask scheduler whose workers simulate.
         changed: called when a study has begun, stored a generation, or ended.
         notify: called with a line for the user.
+
+    Raises:
+        InputError: the address is none, or Dask is not installed.
+        WorkerError: no scheduler answers there; no study has begun.
     """
-    return _Coordinator(cores, scheduler, changed, notify).run([one for one in standings if _is_to_run(one)])
+    to_run = [one for one in standings if _is_to_run(one)]
+    if scheduler is not None and to_run:
+        from pareto_monoped.compute.cluster import threads_of
+
+        there = threads_of(scheduler)  # also where it is not needed: all studies would fail one by one
+        cores = cores or there
+    return _Coordinator(cores or cores_here(), scheduler, changed, notify).run(to_run)
 
 
 def standings_of(places: Sequence[Place]) -> list[Standing]:
@@ -136,6 +151,8 @@ class _Coordinator:
     jobs: list[_Job] = field(default_factory=list)
     idle: list[WorkerProcess] = field(default_factory=list)
     slots: int = 1
+    told_s: dict[str, float] = field(default_factory=dict)
+    """When a line about scheduler or workers was told."""
 
     def run(self, standings: Sequence[Standing]) -> bool:
         """Run all of them; returns whether none was left out because of an interrupt."""
@@ -211,12 +228,21 @@ class _Coordinator:
                 standing.new_evaluations = said.evaluations - job.before
                 standing.per_second, standing.seconds_left = said.per_second, said.seconds_left
                 self.changed(standing)
+            case Noted() if said.shared:
+                self._tell_once(said.line)
             case Noted() if standing.evaluations < standing.budget:  # else of the audit, which the state tells
                 self.notify(f"{standing.name}: {said.line}")
             case Ended() | Failed():
                 self._end(job, said)
             case None:
                 self._bury(job)
+
+    def _tell_once(self, line: str) -> None:
+        """Tell what every study says of the same scheduler and workers, once."""
+        now_s = time.monotonic()
+        if now_s - self.told_s.get(line, -_SAME_S) >= _SAME_S:
+            self.notify(line)
+            self.told_s[line] = now_s
 
     def _end(self, job: _Job, said: Said) -> None:
         standing, again = job.standing, job.again_with

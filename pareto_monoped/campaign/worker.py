@@ -10,7 +10,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -53,9 +53,15 @@ class Advanced:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Noted:
-    """A study has something to say to the user."""
+    """A study has something to say to the user.
+
+    Attributes:
+        line: for the user.
+        shared: whether it is about scheduler and workers, of which every study hears the same.
+    """
 
     line: str
+    shared: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,8 +143,13 @@ def _done(task: Task, connection: Connection, stop: threading.Event) -> Ended | 
     def note(line: str) -> None:
         connection.send(Noted(line=line))
 
+    def note_of_workers(line: str) -> None:
+        # The crew that says it does its work on, whether somebody still listens or not.
+        with suppress(OSError):
+            connection.send(Noted(line=line, shared=True))
+
     try:
-        with _simulating(task, note) as executor:
+        with _simulating(task, note_of_workers) as executor:
             summary = run(task.study, task.db, workers=task.threads, executor=executor, progress=advance, notify=note)
     except (BrokenPipeError, ConnectionResetError):
         os._exit(1)

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     "--workers",
     type=click.IntRange(1, 1024),
     metavar="N",
-    help="Number of threads of all studies together, or of studies at a time with --scheduler.  [default: all cores]",
+    help="Number of threads of all studies together, or of studies at a time with --scheduler.  [default: all cores, "
+    "or all threads of the scheduler's workers]",
 )
 @scheduler_option
 @click.option("--status", is_flag=True, help="Run nothing: only show how the studies stand.")
@@ -68,7 +69,6 @@ def campaign(
     from pareto_monoped.cli.campaign_table import as_values, counted, print_table, reports, studies
     from pareto_monoped.extras import require_extra
     from pareto_monoped.files import refuse_database
-    from pareto_monoped.study.run import default_workers
 
     if scheduler is not None:
         require_extra("cluster", "--scheduler")
@@ -86,9 +86,7 @@ def campaign(
             places = places_of(grid, place)
             standings = standings_of(places)
             with reports(standings, as_json=as_json) as (changed, notify):
-                complete = run_campaign(
-                    standings, cores=workers or default_workers(), scheduler=scheduler, changed=changed, notify=notify
-                )
+                complete = run_campaign(standings, cores=workers, scheduler=scheduler, changed=changed, notify=notify)
     if as_json:
         echo(json.dumps({"event": "end", "studies": [as_values(one) for one in standings]}))
     else:

@@ -8,11 +8,12 @@ import threading
 import time
 from collections.abc import Mapping
 from concurrent.futures import CancelledError, Future
-from contextlib import suppress
+from contextlib import closing, suppress
+from ssl import SSLError
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.compute.staff import Member
-from pareto_monoped.errors import WorkerError
+from pareto_monoped.errors import InputError, WorkerError
 from pareto_monoped.extras import require_extra
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class DaskWorkers:
         address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
 
     Raises:
-        InputError: Dask is not installed here.
+        InputError: Dask is not installed here, the text is no address, or it asks for TLS without certificates.
         WorkerError: no scheduler answers.
     """
 
@@ -47,8 +48,10 @@ class DaskWorkers:
         self.label = f"scheduler {address}"
         self._address = address
         require_extra("cluster", self.label)
-        # What goes wrong is said in our own words, once.
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        _refuse_no_address(address)
+        # What goes wrong is said in our own words, once. Dask sets levels of its own when it is imported, as it now is.
+        for name in ("distributed", "distributed.client"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         self._client = self._first_connection()
         self._members: dict[str, Member] = {}
         self._state = _NO_WORKER
@@ -64,6 +67,17 @@ class DaskWorkers:
         """Why none may be there."""
         broken = self._client.status != "running" and self._state == _NO_WORKER
         return "does not answer (the connection has ended)" if broken else self._state
+
+    def threads(self) -> int:
+        """Number of threads of all workers together at this moment.
+
+        Raises:
+            WorkerError: the scheduler does not answer.
+        """
+        try:
+            return sum(self._ask().values())
+        except Exception as problem:  # see ``_listen``
+            raise WorkerError(f"{self.label}: does not answer ({_words(problem)}); {self.cure}") from None
 
     def is_loss(self, problem: BaseException) -> bool:
         """Whether a task ended because worker, scheduler or connection did."""
@@ -89,9 +103,14 @@ class DaskWorkers:
         while True:
             try:
                 return self._connected()
-            except (OSError, ValueError) as error:
+            except (OSError, TypeError, ValueError) as error:
+                if self._address.startswith(_ENCRYPTED) and isinstance(error, TypeError | FileNotFoundError | SSLError):
+                    raise InputError(
+                        f"{self.label}: its TLS certificates are missing or cannot be used ({_words(error)}); set "
+                        "distributed.comm.tls.ca-file, .client.cert and .client.key in Dask's configuration"
+                    ) from None
                 # A relay, such as a tunnel of SSH, breaks a connection at once where the scheduler is about to start.
-                if time.monotonic() > end_s or isinstance(error, ValueError):
+                if time.monotonic() > end_s or not isinstance(error, OSError):
                     raise WorkerError(
                         f"{self.label}: does not answer within {_CONNECT_S:.0f} s ({_words(error)}); check the "
                         "address, or start it with: dask scheduler"
@@ -111,9 +130,19 @@ class DaskWorkers:
         import dask
         from distributed import Client
 
+        class Kept(Client):  # type: ignore[misc]  # Dask tells no types
+            """A client that nobody but ``close`` closes.
+
+            When Dask's own is forgotten it closes itself, in the thread in which the garbage collector happens to run;
+            where that is just starting the next client, it waits for a lock that it holds itself.
+            """
+
+            def __del__(self) -> None:
+                """Nothing."""
+
         try:
             with dask.config.set({"distributed.comm.retry.count": 3, "distributed.comm.timeouts.connect": "10s"}):
-                client = Client(self._address, timeout=_CONNECT_S, set_as_default=False)
+                client = Kept(self._address, timeout=_CONNECT_S, set_as_default=False)
         except Exception as problem:  # raised again where somebody waits for it
             if found.set_running_or_notify_cancel():
                 found.set_exception(problem)
@@ -130,9 +159,7 @@ class DaskWorkers:
                 if self._client.status == "closed":
                     self._members = {}  # their executors are of the connection that is no more
                     self._client = self._connected()
-                threads: Mapping[str, int] = self._client.sync(
-                    self._client.scheduler.ncores, callback_timeout=_ANSWER_S
-                )
+                threads = self._ask()
             except Exception as problem:  # Dask, tornado and the operating system each have their own
                 cut = self._client.status == "running" and time.monotonic() - heard_s < _SILENT_S
                 if not cut:
@@ -141,6 +168,11 @@ class DaskWorkers:
             heard_s = time.monotonic()
             self._members = {name: self._member(name, count) for name, count in _named(threads).items()}
             self._state = _NO_WORKER
+
+    def _ask(self) -> Mapping[str, int]:
+        """Number of threads by address of each worker, as the scheduler now answers."""
+        threads: Mapping[str, int] = self._client.sync(self._client.scheduler.ncores, callback_timeout=_ANSWER_S)
+        return threads
 
     def _member(self, name: str, threads: int) -> Member:
         known = self._members.get(name)
@@ -151,6 +183,36 @@ class DaskWorkers:
         return Member(name=name, slots=threads, executor=executor)
 
 
+def threads_of(address: str) -> int:
+    """Number of threads of a scheduler's workers at this moment; 0 while none has come.
+
+    Args:
+        address: of the scheduler.
+
+    Raises:
+        InputError, WorkerError: see ``DaskWorkers``.
+    """
+    with closing(DaskWorkers(address)) as workers:
+        return workers.threads()
+
+
+def _refuse_no_address(address: str) -> None:
+    """Refuse at once what cannot be an address, for which Dask would be asked again and again.
+
+    Raises:
+        InputError: it is none.
+    """
+    from distributed.comm.addressing import get_address_host_port
+
+    try:
+        host, port = get_address_host_port(address, strict=False)
+    except ValueError:
+        host, port = "", 0
+    if not host or not 0 < port < 65536:
+        raise InputError(f"scheduler {address!r}: is no address of a scheduler; give tcp://HOST:PORT")
+
+
+_ENCRYPTED = ("tls://", "wss://")
 _WORKER = "worker "
 
 

@@ -77,7 +77,7 @@ class Crew(Executor):
         tell: called with a line for the user.
         limits: how long to wait for tasks and workers.
         seat: crews that share workers, such as those of a campaign's studies, have different ones: among workers with
-            equally little to do, each prefers another.
+            equally little to do, each prefers another, or another thread of the same.
     """
 
     def __init__(
@@ -267,7 +267,10 @@ class Crew(Executor):
     def _give(self) -> None:
         """Give what waits to who has least to do; what is late also to who has nothing to do."""
         able = sorted(self._able(), key=lambda one: one.member.name)
-        first = self._seat % max(1, len(able))
+        slots = [post.member.slots for post in able]
+        # As many seats per worker as it has threads, one of each worker first.
+        seats = [k for turn in range(max(slots, default=0)) for k, count in enumerate(slots) if turn < count]
+        first = seats[self._seat % len(seats)] if seats else 0
         own_first = able[first:] + able[:first]
         while able and self._waiting:
             post = min(own_first, key=lambda one: len(one.given) / one.member.slots)
@@ -313,12 +316,22 @@ class Crew(Executor):
         elif self._stillborn >= _STILLBORN:
             self._fail(WorkerError(f"{label}: {self._stillborn} ended before they did anything; {self._staff.cure}"))
         elif waited_s > self._limits.absent_s and not coming:
-            self._fail(
-                WorkerError(f"{label}: {self._staff.state()}, for {self._limits.absent_s:.0f} s; {self._staff.cure}")
-            )
+            self._fail(WorkerError(f"{label}: {self._absence()}, for {self._limits.absent_s:.0f} s; {self._cure()}"))
         elif waited_s > _PATIENT_S and not coming and not self._said_alone:
             self._said_alone = True
-            self._tell(f"{label}: {self._staff.state()}; waiting up to {self._limits.absent_s:.0f} s")
+            self._tell(f"{label}: {self._absence()}; waiting up to {self._limits.absent_s:.0f} s")
+
+    def _absence(self) -> str:
+        """Why nobody works although nobody is coming: those who are there do not answer, or nobody is there."""
+        count = len(self._posts)
+        if not count:
+            return self._staff.state()
+        return "its only worker does not answer" if count == 1 else f"none of its {count} workers answers"
+
+    def _cure(self) -> str:
+        if not self._posts:
+            return self._staff.cure
+        return "end what hangs and start it again, then give the same command again"
 
     def _fail(self, problem: Exception) -> None:
         for task in self._open():

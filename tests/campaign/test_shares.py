@@ -227,3 +227,38 @@ def test_a_worker_that_does_not_stop_after_an_interrupt_is_killed(several, monke
     assert [(one.stopped, one.killed) for one in made_workers] == [(1, 1)]
     assert (several[0].state, several[0].threads) == ("unfinished", 0)
     assert told == ["interrupted: ending after these generations; press Ctrl-C again to end at once"]
+
+
+class Saying:
+    """A worker that says one thing after the other."""
+
+    def __init__(self, *said):
+        self.left = list(said)
+
+    def said(self):
+        return self.left.pop(0)
+
+
+def test_what_befalls_the_workers_of_a_scheduler_is_told_once_and_during_audits_too(several, monkeypatch):
+    """Each study said so of the same worker, and none once it had all its trials."""
+    told, now_s = [], [100.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now_s[0])
+    made = _Coordinator(2, "tcp://x:1", lambda _: None, told.append)
+    auditing = Noted(line="auditing 9 designs of the front")
+    gone = Noted(line="worker a has gone", shared=True)
+    jobs = [
+        _Job(standing=one, worker=Saying(gone, auditing, gone, Noted(line="of this study")), before=0, seat=0)
+        for one in several[:2]
+    ]
+    monkeypatch.setattr(jobs[0].standing, "evaluations", jobs[0].standing.budget)
+    monkeypatch.setattr(jobs[1].standing, "evaluations", 0)
+    for _ in range(2):
+        for job in jobs:
+            made._hear(job)
+    assert told == ["worker a has gone", f"{several[1].name}: auditing 9 designs of the front"]
+    told.clear()
+    now_s[0] += 100.0
+    for _ in range(2):
+        for job in jobs:
+            made._hear(job)
+    assert told == ["worker a has gone", f"{several[1].name}: of this study"]

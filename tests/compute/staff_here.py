@@ -13,8 +13,8 @@ class Worker(Executor):
         given: functions of its tasks, the greeting first.
     """
 
-    def __init__(self, *, later=(), lost=()):
-        self.later, self.lost = later, lost
+    def __init__(self, *, later=(), lost=(), slots=None):
+        self.later, self.lost, self.slots = later, lost, slots
         self.given, self.kept = [], []
 
     def submit(self, function, *arguments):
@@ -58,7 +58,7 @@ class StaffHere:
 
     def present(self):
         return {
-            name: Member(name=name, executor=worker, threads=3, slots=self.slots)
+            name: Member(name=name, executor=worker, threads=3, slots=worker.slots or self.slots)
             for name, worker in dict(self.workers).items()
         }
 

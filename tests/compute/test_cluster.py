@@ -3,6 +3,8 @@
 import shutil
 import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
 from contextlib import contextmanager
@@ -10,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.compute.cluster import DaskWorkers
+from pareto_monoped.compute.cluster import DaskWorkers, threads_of
 from pareto_monoped.compute.crew import Crew
 from pareto_monoped.compute.staff import Limits
-from pareto_monoped.errors import WorkerError
+from pareto_monoped.errors import InputError, WorkerError
 from pareto_monoped.jump.peers import cluster
 from tests.compute import tasks
 from tests.compute.dask_here import ROOT, DaskHere, free_port, until
@@ -144,6 +146,62 @@ def test_after_a_connection_has_ended_workers_have_executors_of_the_next_one(tmp
         finally:
             proxy.broken = False
             staff.close()
+
+
+@pytest.mark.parametrize("text", ["foo", "", "nonsense://x", "tcp://foo", "tcp://:8786", "host:port", "tcp://host:0"])
+def test_what_is_no_address_is_refused_at_once(text):
+    """Dask was asked for 10 s, and the text was said not to answer."""
+    with pytest.raises(InputError) as caught:
+        DaskWorkers(text)
+    assert str(caught.value) == f"scheduler {text!r}: is no address of a scheduler; give tcp://HOST:PORT"
+
+
+@pytest.mark.parametrize("settings", [{}, {"distributed.comm.tls.ca-file": "/nowhere/ca.pem"}])
+def test_tls_without_its_certificates_is_told_which_settings_it_needs(settings):
+    """It was an unexpected TypeError."""
+    import dask
+
+    with dask.config.set(settings), pytest.raises(InputError) as caught:
+        DaskWorkers(f"tls://127.0.0.1:{free_port()}")
+    message = str(caught.value)
+    assert "\n" not in message
+    assert "TLS certificates are missing or cannot be used" in message
+    assert "distributed.comm.tls.ca-file, .client.cert and .client.key" in message
+
+
+def test_dask_itself_writes_nothing(two):
+    """Its own levels, which it sets when it is imported, took the place of ours."""
+    script = (
+        "import logging, sys; from pareto_monoped.compute.cluster import threads_of; threads_of(sys.argv[1])\n"
+        "for name in ('distributed', 'distributed.client'): logging.getLogger(name).error('of Dask')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, two.address], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_forgotten_client_does_not_stop_the_next_one_for_ever(tmp_path):
+    """It closed itself wherever the garbage collector found it, also while that thread held the lock for starting."""
+    from distributed.utils import LoopRunner
+
+    with DaskHere(tmp_path) as here:
+        staff = DaskWorkers(here.address)
+        try:
+            with LoopRunner._lock:
+                forgetting = threading.Thread(target=staff._client.__del__, daemon=True)
+                forgetting.start()
+                forgetting.join(10.0)
+                assert not forgetting.is_alive()
+        finally:
+            staff.close()
+
+
+def test_the_threads_of_all_workers_are_counted(tmp_path):
+    with DaskHere(tmp_path) as here:
+        assert threads_of(here.address) == 0
+        here.workers += [here.add(), here.add(threads=2)]
+        until(lambda: threads_of(here.address) == 3)
 
 
 def test_a_worker_with_two_threads_has_two_tasks_at_a_time(tmp_path):

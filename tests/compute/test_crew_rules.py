@@ -66,6 +66,35 @@ def test_crews_with_different_seats_prefer_different_workers():
     assert given == ["one", "three", "two", "one"]
 
 
+def test_a_worker_with_more_threads_is_preferred_by_more_seats():
+    given = []
+    for seat in range(5):
+        workers = {"a": Worker(later=(slow,)), "b": Worker(later=(slow,), slots=3)}
+        made = Crew(StaffHere(workers), greeting=hello, check=lambda _: None, seat=seat)
+        until(lambda here=workers: all(worker.given for worker in here.values()))
+        until(lambda here=made: len(here._able()) == 2)
+        first = made.submit(slow)
+        until(lambda here=workers: any(worker.kept for worker in here.values()))
+        given += [name for name, worker in workers.items() if worker.kept]
+        for worker in workers.values():
+            worker.tell()
+        assert first.result(timeout=30) == "slow"
+        made.shutdown()
+    assert given == ["a", "b", "b", "b", "a"]
+
+
+@pytest.mark.parametrize(("count", "words"), [(1, "its only worker does not answer"), (2, "none of its 2 workers ans")])
+def test_workers_that_all_hang_are_not_said_to_be_absent(count, words):
+    """It was "has no worker; start scheduler and workers"."""
+    workers = {str(number): Worker(later=(slow,)) for number in range(count)}
+    with crew(StaffHere(workers), task_s=0.2, times=0.0, absent_s=2.5) as (made, told):
+        problem = made.submit(slow).exception(timeout=60)
+    assert isinstance(problem, WorkerError)
+    assert str(problem).startswith(f"staff here: {words}")
+    assert str(problem).endswith("end what hangs and start it again, then give the same command again")
+    assert words in told[-1]
+
+
 def test_a_worker_whose_greeting_fails_is_refused():
     def unknown(threads):
         raise AttributeError("no such module")
