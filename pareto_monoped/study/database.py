@@ -139,10 +139,7 @@ def _reading_there(server: Server) -> Iterator[Connection]:
         try:
             connection.execute("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY")
             if not connection.objects():
-                raise DatabaseError(
-                    f"study database {str(server)!r}: no such study on the server; check the schema, or run a study "
-                    "first"
-                )
+                raise connection.nothing_there(server)
             check(connection, server)
             yield connection
         finally:

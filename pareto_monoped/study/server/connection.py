@@ -177,6 +177,19 @@ class ServerConnection:
         """Kind and name of everything in the schema that a study may have or must not have."""
         return self._session.execute(_OBJECTS).fetchall()
 
+    def nothing_there(self, server: Server) -> DatabaseError:
+        """The error for a schema of which nothing is seen: it does not exist, is empty, or may not be looked into."""
+        row = self._session.execute(_RIGHTS, (server.schema,)).fetchone()
+        if row is None or row[0]:
+            words = "no such study on the server; check the schema, or run a study first"
+        else:
+            schema, user, owner = row[1:]
+            words = (
+                f"its user {user} has no right to look into it; ask {owner} for GRANT USAGE ON SCHEMA {schema} TO "
+                f"{user}, and for GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO {user}"
+            )
+        return DatabaseError(f"study database {str(server)!r}: {words}")
+
     def columns(self, table: str) -> list[str]:
         """Names of a table's columns."""
         rows = self._session.execute(
@@ -209,6 +222,10 @@ class ServerConnection:
         self._session.close()
 
 
+_RIGHTS = """
+SELECT has_schema_privilege(oid, 'USAGE'), quote_ident(nspname), quote_ident(current_user),
+quote_ident(pg_get_userbyid(nspowner)) FROM pg_namespace WHERE nspname = %s
+"""
 _OBJECTS = """
 SELECT CASE WHEN relkind IN ('r', 'p') THEN 'table' ELSE 'view' END, relname FROM pg_class
 WHERE relnamespace = current_schema()::regnamespace AND relkind IN ('r', 'p', 'v', 'm', 'f')

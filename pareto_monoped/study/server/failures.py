@@ -29,8 +29,13 @@ _AT_THE_DOOR = {
     "no password supplied": "the server asks for a password; give it in PGPASSWORD or ~/.pgpass",
     r'role ".*" does not exist': "the server has no such user; correct the user, or make it with createuser",
     r'database ".*" does not exist': "the server has no such database; correct its name, or make it with createdb",
-    "no pg_hba.conf entry|authentication failed": "the server refuses us ({text}); ask its owner to let us in",
+    "pg_hba.conf|authentication failed": "the server refuses us ({text}); ask its owner to let us in",
     "too many (clients|connections)": _STATES["53300"][1],
+    'invalid .*"': "its address cannot be used ({text}); correct it",
+    "certificate|private key|sslmode|SSL was required|GSSAPI": (
+        "no encrypted connection can be made ({text}); correct sslmode, sslrootcert, sslcert or sslkey in the address, "
+        "or the files that they name"
+    ),
 }
 """What a connection is refused with, for which libpq gives no state, in English as servers mostly speak."""
 
@@ -69,7 +74,7 @@ def said(error: psycopg.Error) -> str:
     """The first message of an error, on one line; libpq repeats itself for each address of a host."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     words = lines[0] if lines else type(error).__name__
-    return words.removeprefix("connection failed: ").rstrip(":")
+    return words.removeprefix("connection failed: ").removeprefix("connection is bad: ").rstrip(":")
 
 
 @contextmanager

@@ -40,7 +40,8 @@ class Cluster:
             os.chown(self.folder, user.pw_uid, user.pw_gid)
             self._as = {"user": user.pw_uid, "group": user.pw_gid, "extra_groups": []}
         self._call("initdb", "-D", self.folder / "data", "-U", OWNER, "-A", "trust", "-E", "UTF8", "--no-sync")
-        (self.folder / "data" / "pg_hba.conf").write_text("local all guarded scram-sha-256\nlocal all all trust\n")
+        rules = ("guarded scram-sha-256", "banned reject", "all trust")
+        (self.folder / "data" / "pg_hba.conf").write_text("".join(f"local all {rule}\n" for rule in rules))
         self.start()
         self.sql("CREATE DATABASE team", database="postgres")
 

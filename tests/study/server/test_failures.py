@@ -1,8 +1,10 @@
 """What goes wrong between a study and its server is one line with a cure, and without a password."""
 
 import itertools
+import socket
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -114,6 +116,62 @@ def test_an_address_without_schema_counts_the_studies_that_it_does_not_name(clus
     names = str(caught.value).partition(", one of ")[2].removesuffix(words).split(", ")
     assert len(names) == there - unnamed
     assert not any(" other" in name for name in names)
+
+
+def test_a_study_that_its_owner_has_not_opened_to_a_role_is_not_said_to_be_missing(cluster, place, address):
+    """It was "no such study on the server; check the schema, or run a study first"."""
+    made_database(place)
+    cluster.sql("CREATE ROLE colleague LOGIN")
+    theirs = place_of(address.replace("//owner@", "//colleague@"))
+    grants = [
+        f"GRANT USAGE ON SCHEMA {place.schema} TO colleague",
+        f"GRANT SELECT ON ALL TABLES IN SCHEMA {place.schema} TO colleague",
+    ]
+    refused(DatabaseError, theirs, "no right to look into it; ask owner for", *grants)
+    with pytest.raises(DatabaseError, match=grants[0]):
+        run(made_study(), theirs)
+    cluster.sql(grants[0])
+    refused(DatabaseError, theirs, "is not allowed to us")
+    cluster.sql(grants[1])
+    assert len(read_study(theirs).trials) == 6
+
+
+def test_a_role_that_the_server_rejects(cluster):
+    """It was "the server does not answer; start it"."""
+    cluster.sql("CREATE ROLE banned LOGIN")
+    refused(
+        DatabaseError, place_of(cluster.address("s", user="banned")), "the server refuses us", "pg_hba.conf rejects"
+    )
+
+
+@pytest.mark.parametrize("more", ["sslmode=none", "port=nowhere", "connect_timeout=soon"])
+def test_a_setting_with_an_impossible_value_is_no_silent_server(cluster, more):
+    refused(DatabaseError, place_of(cluster.address("s", more=more)), "its address cannot be used (", "correct")
+
+
+@pytest.mark.parametrize(
+    ("answer", "more", "words"),
+    [
+        (b"S", "sslmode=verify-full&sslrootcert=/nowhere/ca.pem", 'root certificate file "/nowhere/ca.pem" does not'),
+        (b"N", "sslmode=require", "server does not support SSL, but SSL was required"),
+    ],
+)
+def test_encryption_that_cannot_be_had_is_no_silent_server(answer, more, words):
+    """What answers here knows of PostgreSQL only the answer to the first question, whether it encrypts."""
+
+    def say(listening):
+        talking, _ = listening.accept()
+        with talking:
+            talking.recv(8)
+            talking.sendall(answer)
+            talking.recv(8)
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        answering = threading.Thread(target=say, args=(listening,))
+        answering.start()
+        address = f"postgresql://ann:S3cret@127.0.0.1:{listening.getsockname()[1]}/team?{more}&schema=s"
+        refused(DatabaseError, place_of(address), "no encrypted connection", words, "correct sslmode, sslrootcert")
+        answering.join()
 
 
 def test_an_empty_schema_may_be_there_before(cluster, place):
