@@ -131,7 +131,7 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
     Args:
         kind: the dataclass.
         values: the fields by name, nested for nested dataclasses.
-        source: where the values come from; begins the error message, such as ``"motor file my.toml"``.
+        source: where the values come from; begins the error message, such as ``"motor file 'my.toml'"``.
         error: the kind of ``InputError`` to raise.
 
     Raises:

@@ -4,6 +4,7 @@ No output replaces a study, and none replaces a file of another kind unless it i
 """
 
 import errno
+import os
 import secrets
 import stat
 from collections.abc import Iterator
@@ -99,6 +100,18 @@ def refuse_database(path: Path) -> None:
         raise OutputError(f"output {str(path)!r}: {what}, which no output replaces; give another name")
 
 
+def require_writable(path: Path) -> None:
+    """Refuse an output that could not be written, before the work of which it is to tell.
+
+    Raises:
+        OutputError: its folder is missing or cannot be written to, or see ``refuse_database``.
+        DiskError: the disk is full or fails.
+    """
+    refuse_database(path)
+    with temporary_beside(path):
+        pass
+
+
 def _beginning(path: Path) -> bytes:
     try:
         if not path.is_file():  # reading a pipe would wait, or take what others should read
@@ -164,6 +177,18 @@ def cure_of(error: OSError) -> str:
     return (_FAILURES | _REFUSALS).get(number, "allow access to it, or give another")
 
 
+ADRIFT = "working directory: has been deleted; change to a folder that exists"
+
+
+def is_adrift() -> bool:
+    """Whether the working directory is no more: names of files then lead nowhere, and no process can be started."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return True
+    return False
+
+
 def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError:
     """The error for a file or folder that the system does not let us write.
 
@@ -172,6 +197,8 @@ def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError
         error: what the system said.
         cure: what helps, unless the system itself is full or fails.
     """
+    if error.errno == errno.ENOENT and is_adrift():
+        return OutputError(ADRIFT)
     kind = DiskError if is_failure(error) else OutputError
     if is_failure(error) or error.errno == errno.ENAMETOOLONG:
         cure = cure_of(error)

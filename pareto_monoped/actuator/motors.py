@@ -54,9 +54,9 @@ def _shipped_name(name_or_path: str) -> str | None:
 
 
 def motor_source(name_or_path: str) -> str:
-    """What error messages call a motor: ``motor U8`` or ``motor file my.toml``."""
+    """What error messages call a motor: ``motor U8`` or ``motor file 'my.toml'``."""
     name = _shipped_name(name_or_path)
-    return f"motor file {Path(name_or_path)}" if name is None else f"motor {name}"
+    return f"motor file {str(Path(name_or_path))!r}" if name is None else f"motor {name}"
 
 
 def load_motor(name_or_path: str) -> Motor:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from pareto_monoped.cli import completing
-from pareto_monoped.cli.options import CSV_FILE_OR_DASH, force_option
+from pareto_monoped.cli.options import CSV_FILE_OR_DASH, Local, force_option
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.ratiomap import ActuatorMap, MapEntry
     from pareto_monoped.actuator.service.sheet import ServiceSheet
 
-_OUTPUT = click.Path(dir_okay=False, path_type=Path)
+_OUTPUT = Local(dir_okay=False)
 _STANDARD_OUTPUT = Path("-")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli.computing import scheduler_option
-from pareto_monoped.cli.options import CSV_FILE, HTML_FILE, force_option
+from pareto_monoped.cli.options import CSV_FILE, HTML_FILE, Local, force_option
 from pareto_monoped.cli.terminal import echo, name, note
 
 if TYPE_CHECKING:
@@ -18,10 +18,8 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("campaign_file", metavar="CAMPAIGN.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--folder", type=click.Path(path_type=Path), metavar="DIR", help="Of the databases.  [default: CAMPAIGN/ beside it]"
-)
+@click.argument("campaign_file", metavar="CAMPAIGN.toml", type=Local())
+@click.option("--folder", type=Local(), metavar="DIR", help="Of the databases.  [default: CAMPAIGN/ beside it]")
 @click.option(
     "--workers",
     type=click.IntRange(1, 1024),
@@ -68,13 +66,13 @@ def campaign(
     from pareto_monoped.campaign.grid import load_campaign
     from pareto_monoped.cli.campaign_table import as_values, counted, print_table, reports, studies
     from pareto_monoped.extras import require_extra
-    from pareto_monoped.files import refuse_database
+    from pareto_monoped.files import require_writable
 
     if scheduler is not None:
         require_extra("cluster", "--scheduler")
     for output in (page, table):
         if output is not None:
-            refuse_database(output)
+            require_writable(output)
     grid = load_campaign(campaign_file)
     place = folder or grid.folder
     complete = True

@@ -12,7 +12,7 @@ import click
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, where
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
-from pareto_monoped.cli.options import DATABASE
+from pareto_monoped.cli.options import DATABASE, Local
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, new_console, note, wrapped
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
@@ -28,15 +28,13 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("db", required=False, type=DATABASE)
 @selector_options
-@click.option(
-    "-o", "--output", metavar="DIR", required=True, type=click.Path(path_type=Path), help="Folder for the export."
-)
+@click.option("-o", "--output", metavar="DIR", required=True, type=Local(), help="Folder for the export.")
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
 @motor_options("With --case: ")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
     "--record",
-    type=click.Path(path_type=Path),
+    type=Local(),
     metavar="FILE.json",
     help="Repeat the export that has this design.json.",
 )

@@ -10,7 +10,7 @@ import click
 
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.motor_options import chosen_motors, motor_options
-from pareto_monoped.cli.options import CSV_FILE, force_option
+from pareto_monoped.cli.options import CSV_FILE, Local, force_option
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.single import JumpResult
     from pareto_monoped.jump.table1 import Row
 
-_OUTPUT = click.Path(dir_okay=False, path_type=Path)
+_OUTPUT = Local(dir_okay=False)
 
 
 _VARIABLES = "\n".join(

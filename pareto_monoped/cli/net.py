@@ -16,7 +16,7 @@ import click
 
 from pareto_monoped.cli.terminal import name, wrapped
 from pareto_monoped.errors import ParetoMonopedError
-from pareto_monoped.files import cure_of, is_failure
+from pareto_monoped.files import ADRIFT, cure_of, is_adrift, is_failure
 
 TRACEBACK = "PARETO_MONOPED_TRACEBACK"
 """Environment variable that makes faults of the program show where they come from."""
@@ -61,21 +61,12 @@ def _of_click(error: click.ClickException) -> str:
 
 def _of_system(error: OSError) -> tuple[str, int]:
     """An error of the system that no other code has answered."""
-    if error.filename is None and _is_adrift():
-        return "error: working directory: has been deleted; change to a folder that exists", 2
+    if error.filename is None and is_adrift():
+        return f"error: {ADRIFT}", 2
     files = [os.fsdecode(part) for part in (error.filename, error.filename2) if isinstance(part, str | bytes)]
     what = f"file {', '.join(map(repr, files))}: cannot be used" if files else "output: cannot be written"
     said = error.strerror or str(error)
     return f"error: {_line(what)} ({_line(said)}); {cure_of(error)}", 1 if is_failure(error) else 2
-
-
-def _is_adrift() -> bool:
-    """Whether the working directory is no more, which whoever starts a process asks for."""
-    try:
-        os.getcwd()
-    except FileNotFoundError:
-        return True
-    return False
 
 
 def _line(text: str) -> str:

@@ -10,6 +10,29 @@ from pareto_monoped.study.place import place_of
 from pareto_monoped.study.server.address import is_address
 
 
+class Local(click.Path):
+    """The name of a file or folder, such as of a study file; studies alone may have the address of a server."""
+
+    def __init__(self, *, dir_okay: bool = True, file_okay: bool = True, allow_dash: bool = False) -> None:
+        super().__init__(dir_okay=dir_okay, file_okay=file_okay, allow_dash=allow_dash, path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path.
+
+        Raises:
+            InputError: the address of a server, which is not repeated because it may hold a password.
+        """
+        if isinstance(value, str) and is_address(value):
+            what = "dir" if not self.file_okay else "file"
+            if param is not None:
+                what = max(param.opts, key=len) if isinstance(param, click.Option) else str(param.metavar)
+            raise InputError(
+                f"{what}: is the address of a server, must be the name of a file or folder; give one, and the study on "
+                "a server where a command takes DB or --db"
+            )
+        return super().convert(value, param, ctx)
+
+
 class _Database(click.Path):
     """A parameter that names a study: a file, or the address of one on a server."""
 
@@ -34,11 +57,11 @@ class _Database(click.Path):
         return place
 
 
-class _OutputFile(click.Path):
+class _OutputFile(Local):
     """The name of a file to write, whose ending does not say that it is of another kind; it may have none."""
 
     def __init__(self, *endings: str, allow_dash: bool = False) -> None:
-        super().__init__(dir_okay=False, path_type=Path, allow_dash=allow_dash)
+        super().__init__(dir_okay=False, allow_dash=allow_dash)
         self._endings = endings
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -47,7 +70,7 @@ class _OutputFile(click.Path):
         Raises:
             InputError: it has the ending of another kind of file.
         """
-        path: Path = super().convert(value, param, ctx)  # type: ignore[assignment]  # click knows no ``path_type``
+        path: Path = super().convert(value, param, ctx)
         if path.suffix and path.suffix.lower() not in self._endings:
             option = max(param.opts, key=len) if param else "file"
             raise InputError(complaint(option, str(path), f"a file ending in {self._endings[0]}", "correct the name"))
@@ -71,7 +94,7 @@ sample_seed_option = click.option(
 )
 uncertainty_option = click.option(
     "--uncertainty",
-    type=click.Path(path_type=Path),
+    type=Local(),
     metavar="FILE.toml",
     help="TOML file of ranges, instead of the study's or ours.",
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli.options import DATABASE_FILE
+from pareto_monoped.cli.options import DATABASE_FILE, Local
 from pareto_monoped.cli.terminal import echo, new_console
 
 if TYPE_CHECKING:
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("study_file", metavar="[STUDY.toml]", required=False, type=click.Path(path_type=Path))
+@click.argument("study_file", metavar="[STUDY.toml]", required=False, type=Local())
 @click.option(
     "-o",
     "--output",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=Local(),
     help="Folder for the results.  [default: reports/STUDY]",
 )
 @click.option("--db", metavar="DB", type=DATABASE_FILE, help="Database.  [default: beside STUDY.toml]")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from pareto_monoped.cli.options import DATABASE, HTML_FILE, force_option
+from pareto_monoped.cli.options import DATABASE, HTML_FILE, Local, force_option
 from pareto_monoped.cli.terminal import echo, note
 from pareto_monoped.study.place import StudyPlace
 
@@ -14,13 +14,13 @@ from pareto_monoped.study.place import StudyPlace
 @click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
 @click.option(
     "--figures",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=Local(file_okay=False),
     metavar="DIR",
     help="Folder for figures for print, as SVG and PNG.",
 )
 @click.option(
     "--exports",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=Local(file_okay=False),
     metavar="DIR",
     help="Folder of exported designs, DIR/trial_N.",
 )

@@ -7,14 +7,13 @@ from pathlib import Path
 import click
 
 from pareto_monoped.cli import completing
+from pareto_monoped.cli.options import Local
 from pareto_monoped.cli.terminal import echo
 
 
 @click.command()
 @click.argument("name", metavar="[STUDY]", required=False, shell_complete=completing.studies)
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE.toml", help="The copy.  [default: STUDY.toml]"
-)
+@click.option("-o", "--output", type=Local(), metavar="FILE.toml", help="The copy.  [default: STUDY.toml]")
 @click.option("--list", "listed", is_flag=True, help="List the studies that there are.")
 @click.option("--force", is_flag=True, help="Replace an existing study file.")
 def init(name: str | None, output: Path | None, listed: bool, force: bool) -> None:

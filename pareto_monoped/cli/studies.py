@@ -12,7 +12,7 @@ import click
 
 from pareto_monoped.cli import completing
 from pareto_monoped.cli.computing import executor_at, where, where_options
-from pareto_monoped.cli.options import DATABASE, workers_option
+from pareto_monoped.cli.options import DATABASE, Local, workers_option
 from pareto_monoped.cli.terminal import echo, name, new_console, note, wrapped
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.study.place import StudyPlace
@@ -39,7 +39,7 @@ _REASONS = {
 
 
 @click.command()
-@click.argument("study_file", metavar="STUDY.toml", type=click.Path(path_type=Path))
+@click.argument("study_file", metavar="STUDY.toml", type=Local())
 @_evaluations
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
 @workers_option

@@ -412,7 +412,7 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
             str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
         )
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
-    return calibration_of(values, source=f"calibration file {path.name}")
+    return calibration_of(values, source=f"calibration file {path.name!r}")
 
 
 def calibration_of(

@@ -168,7 +168,7 @@ def test_a_contradiction_ends_with_one_line(tmp_path, case):
     message = str(caught.value)
     assert "\n" not in message
     pattern = ".*".join(re.escape(part) for part in line.split(".*"))
-    assert re.match(f"motor file {re.escape(path)}: {pattern}", message), message
+    assert re.match(f"motor file '{re.escape(path)}': {pattern}", message), message
 
 
 def test_the_motor_that_these_spoil_is_good(tmp_path):

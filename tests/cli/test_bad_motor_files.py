@@ -62,6 +62,6 @@ def test_one_line_with_file_key_and_cure(capsys, monkeypatch, tmp_path, case, co
     (line,) = output.err.splitlines()
     assert output.out == ""
     assert line.startswith("error: motor file ")
-    assert f"bad.toml: {key}: " in line
+    assert f"bad.toml': {key}: " in line
     assert cure in line
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "study.toml"]

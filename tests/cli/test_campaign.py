@@ -50,6 +50,13 @@ def test_a_failing_study_is_told_in_one_line_and_by_the_exit_code(done):
     assert "grid.toml: 4 studies, 2 finished, 2 failed" in lines
 
 
+def test_a_motor_file_is_named_in_quotes_also_where_a_key_of_it_is_wrong(tmp_path):
+    (tmp_path / "bad.toml").write_text('name = "bad"\n')
+    written(tmp_path, 'motors = ["bad.toml"]', SMALL)
+    (line,) = [line for line in command(tmp_path).stderr.splitlines() if line.startswith("error: ")]
+    assert line.startswith(f"error: grid: motor file '{tmp_path}/bad.toml': ")
+
+
 def test_the_table_is_on_stdout_and_fits_into_80_columns(done):
     _, ran = done
     rows = [line.split() for line in ran.stdout.splitlines() if "seed" in line]
@@ -134,6 +141,18 @@ def test_a_working_directory_that_was_deleted_is_named_rather_than_an_output(tmp
     assert (ran.returncode, ran.stdout) == (2, "")
     assert ran.stderr == "error: working directory: has been deleted; change to a folder that exists\n"
     assert not list(tmp_path.rglob("*.db"))
+
+
+@pytest.mark.parametrize("option", ["--csv", "--report"])
+def test_an_output_that_cannot_be_written_is_refused_before_any_study_runs(tmp_path, option):
+    """It was refused after the whole campaign."""
+    file = written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))
+    (tmp_path / "place").write_text("a file")
+    ending = option.removeprefix("--").replace("report", "html")
+    result = CliRunner().invoke(cli, ["campaign", str(file), option, str(tmp_path / "place" / f"out.{ending}")])
+    assert "cannot be written" in str(result.exception)
+    assert not list(tmp_path.rglob("*.db"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "place"]
 
 
 def shown(standings, height):

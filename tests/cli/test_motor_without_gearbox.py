@@ -74,7 +74,7 @@ def test_commands_that_are_given_the_file(capsys, folder, words):
     out, line = refused(capsys, *words)
     assert out == ""
     assert line.startswith("error: motor file ")
-    assert line.endswith(f"tiny.toml: {WORDS}")
+    assert line.endswith(f"tiny.toml': {WORDS}")
     assert not Path("study.db").exists()
 
 
@@ -116,7 +116,7 @@ def test_a_motor_with_gearboxes_that_the_leg_is_too_wide_for(capsys, folder, wor
     assert "ESSPG" in cli_run(capsys, "actuators", "--motor", "narrow.toml").out
     _, line = refused(capsys, *words)
     assert line.startswith("error: motor file ")
-    assert line.endswith(f"narrow.toml: {NARROW}")
+    assert line.endswith(f"narrow.toml': {NARROW}")
     assert not Path("out").exists()
 
 
