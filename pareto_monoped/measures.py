@@ -12,7 +12,9 @@ Example:
     ('J', 'minimise', '15.36 J')
 """
 
+import difflib
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -683,3 +685,20 @@ def nominal(name: str) -> str:
 
 
 _ROBUST = frozenset(ROBUST_NAMES)
+
+_MOST_NEAR = 3
+"""Names that are told of those nearest to one that is unknown; our own choice: a line holds them."""
+
+
+def near_measures(name: object, known: Sequence[str]) -> str:
+    """The cure for an unknown name: the most similar one, or the nearest few and where all are.
+
+    Args:
+        name: as it was given.
+        known: names that may be given.
+    """
+    if near := difflib.get_close_matches(str(name), known, n=1):
+        return f"did you mean {near[0]!r}?"
+    plain = [one for one in known if not is_robust(one)]
+    few = difflib.get_close_matches(str(name), plain, n=_MOST_NEAR, cutoff=0.0)
+    return f"the nearest are {', '.join(few)}; docs/reference/measures.md and the columns of 'trials DB' have all"

@@ -12,7 +12,7 @@ from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
-from pareto_monoped.measures import is_own
+from pareto_monoped.measures import is_own, near_measures
 from pareto_monoped.pareto.conditions import CONDITION_NAMES
 from pareto_monoped.pareto.selectors import (
     Among,
@@ -396,9 +396,6 @@ def _known(what: str, values: Any) -> dict[str, float]:
     numbers = table_of(what, values)
     for name in numbers:
         if name not in CONDITION_NAMES and not is_own(name):
-            import difflib
-
-            near = difflib.get_close_matches(str(name), CONDITION_NAMES, n=1)
-            cure = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(CONDITION_NAMES)}"
+            cure = near_measures(name, CONDITION_NAMES)
             raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
     return numbers

@@ -171,15 +171,29 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     widths = [max(len(head), 8) for head in heads]
     # The motors' names stand last, each in a column as wide as the longest.
     motors = {name: max(map(len, (name, *rows[name]))) for name in _MOTORS if name in rows.columns}
-    last = sum(width + 1 for width in motors.values())
-    wide = 6 + sum(widths) + len(widths) + 8 * len(shown) + last <= WIDTH
-    # With a third objective the usual columns do not fit; three digits of each variable then must do.
+    titles = {name: name for name in motors}
+    goal_width = 6 + sum(widths) + len(widths)
+
+    def room() -> int:
+        return WIDTH - goal_width - sum(width + 1 for width in motors.values())
+
+    wide = 8 * len(shown) <= room()
+    if not wide:
+        # With a third objective the usual columns do not fit: three digits of each variable then must do, and short
+        # heads of the motors. What still does not fit is left out, the last variables first.
+        titles = {name: name.removesuffix("_motor") for name in motors}
+        motors = {name: max(map(len, (titles[name], *rows[name]))) for name in motors}
+        kept = max(room() // 6, 0)
+        if kept < len(shown):
+            left = ", ".join(variable.symbol for variable in shown[kept:])
+            note(f"{left} do not fit into the table; --csv and --json have all columns")
+            shown = shown[:kept]
     number: Callable[[float], str] = (
         (lambda value: f"{value:7.3f}") if wide else (lambda value: f"{round(value, 3):5.3g}")
     )
     symbols = " ".join(f"{variable.symbol:>{7 if wide else 5}}" for variable in shown)
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
-    names = "".join(f" {name:<{width}}" for name, width in motors.items())
+    names = "".join(f" {titles[name]:<{width}}" for name, width in motors.items())
     echo(f"{'trial':>6} {words} {symbols}{names}".rstrip())
     for _, row in rows.iterrows():
         values = " ".join(number(row[variable.name]) for variable in shown)

@@ -175,14 +175,10 @@ def _wish(text: str) -> dict[str, float]:
 def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
     """A name and a number from NAME=X."""
     name, _, value = text.partition("=")
-    from pareto_monoped.measures import is_own, is_robust
+    from pareto_monoped.measures import is_own, near_measures
 
     if name not in known and not is_own(name):
-        import difflib
-
-        near = difflib.get_close_matches(name, known, n=1)
-        listed = ", ".join(one for one in known if not is_robust(one))
-        allowed = f"did you mean {near[0]!r}?" if near else f"one of {listed}"
+        allowed = near_measures(name, known)
         raise click.UsageError(f"{option} = {text!r}: must begin with the name of a measure and =; {allowed}")
     try:
         return name, _finite(option, float(value))

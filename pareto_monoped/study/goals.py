@@ -1,6 +1,5 @@
 """What a study asks for, as in its file: the objectives, the constraints on measures, the hypervolume's corner."""
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.errors import StudyError, complaint, unknown_name
-from pareto_monoped.measures import GOAL_NAMES, MEASURES, STATISTICS, is_goal, is_own, is_robust, measure
+from pareto_monoped.measures import GOAL_NAMES, STATISTICS, is_goal, is_own, is_robust, measure, near_measures
 from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
 from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
 from pareto_monoped.strength.groups import REQUIRED_MEASURES
@@ -28,6 +27,8 @@ _ALWAYS_STORED = ("min_height_m", "max_energy_j", "max_mass_kg", "min_foot_clear
 """Limits that every stored study names, also where they are off, in this order; 0.1.0 had no others."""
 _ALLOWED = {("min", "height_m"): (BASE_START_HEIGHT_M, 10.0), ("min", "foot_clearance_m"): (0.0, 10.0)}
 """Ranges of limits that are narrower than all numbers above 0."""
+_DIRECTED = [name for name in GOAL_NAMES if measure(name).direction is not None]
+"""What can be an objective."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,7 +132,7 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
         if name != key and is_goal(name):
             return [(side, name, value)]
     if not is_goal(key):
-        near = _near(key.removeprefix("min_").removeprefix("max_"))
+        near = near_measures(key.removeprefix("min_").removeprefix("max_"), GOAL_NAMES)
         raise StudyError(f"{source}: constraints.{key}: must be the name of a measure; {near}")
     if not isinstance(value, Mapping) or not value or not set(value) <= {"min", "max"}:
         allowed = "a table with min, max or both, such as { max = 4.0 }"
@@ -193,7 +194,7 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
     names = tuple(sorted(given, key=_rank) if isinstance(given, Mapping) else given)
     for name in names:
         if not is_goal(name):
-            raise StudyError(f"{source}: objective {name!r} is not a measure; {_near(name)}")
+            raise StudyError(f"{source}: objective {name!r} is not a measure; {near_measures(name, _DIRECTED)}")
         direction = measure(name).direction
         if direction is None:
             raise StudyError(f"{source}: objective {name!r} has no direction, neither way is better; take another")
@@ -259,10 +260,3 @@ def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _rank(name: object) -> int:
     return GOAL_NAMES.index(name) if name in GOAL_NAMES else -1
-
-
-def _near(name: object) -> str:
-    found = difflib.get_close_matches(str(name), GOAL_NAMES, n=1)
-    if found:
-        return f"did you mean {found[0]!r}?"
-    return f"choose from {', '.join(entry.name for entry in MEASURES if entry.direction is not None)}"

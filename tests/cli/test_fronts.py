@@ -5,14 +5,19 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.design import PAPER_NAMES
+from pareto_monoped.cli.fronts import _print_table
+from pareto_monoped.design import PAPER_NAMES, VARIABLES
+from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.study.alternatives import alternatives
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.store import Store
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
+
+SYMBOLS = [variable.symbol for variable in VARIABLES if variable.name in PAPER_NAMES]
 
 
 @pytest.fixture
@@ -295,3 +300,24 @@ def test_a_bad_limit_gets_one_line(db, capsys, limit, word):
     said = capsys.readouterr()
     assert said.err.count("\n") == 1
     assert word in said.err
+
+
+@pytest.mark.parametrize("joints", [["motor"], ["hip_motor", "knee_motor"]])
+@pytest.mark.parametrize("count", [1, 40])
+def test_a_front_of_motor_pairs_with_three_objectives_fits_into_the_window(capsys, joints, count):
+    """It was 97 letters wide."""
+    goals = ("height_m", "electrical_energy_j", "mass_kg")
+    numbers = {name: np.linspace(0.1, 99.123456, count) for name in (*goals, *PAPER_NAMES)}
+    rows = pd.DataFrame({"trial": np.arange(count), **numbers, **dict.fromkeys(joints, "MAD_M6C12")})
+    _print_table(rows, Objectives(names=goals))
+    said = capsys.readouterr()
+    heading, *lines = said.out.splitlines()
+    assert len(lines) == count
+    assert max(len(line) for line in (heading, *lines)) <= 80
+    assert all(len(line.split()) == len(heading.split()) - len(goals) for line in lines)
+    left = [symbol for symbol in SYMBOLS if symbol not in heading.split()]
+    assert heading.split()[-len(joints) :] == [name.removesuffix("_motor") for name in joints]
+    assert " ".join(said.err.split()) == (
+        f"note: {', '.join(left)} do not fit into the table; --csv and --json have all columns" if left else ""
+    )
+    assert len(left) < len(SYMBOLS) / 2

@@ -1,10 +1,12 @@
 """Objectives, constraints and the corner of a study: what may be written, what is stored, what is refused."""
 
 import json
+from pathlib import Path
 
 import pytest
 
-from pareto_monoped.measures import MEASURES
+from pareto_monoped.errors import StudyError
+from pareto_monoped.measures import MEASURES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.study import provenance
 from pareto_monoped.study.definition import load_study, study_from_dict
@@ -103,7 +105,10 @@ def test_other_objectives_can_be_given_in_place_of_the_files(tmp_path):
     ("change", "words"),
     [
         ({"objectives": ["height_m", "electric_energy_j"]}, ["'electric_energy_j'", "mean 'electrical_energy_j'"]),
-        ({"objectives": ["height_m", "qqq"]}, ["'qqq' is not a measure", "choose from height_m, energy_j"]),
+        (
+            {"objectives": ["height_m", "qqq"]},
+            ["'qqq' is not a measure", "; the nearest are "],
+        ),
         ({"objectives": ["height_m", "apex_s"]}, ["'apex_s' has no direction"]),
         ({"objectives": ["height_m", "height_m"]}, ["'height_m' is named twice"]),
         ({"objectives": ["height_m"]}, ["number of objectives = 1: must be two or three"]),
@@ -146,3 +151,15 @@ def test_what_cannot_be_is_one_line_that_says_what_can(change, words):
 
 def test_without_a_choice_they_are_the_papers():
     assert objectives_of(None) == HEIGHT_AND_ENERGY
+
+
+@pytest.mark.parametrize("name", ["watts", "qqq", ""])
+def test_an_unknown_objective_without_a_near_match_does_not_list_all_measures(name):
+    """The line had 39 names."""
+    with pytest.raises(StudyError) as caught:
+        made(objectives=["height_m", name])
+    message = str(caught.value)
+    few, _, place = message.partition("the nearest are ")[2].partition("; ")
+    assert [measure(one).direction is None for one in few.split(", ")] == [False] * 3
+    assert place.startswith("docs/reference/measures.md")
+    assert (Path(__file__).parents[2] / "docs/reference/measures.md").exists()
