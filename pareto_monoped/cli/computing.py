@@ -50,12 +50,13 @@ def where(processes: int | None, scheduler: str | None, workers: int | None) -> 
 
 
 @contextmanager
-def executor_at(place: Where, *, limits: "Limits | None" = None) -> Iterator[Executor | None]:
+def executor_at(place: Where, *, limits: "Limits | None" = None, extra: str | None = None) -> Iterator[Executor | None]:
     """The executor for a place, None for threads; what happens to its workers is said on standard error.
 
     Args:
         place: what the options say.
         limits: how long to wait for tasks and workers; None: as for jumps.
+        extra: whose packages other hosts must have in the same versions, too.
     """
     if place.processes is None and place.scheduler is None:
         yield None
@@ -66,7 +67,7 @@ def executor_at(place: Where, *, limits: "Limits | None" = None) -> Iterator[Exe
         echo(line, err=True)
 
     if place.scheduler is not None:
-        with cluster(place.scheduler, tell=tell, limits=limits) as crew:
+        with cluster(place.scheduler, tell=tell, limits=limits, extra=extra) as crew:
             yield crew
     else:
         with processes(place.processes, tell=tell, limits=limits) as crew:

@@ -242,7 +242,7 @@ def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
             )
 
         try:
-            with executor_at(place, limits=EXPORT_LIMITS) as executor:
+            with executor_at(place, limits=EXPORT_LIMITS, extra="cad") as executor:
                 made = run_all(jobs, workers=workers, executor=executor, progress=show)
         except KeyboardInterrupt:
             bar.console.print("interrupted; the same command continues from here")

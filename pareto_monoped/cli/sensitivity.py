@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli.computing import executor_at, where, where_options
 from pareto_monoped.cli.options import (
     DATABASE,
     HTML_FILE,
@@ -48,6 +49,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
 @sample_seed_option
 @uncertainty_option
 @workers_option
+@where_options
 @click.option("--plot", type=HTML_FILE, metavar="FILE.html", help="Write a chart that needs no network.")
 @force_option
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
@@ -59,6 +61,8 @@ def sensitivity(
     seed: int | None,
     uncertainty: Path | None,
     workers: int | None,
+    processes: int | None,
+    scheduler: str | None,
     plot: Path | None,
     force: bool,
     as_json: bool,
@@ -74,6 +78,7 @@ def sensitivity(
     from pareto_monoped.study.infeasible import refuse_empty
     from pareto_monoped.study.sensitivity import sensitivity as find
 
+    place = where(processes, scheduler, workers)
     wanted, kept = required(selector), read_front(db)
     ranges, _, chosen_seed = asked(kept.study, uncertainty, None, seed)
     if isinstance(wanted, Trial):
@@ -81,7 +86,17 @@ def sensitivity(
     else:
         refuse_empty(kept.rows, db)
         trial = pick_design(kept.rows, wanted, kept.study.objectives).trial
-    found = find(db, trial, ranges, blocks=samples, within=0.01 * within, seed=chosen_seed, workers=workers)
+    with executor_at(place) as executor:
+        found = find(
+            db,
+            trial,
+            ranges,
+            blocks=samples,
+            within=0.01 * within,
+            seed=chosen_seed,
+            workers=workers,
+            executor=executor,
+        )
     if plot is not None:
         from pareto_monoped.files import write_text
         from pareto_monoped.report.sensitivity_figure import sensitivity_page

@@ -2,6 +2,7 @@
 
 import click
 
+from pareto_monoped.cli.computing import Where, executor_at, where, where_options
 from pareto_monoped.cli.options import DATABASE
 from pareto_monoped.cli.terminal import echo, note
 from pareto_monoped.study.place import StudyPlace
@@ -13,7 +14,8 @@ from pareto_monoped.study.place import StudyPlace
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
-def verify(db: StudyPlace, simulate: int, workers: int | None) -> None:
+@where_options
+def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | None, scheduler: str | None) -> None:
     """Check that nothing in a study has been lost or changed.
 
     Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
@@ -24,7 +26,11 @@ def verify(db: StudyPlace, simulate: int, workers: int | None) -> None:
     from pareto_monoped.study.verify import require_sound
     from pareto_monoped.study.verify import verify as verify_study
 
-    result = verify_study(db, simulate=simulate, workers=workers or default_workers())
+    place = where(processes, scheduler, workers)
+    if place != Where() and not simulate:
+        raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
+    with executor_at(place) as executor:
+        result = verify_study(db, simulate=simulate, workers=workers or default_workers(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
     if result.foreign:

@@ -6,9 +6,9 @@ import platform
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
-from functools import lru_cache
-from importlib.metadata import version
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache, partial
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 from threadpoolctl import threadpool_info
@@ -23,6 +23,7 @@ from pareto_monoped.compute.threads import cores, set_task_threads
 from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_MOTOR, UPPER, complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.errors import complaint as complaint_of
+from pareto_monoped.extras import EXTRAS
 from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
@@ -92,15 +93,34 @@ def _numbers() -> str:
     return found.hexdigest()
 
 
-def greeting(threads: int) -> Facts:
-    """The first task of a worker: take note of its threads, warm up, and say who it is."""
+def _facts_with(extra: str | None) -> Facts:
+    """The facts of this process, with the versions of what an extra has."""
+    plain = facts()
+    if extra is None:
+        return plain
+    found = {}
+    for package in EXTRAS[extra].values():
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "missing"
+    return replace(plain, versions=plain.versions | found)
+
+
+def greeting(threads: int, extra: str | None = None) -> Facts:
+    """The first task of a worker: take note of its threads, warm up, and say who it is.
+
+    Args:
+        threads: of its tasks.
+        extra: whose packages also do the work, see ``extras.EXTRAS``.
+    """
     set_task_threads(threads)
-    return facts()
+    return _facts_with(extra)
 
 
-def complaint(theirs: Facts) -> str | None:
+def complaint(theirs: Facts, extra: str | None = None) -> str | None:
     """What keeps a worker with these facts from working for this process; None if nothing does."""
-    ours = facts()
+    ours = _facts_with(extra)
     pairs = [(name, theirs.versions.get(name), here) for name, here in ours.versions.items()]
     pairs += [("system", theirs.system, ours.system), ("machine", theirs.machine, ours.machine)]
     different = [f"{name} {there}, here {here}" for name, there, here in pairs if there != here]
@@ -117,7 +137,12 @@ def complaint(theirs: Facts) -> str | None:
 
 @contextmanager
 def crew_of(
-    staff: Staff, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None, seat: int = 0
+    staff: Staff,
+    *,
+    tell: Callable[[str], None] = lambda _: None,
+    limits: Limits | None = None,
+    seat: int = 0,
+    extra: str | None = None,
 ) -> Iterator[Crew]:
     """An executor over the workers of a staff who compute the same numbers; closed with the block.
 
@@ -126,8 +151,10 @@ def crew_of(
         tell: called with a line for the user when a worker is lost or refused.
         limits: how long to wait for tasks and workers.
         seat: see ``Crew``.
+        extra: whose packages also do the work, such as ``cad`` for exports.
     """
-    crew = Crew(staff, greeting=greeting, check=complaint, tell=tell, limits=limits, seat=seat)
+    greet, check = partial(greeting, extra=extra), partial(complaint, extra=extra)
+    crew = Crew(staff, greeting=greet, check=check, tell=tell, limits=limits, seat=seat)
     try:
         facts()  # while the workers do the same
         yield crew
@@ -165,6 +192,7 @@ def cluster(
     tell: Callable[[str], None] = lambda _: None,
     limits: Limits | None = None,
     seat: int | None = None,
+    extra: str | None = None,
 ) -> Iterator[Crew]:
     """An executor over the workers of a Dask scheduler; needs the extra ``cluster``.
 
@@ -175,10 +203,12 @@ def cluster(
         tell: called with a line for the user when a worker is lost or refused.
         limits: how long to wait for tasks and workers.
         seat: see ``Crew``; by default the number of this process.
+        extra: whose packages must be the same on every worker, too: ``cad`` for exports.
 
     Raises:
         InputError: Dask is not installed here.
         WorkerError: no scheduler answers.
     """
-    with crew_of(DaskWorkers(address), tell=tell, limits=limits, seat=os.getpid() if seat is None else seat) as crew:
+    seat = os.getpid() if seat is None else seat
+    with crew_of(DaskWorkers(address), tell=tell, limits=limits, seat=seat, extra=extra) as crew:
         yield crew

@@ -1,6 +1,7 @@
 """Which variable of a trial and which assumption about the built robot moves its measures most, and by how much."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 
 import numpy as np
 import pandas as pd
@@ -57,6 +58,7 @@ def sensitivity(
     within: float = WITHIN,
     seed: int = DEFAULT_SEED,
     workers: int | None = None,
+    executor: Executor | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
     """The sensitivity of a trial to its variables and to what is uncertain, stored; what is there is not made again.
 
@@ -69,6 +71,7 @@ def sensitivity(
             in the list. The bounds of the study hold.
         seed: of the samples.
         workers: threads, all cores if None. It does not change the numbers.
+        executor: does the jumps in their place.
 
     Raises:
         InputError: a number out of range, or too many jumps that fail.
@@ -95,7 +98,7 @@ def sensitivity(
             if known is not None and known.settings == settings:
                 found[about] = known.result
                 continue
-            evaluator = stored_simulator(data, workers=workers or default_workers()).evaluator
+            evaluator = stored_simulator(data, workers=workers or default_workers(), executor=executor).evaluator
             refuse_other_jumps(data, row, evaluator)
             names = tuple(dict.fromkeys((*_ALWAYS, *map(nominal, data.study.objectives.names))))
             names = tuple(name for name in names if name in data.trials)

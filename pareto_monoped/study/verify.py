@@ -1,6 +1,7 @@
 """Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew."""
 
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,13 +40,14 @@ class Verification:
     findings: tuple[str, ...]
 
 
-def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1) -> Verification:
+def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Executor | None = None) -> Verification:
     """Check a study.
 
     Args:
         db: its database.
         simulate: how many of its trials to simulate again, evenly spread over all; they must be equal to the last bit.
         workers: threads that simulate.
+        executor: does the jumps in their place.
 
     Raises:
         DatabaseError: it cannot be read at all, or its rows do not match their hash.
@@ -65,7 +67,7 @@ def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1) -> Verificati
         ]
     numbers = np.unique(np.linspace(0, len(data.trials) - 1, min(simulate, len(data.trials))).astype(int))
     if len(numbers):
-        findings += _jump_findings(data, numbers, workers)
+        findings += _jump_findings(data, numbers, workers, executor)
     return Verification(
         trials=len(data.trials),
         sealed=data.sealed,
@@ -87,11 +89,13 @@ def _kept_front_findings(connection: Connection, data: StudyData) -> Iterator[st
         yield "its counts of feasible, infeasible and failed trials are not those of its trials"
 
 
-def _jump_findings(data: StudyData, numbers: "np.typing.NDArray[np.int_]", workers: int) -> Iterator[str]:
+def _jump_findings(
+    data: StudyData, numbers: "np.typing.NDArray[np.int_]", workers: int, executor: Executor | None
+) -> Iterator[str]:
     from pareto_monoped.study.run import refuse_other_code
     from pareto_monoped.study.simulator import evaluation_of, stored_simulator
 
-    simulator = stored_simulator(data, workers=workers)
+    simulator = stored_simulator(data, workers=workers, executor=executor)
     refuse_other_code(data, simulator)
     rows = data.trials.iloc[numbers]
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)

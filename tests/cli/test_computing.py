@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+from importlib.metadata import version
 
 import pytest
 
@@ -10,8 +11,9 @@ from pareto_monoped import cli
 from pareto_monoped.cli.computing import Where, executor_at, where
 from pareto_monoped.compute.crew import Crew
 from pareto_monoped.compute.staff import Limits
+from tests.cli.support import STORED
 from tests.compute import tasks
-from tests.compute.dask_here import DaskHere, until
+from tests.compute.dask_here import ROOT, DaskHere, until
 
 STUDY = 'name = "s"\nevaluations = 20\naudit = false\nalgorithm = { name = "nsga2", population = 10 }\n'
 
@@ -22,7 +24,9 @@ def test_each_option_says_one_place():
     assert where(None, "tcp://x:1", None) == Where(scheduler="tcp://x:1")
 
 
-@pytest.mark.parametrize("command", ["run s.toml", "resume s.db", "robust s.db"])
+@pytest.mark.parametrize(
+    "command", ["run s.toml", "resume s.db", "robust s.db", "sensitivity s.db --trial 1", "verify s.db --simulate 1"]
+)
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -37,6 +41,12 @@ def test_two_places_are_refused(tmp_path, monkeypatch, capsys, command, options,
     assert cli._run([*command.split(), *options.split()]) == 2
     assert capsys.readouterr().err == f"error: {words} (see 'pareto-monoped {command.split()[0]} --help')\n"
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+@pytest.mark.parametrize("place", [["--processes", "2"], ["--scheduler", "tcp://x:1"]])
+def test_verify_takes_a_place_only_where_it_simulates(capsys, place):
+    assert cli._run(["verify", str(STORED), *place]) == 2
+    assert "--processes and --scheduler go with --simulate only" in capsys.readouterr().err
 
 
 def test_without_an_option_threads_do_the_work():
@@ -68,7 +78,24 @@ def test_a_scheduler_is_that_of_the_address(tmp_path):
         until(lambda: crew._staff.state() == "has no worker")
 
 
-def test_run_resume_and_robust_have_their_jumps_made_there(tmp_path, monkeypatch, capsys):
+def test_a_worker_with_another_cad_package_makes_no_exports(tmp_path, capsys):
+    """It was given them: what it made differed from the others', or failed."""
+    pytest.importorskip("distributed")
+    pytest.importorskip("OCP")
+    other = tmp_path / "other" / "manifold3d-0.0.1.dist-info"
+    other.mkdir(parents=True)
+    (other / "METADATA").write_text("Metadata-Version: 2.1\nName: manifold3d\nVersion: 0.0.1\n")
+    with DaskHere(tmp_path) as dask:
+        dask.workers += [dask.add(package=f"{other.parent}{os.pathsep}{ROOT}")]
+        words = ["export", str(STORED), "--front", "--every", "1000", "-o", str(tmp_path / "out")]
+        assert cli._run([*words, "--scheduler", dask.address]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert any(line.endswith(f"is refused: manifold3d 0.0.1, here {version('manifold3d')}") for line in lines)
+    assert "none of its 1 workers may be used (manifold3d 0.0.1" in lines[-1]
+    assert not (tmp_path / "out").exists()
+
+
+def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(tmp_path, monkeypatch, capsys):
     """The results are the same wherever they are made, so the tasks are counted."""
     given = []
 
@@ -84,9 +111,11 @@ def test_run_resume_and_robust_have_their_jumps_made_there(tmp_path, monkeypatch
         ["run", str(file), "--db", db, "--json"],
         ["resume", db, "--evaluations", "30", "--json"],
         ["robust", db, "--trial", "{trial}", "--samples", "256"],
+        ["sensitivity", db, "--trial", "{trial}", "--samples", "32"],
+        ["verify", db, "--simulate", "3"],
     ):
         before = len(given)
-        if words[0] == "robust":
+        if "{trial}" in words:
             capsys.readouterr()
             assert cli._run(["front", db, "--json"]) == 0
             words[3] = str(json.loads(capsys.readouterr().out)[0]["trial"])

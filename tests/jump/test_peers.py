@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from dataclasses import fields, replace
+from importlib.metadata import PackageNotFoundError
 
 import numpy as np
 import pytest
@@ -33,6 +34,28 @@ def test_another_version_is_named_with_ours(ours, package):
     assert peers.complaint(theirs) == f"{package} 0.0, here {ours.versions[package]}"
     without = {name: text for name, text in ours.versions.items() if name != package}
     assert peers.complaint(replace(ours, versions=without)) == f"{package} None, here {ours.versions[package]}"
+
+
+@pytest.mark.parametrize("package", ["cadquery-ocp-novtk", "manifold3d", "shapely"])
+@pytest.mark.parametrize("there", ["0.0", None])
+def test_what_makes_exports_is_compared_where_they_are_made(ours, monkeypatch, package, there):
+    """A worker without the CAD kernel took exports and failed at them."""
+    pytest.importorskip("OCP")
+    known = peers.version
+
+    def other(name):
+        if name != package:
+            return known(name)
+        if there is None:
+            raise PackageNotFoundError(name)
+        return there
+
+    with monkeypatch.context() as patched:
+        patched.setattr(peers, "version", other)
+        theirs = peers.greeting(1, "cad")
+    assert peers.complaint(theirs, "cad") == f"{package} {there or 'missing'}, here {known(package)}"
+    assert peers.complaint(theirs) is None
+    assert peers.complaint(peers.greeting(1, "cad"), "cad") is None
 
 
 def test_everything_that_differs_is_named_and_the_digest_last(ours):

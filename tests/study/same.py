@@ -2,10 +2,11 @@
 
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.study.sensitivity_rows import read_sensitivity
 
 
 def assert_same_study(one, other):
-    """Both have the same trials, audits, front, state, settings and robustness, to the last bit."""
+    """Both have the same trials, audits, front, state, settings, robustness and sensitivity, to the last bit."""
     here, there = read_study(one), read_study(other)
     assert there.trials.equals(here.trials)
     assert there.audits.equals(here.audits)
@@ -15,3 +16,4 @@ def assert_same_study(one, other):
     assert there.meta.probe == here.meta.probe
     assert there.history["hypervolume"].equals(here.history["hypervolume"])
     assert read_robustness(one) == read_robustness(other)
+    assert read_sensitivity(one) == read_sensitivity(other)

@@ -9,6 +9,8 @@ from pareto_monoped.jump.peers import cluster, processes
 from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.robustness import robust
 from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.sensitivity import sensitivity
+from pareto_monoped.study.verify import verify
 from pareto_monoped.uncertainty.ranges import load_uncertainty
 from tests.compute.dask_here import DaskHere
 from tests.study.same import assert_same_study
@@ -21,9 +23,9 @@ STUDY = study_of(name="s", evaluations=TRIALS, algorithm={"name": "nsga2", "popu
 
 
 def whole(db, executor=None):
-    """The study, begun, continued to its end and made robust: the executor is asked each time."""
+    """The study, begun, continued, made robust, asked what matters, verified: the executor is asked each time."""
     before = 0
-    for step in (_begin, _continue, _make_robust):
+    for step in (_begin, _continue, _make_robust, _ask_what_matters, _verify):
         step(db, executor)
         if isinstance(executor, Counting):
             assert executor.tasks > before, step
@@ -36,6 +38,15 @@ def _begin(db, executor):
 
 def _continue(db, executor):
     resume(db, workers=2, evaluations=TRIALS, executor=executor)
+
+
+def _ask_what_matters(db, executor):
+    trial = int(read_study(db).front()["trial"].iloc[-1])
+    sensitivity(db, trial, UNCERTAINTY, blocks=32, workers=2, executor=executor)
+
+
+def _verify(db, executor):
+    assert verify(db, simulate=20, workers=2, executor=executor).findings == ()
 
 
 def _make_robust(db, executor):
@@ -68,6 +79,17 @@ def test_on_two_processes(on_threads, tmp_path):
         whole(tmp_path / "s.db", crew)
     assert_same_study(on_threads, tmp_path / "s.db")
     assert told == []
+
+
+def test_the_default_search_on_two_processes(tmp_path):
+    """Its model is made here; only what it proposes jumps elsewhere."""
+    study = study_of(name="s", evaluations=60, algorithm={"name": "surrogate", "population": 20}, audit=False)
+    run(study, tmp_path / "threads.db", workers=2)
+    with processes(2) as crew:
+        counting = Counting(crew)
+        run(study, tmp_path / "s.db", workers=2, executor=counting)
+    assert counting.functions == {shared.jumps_of}
+    assert_same_study(tmp_path / "threads.db", tmp_path / "s.db")
 
 
 def test_on_an_executor_of_threads(on_threads, tmp_path):
