@@ -105,9 +105,10 @@ class DaskWorkers:
                 return self._connected()
             except (OSError, TypeError, ValueError) as error:
                 if self._address.startswith(_ENCRYPTED) and isinstance(error, TypeError | FileNotFoundError | SSLError):
+                    lack = "are missing" if isinstance(error, TypeError) else f"cannot be used ({_words(error)})"
                     raise InputError(
-                        f"{self.label}: its TLS certificates are missing or cannot be used ({_words(error)}); set "
-                        "distributed.comm.tls.ca-file, .client.cert and .client.key in Dask's configuration"
+                        f"{self.label}: its TLS certificates {lack}; set distributed.comm.tls.ca-file, .client.cert "
+                        "and .client.key in Dask's configuration"
                     ) from None
                 # A relay, such as a tunnel of SSH, breaks a connection at once where the scheduler is about to start.
                 if time.monotonic() > end_s or not isinstance(error, OSError):

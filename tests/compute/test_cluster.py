@@ -156,8 +156,17 @@ def test_what_is_no_address_is_refused_at_once(text):
     assert str(caught.value) == f"scheduler {text!r}: is no address of a scheduler; give tcp://HOST:PORT"
 
 
-@pytest.mark.parametrize("settings", [{}, {"distributed.comm.tls.ca-file": "/nowhere/ca.pem"}])
-def test_tls_without_its_certificates_is_told_which_settings_it_needs(settings):
+_TLS = [f"distributed.comm.tls.{name}" for name in ("ca-file", "client.cert", "client.key")]
+
+
+@pytest.mark.parametrize(
+    ("settings", "lack"),
+    [
+        ({}, "are missing; set"),
+        (dict.fromkeys(_TLS, "/nowhere/a.pem"), "cannot be used (FileNotFoundError"),
+    ],
+)
+def test_tls_without_its_certificates_is_told_which_settings_it_needs(settings, lack):
     """It was an unexpected TypeError."""
     import dask
 
@@ -165,7 +174,7 @@ def test_tls_without_its_certificates_is_told_which_settings_it_needs(settings):
         DaskWorkers(f"tls://127.0.0.1:{free_port()}")
     message = str(caught.value)
     assert "\n" not in message
-    assert "TLS certificates are missing or cannot be used" in message
+    assert f"its TLS certificates {lack}" in message
     assert "distributed.comm.tls.ca-file, .client.cert and .client.key" in message
 
 
