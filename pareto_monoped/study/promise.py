@@ -10,11 +10,11 @@ from pareto_monoped.study.protocol import Floats
 
 _PENALTY = 10.0
 """Gain that an expected violation costs: a limit missed by a percent outweighs a gain of a tenth of the front."""
-_LENIENT_PENALTY = 1.0
+LENIENT_PENALTY = 1.0
 """The same far from all simulated designs, where the model knows little of constraints. Our own choice."""
 _LOOKED_AT = 25
 """Designs whose distance to the known ones is measured, the most promising, for each that is chosen."""
-_CURIOSITY = 0.1
+CURIOSITY = 0.1
 """Gain that a distance of 1, in features from -1 to 1, is worth: errors of the model at that distance have this order.
 """
 
@@ -68,13 +68,13 @@ def unlike(
         known: features of the simulated designs, shape (k, f).
         count: how many.
     """
-    gain = gains(costs, violation, standing, _LENIENT_PENALTY)
+    gain = gains(costs, violation, standing, LENIENT_PENALTY)
     looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
     points, gain = points[looked_at], gain[looked_at]
     away = _nearest(points, known)
     chosen: list[int] = []
     for _ in range(min(count, len(points))):
-        worth = gain + _CURIOSITY * np.minimum(away, 1.0)
+        worth = gain + CURIOSITY * np.minimum(away, 1.0)
         worth[chosen] = -np.inf
         chosen.append(int(worth.argmax()))
         away = np.minimum(away, _nearest(points, points[chosen[-1:]]))

@@ -9,6 +9,7 @@ import numpy as np
 from pareto_monoped.study.algorithm_settings import SurrogateSettings
 from pareto_monoped.study.archive import Archive, Standing
 from pareto_monoped.study.climb import Climbs, climbs
+from pareto_monoped.study.motor_ends import ends_of_least_tried
 from pareto_monoped.study.one_thread import one_thread
 from pareto_monoped.study.prediction import Prediction
 from pareto_monoped.study.promise import ranked, unlike
@@ -44,6 +45,9 @@ with a long shank come within a percent of each other, and steps do not lead fro
 _CLOSE = 1000
 """Designs nearest the front that climbs begin at. Our own choice: a few times as many as the front has."""
 
+_OF_A_MOTOR = 2
+"""Designs of the least tried motor per generation and objective. Our own choice, see ``ends_of_least_tried``."""
+
 _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
 _LARGER = 2
@@ -63,7 +67,8 @@ class SurrogateSearch:
     (``climbs``): designs from anywhere, from the front and close to it, and designs of the front whose links or
     gearboxes are exchanged. Of all these, the search asks for those that gain most over the front, the best of each
     part of it first: the ends of the front are parts, too. A tenth of each generation explores: it is far from all
-    simulated designs, and still promising. Half of that are the ends of climbs.
+    simulated designs, and still promising. Half of that are the ends of climbs. Where motors are chosen, the motor with
+    the fewest designs gets some at the ends of its own front instead (``ends_of_least_tried``).
 
     Every generation refines, so a search that gets a larger budget goes on as if it had had it from the beginning.
     Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
@@ -170,7 +175,11 @@ class SurrogateSearch:
                 expected_there = climbed.costs[ends], climbed.violation[ends]
                 explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
                 known = np.vstack((known, self._features.scaled(explorers)))
-            others = self._afar(anywhere, expected, standing, known, count - len(explorers))
+            if self._space.choices:
+                motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
+                firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
+                explorers = np.vstack((explorers, firsts[: size // 4]))
+            others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
             explorers = np.vstack((explorers, others))
             # A climb from anywhere may have ended where it began.
             explorers = explorers[self._seen.new(explorers)]
