@@ -170,8 +170,12 @@ class Tab:
         )
 
     def to_front(self) -> None:
-        """Scroll to the front chart, and wait until it shows the present state: out of sight it is not redrawn."""
-        self.page.locator("#front-chart").scroll_into_view_if_needed()
+        """Scroll to the front chart, and wait until it shows the present state."""
+        self.to_chart("front-chart")
+
+    def to_chart(self, name: str) -> None:
+        """Scroll to a chart, and wait until it shows the present state: out of sight it is not redrawn."""
+        self.page.locator(f"#{name}").scroll_into_view_if_needed()
         self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         self.page.wait_for_timeout(100)
 

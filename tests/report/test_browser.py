@@ -177,8 +177,8 @@ def test_an_energy_typed_in_gets_the_highest_jump_on_it(tab, data):
 
 
 def drag_axis(tab, name, top=0.1, bottom=0.5):
+    tab.to_chart("parallel-chart")
     line = tab.page.locator(f"#parallel-chart g[data-axis={name}] line").first
-    line.scroll_into_view_if_needed()
     box = line.bounding_box()
     tab.page.mouse.move(box["x"], box["y"] + top * box["height"])
     tab.page.mouse.down()
@@ -220,8 +220,8 @@ def test_a_range_can_be_typed(tab, payload):
 
 def test_a_click_on_a_line_of_the_parallel_coordinates_selects_its_design(tab, payload):
     (card,) = payload.studies
+    tab.to_chart("parallel-chart")
     lines = tab.page.locator("#parallel-chart g.axis > line:first-of-type")
-    lines.last.scroll_into_view_if_needed()
     before, last = lines.nth(lines.count() - 2).bounding_box(), lines.last.bounding_box()
     # The top end of the energy axis belongs to the dearest design or one close to it.
     tab.page.mouse.click(0.5 * (before["x"] + last["x"]) + 20, before["y"] + 30)
