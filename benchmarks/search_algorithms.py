@@ -242,9 +242,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="run only these contenders")
     parser.add_argument("--wall", action="store_true", help="only time those that have been run, one after the other")
     parser.add_argument("--evaluations", type=int, help="jumps per search, instead of 1,000 or 8,000")
-    parser.add_argument(
-        "--reference", type=int, help="jumps for a reference front that no file has"
-    )
+    parser.add_argument("--reference", type=int, help="jumps for a reference front that no file has")
     parser.add_argument("--motor", default="VT8020")
     parser.add_argument("--calibration", default="reference")
     parser.add_argument("--objectives", default="height_m,energy_j", help="two or three measures, separated by commas")
