@@ -50,15 +50,16 @@ WIDTH = 80
 
 
 def wrapped(text: str, indent: int = 2) -> str:
-    """A sentence in lines of at most ``WIDTH`` letters."""
-    return textwrap.fill(
-        text,
+    """A sentence in lines of at most ``WIDTH`` letters; a number and its percent sign stay together."""
+    filled = textwrap.fill(
+        text.replace(" %", "\u00a0%"),
         width=WIDTH,
         subsequent_indent=" " * indent,
         break_on_hyphens=False,
         drop_whitespace=True,
         break_long_words=False,
     )
+    return filled.replace("\u00a0%", " %")
 
 
 def note(text: str) -> None:

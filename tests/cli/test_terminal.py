@@ -10,7 +10,7 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli import terminal
-from pareto_monoped.cli.terminal import echo, name, new_console, plain
+from pareto_monoped.cli.terminal import echo, name, new_console, plain, wrapped
 from tests.cli.support import ROOT, STORED
 
 COMMAND_LINE = ROOT / "pareto_monoped" / "cli"
@@ -126,3 +126,9 @@ def test_every_note_of_the_command_line_goes_through_one_function():
         path.name for path in folder.glob("*.py") if 'f"note: ' in path.read_text() or '"note: ' in path.read_text()
     ]
     assert by_hand == ["terminal.py"]
+
+
+def test_no_line_breaks_between_a_number_and_its_percent_sign():
+    text = wrapped("note: stiffness_n_per_m is at its lower bound of 5 N/m in 80 % of the front (99 % of height 0.7 m)")
+    assert "\n  (99 % of" in text
+    assert "%" not in [line.split()[0] for line in text.splitlines()]
