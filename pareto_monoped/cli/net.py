@@ -96,6 +96,7 @@ def report(error: BaseException) -> int:
     if os.environ.get(TRACEBACK) and isinstance(error, Exception):
         traceback.print_exception(error)
     with suppress(OSError, ValueError):
-        # One line for programs; a terminal would break it within words.
-        click.echo(wrapped(line) if sys.stderr.isatty() else line, err=True)
+        # One line for programs; a terminal would break it within words. A closed stderr is None.
+        terminal = sys.stderr is not None and sys.stderr.isatty()
+        click.echo(wrapped(line) if terminal else line, err=True)
     return code

@@ -122,3 +122,9 @@ def test_on_a_terminal_an_error_breaks_between_words(monkeypatch):
     assert all(
         line.split()[-1] in ("and", "width_mm", "them", "give", "height_mm", "are", "missing;") for line in lines
     )
+
+
+def test_an_error_without_a_stderr_only_has_its_code(monkeypatch):
+    """A process may be started with stderr closed, which Python shows as None."""
+    monkeypatch.setattr(net.sys, "stderr", None)
+    assert net.report(InputError("width_mm: is missing; give it")) == 2

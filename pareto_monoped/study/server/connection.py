@@ -180,15 +180,14 @@ class ServerConnection:
     def nothing_there(self, server: Server) -> DatabaseError:
         """The error for a schema of which nothing is seen: it does not exist, is empty, or may not be looked into."""
         row = self._session.execute(_RIGHTS, (server.schema,)).fetchone()
+        what = f"study database {str(server)!r}"
         if row is None or row[0]:
-            words = "no such study on the server; check the schema, or run a study first"
-        else:
-            schema, user, owner = row[1:]
-            words = (
-                f"its user {user} has no right to look into it; ask {owner} for GRANT USAGE ON SCHEMA {schema} TO "
-                f"{user}, and for GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO {user}"
-            )
-        return DatabaseError(f"study database {str(server)!r}: {words}")
+            return DatabaseError(f"{what}: no such study on the server; check the schema, or run a study first")
+        schema, user, owner = row[1:]
+        return DatabaseError(
+            f"{what}: its user {user} has no right to look into it; ask {owner} for GRANT USAGE ON SCHEMA {schema} TO "
+            f"{user}, and for GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO {user}"
+        )
 
     def columns(self, table: str) -> list[str]:
         """Names of a table's columns."""
