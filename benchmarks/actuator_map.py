@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pareto_monoped.actuator.candidates import candidates
+from pareto_monoped.actuator.judge import candidates
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import build_map
 from pareto_monoped.actuator.settings import ActuatorSettings

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.assumptions import GearSteels
 from pareto_monoped.actuator.motors import load_motor, motor_names
-from pareto_monoped.actuator.rating_data import GearSteels
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.search import build_map, map_of
 from pareto_monoped.actuator.settings import ActuatorSettings

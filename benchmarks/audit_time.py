@@ -20,18 +20,18 @@ from unittest.mock import patch
 import numpy as np
 
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.definition.algorithms import EvolutionSettings
+from pareto_monoped.definition.study import Study, load_study
 from pareto_monoped.design import LOWER, NAMES, UPPER, complete
 from pareto_monoped.jump.audit import Jumps, audit, finer
 from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.screen import screened
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study import run as runs
-from pareto_monoped.study.algorithm_settings import EvolutionSettings
 from pareto_monoped.study.audits import audit_front
-from pareto_monoped.study.definition import Study, load_study
-from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.simulator import Simulator
-from pareto_monoped.study.store import Store
 
 STUDY = Path(__file__).parent.parent / "studies" / "case_c.toml"
 BUDGETS = (1000, 2000)

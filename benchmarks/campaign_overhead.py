@@ -23,7 +23,7 @@ from pathlib import Path
 from cluster_overhead import MOST_OVERHEAD, dask_here, processor_s
 
 from pareto_monoped.compute.threads import cores
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 
 _WAITING_S = 10.0
 """How long scheduler and workers are watched while they wait. Our own choice: a thousand ticks of their clocks."""

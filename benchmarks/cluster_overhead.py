@@ -23,14 +23,14 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
 
+from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.compute.threads import cores
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.jump.peers import cluster
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robust_rows import read_robustness
-from pareto_monoped.study.robustness import robust
+from pareto_monoped.storage.extra_rows import read_robustness
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
-from pareto_monoped.uncertainty.ranges import load_uncertainty
+from pareto_monoped.uncertainty.settings import load_uncertainty
 
 MOST_OVERHEAD = 0.15
 """What the executor may cost of what it shares out."""

@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, NAMES, PAPER_CASES, UPPER, columns, complete
 from pareto_monoped.jump.audit import audit
-from pareto_monoped.jump.balance import energy_balance
+from pareto_monoped.jump.balance import balance_errors, energy_balance
 from pareto_monoped.jump.calibration import Calibration, load_calibration
-from pareto_monoped.jump.closure import balance_errors
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 
 Floats = NDArray[np.float64]
 MAP = map_for("VT8020")

@@ -25,8 +25,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM
-from pareto_monoped.study.definition import Study
+from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
+from pareto_monoped.definition.study import Study
 from pareto_monoped.study.run import default_workers, run
 from pareto_monoped.study.session import Progress
 

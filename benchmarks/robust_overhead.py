@@ -19,13 +19,13 @@ from pathlib import Path
 
 import numpy as np
 
+from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.design import NAMES
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robustness import robust
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
-from pareto_monoped.uncertainty.ranges import load_uncertainty
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, sobol_samples, variations
+from pareto_monoped.uncertainty.settings import load_uncertainty
 
 ALLOWED = 1.3
 _COMPARED = 2

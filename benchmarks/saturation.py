@@ -31,29 +31,28 @@ from cluster_overhead import dask_here, processor_s
 from numpy.typing import NDArray
 from search_overhead import Timed
 
+from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.compute.chunks import LEAST_TASK_S
 from pareto_monoped.compute.crew import Crew
 from pareto_monoped.compute.staff import Member
 from pareto_monoped.compute.threads import cores
+from pareto_monoped.definition.study import Study
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.peers import cluster
 from pareto_monoped.jump.shared import jumps_of, setup_text
-from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.growing_front import GrowingFront
+from pareto_monoped.pareto.front import GrowingFront, front_mask
 from pareto_monoped.pareto.indicators import hypervolume, reference_point
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.storage.columns import Generation
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study import session
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.generation import Generation
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robustness import robust
 from pareto_monoped.study.run import run
 from pareto_monoped.study.session import Progress
 from pareto_monoped.study.simulator import load_simulator
-from pareto_monoped.study.store import Store
-from pareto_monoped.uncertainty.ranges import load_uncertainty
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, sobol_samples, variations
+from pareto_monoped.uncertainty.settings import load_uncertainty
 
 ALGORITHMS = ("surrogate", "nsga2", "sms_emoa", "age_moea2", "weighted_cmaes", "optuna_nsga2", "random")
 _ONE_TASK = 278

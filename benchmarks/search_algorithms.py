@@ -28,15 +28,15 @@ import numpy as np
 from numpy.typing import NDArray
 from search_reference import FOLDER, corner_of, read
 
+from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.protocol import Algorithm
+from pareto_monoped.search.algorithm import Algorithm
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge, scores
 from pareto_monoped.study.run import default_workers
-from pareto_monoped.study.scoring import judge, scores
 from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent

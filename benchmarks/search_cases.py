@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from pandas import DataFrame
 
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 from pareto_monoped.study.simulator import load_simulator
 

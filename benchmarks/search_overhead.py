@@ -27,18 +27,18 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM, OwnSettings
+from pareto_monoped.definition.study import Study
+from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.jump.calibration import FadeGate
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.search.algorithm import Algorithm, Proposal, Scores
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.space import AnyCoordinates
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study import session
-from pareto_monoped.study.algorithm_settings import DEFAULT_ALGORITHM, OwnSettings
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.free_variables import Bounds
-from pareto_monoped.study.motor_choice import AnyCoordinates
-from pareto_monoped.study.protocol import Algorithm, Proposal, Scores
-from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import default_workers, run
 from pareto_monoped.study.simulator import Simulator, load_simulator
 from tests.jump.oracle import jump, motors_of

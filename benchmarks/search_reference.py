@@ -23,15 +23,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.definition.study import Study, load_study, study_from_dict
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.coordinates import coordinates_of
-from pareto_monoped.study.definition import Study, load_study, study_from_dict
-from pareto_monoped.study.protocol import Scores
-from pareto_monoped.study.scoring import judge, scores
+from pareto_monoped.search.algorithm import Scores
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge, scores
+from pareto_monoped.search.space import coordinates_of
 from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent

@@ -18,21 +18,21 @@ from typing import Any
 
 import numpy as np
 
+from pareto_monoped.definition import provenance
+from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.study import provenance
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.database import reading
-from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.front_reader import read_front
-from pareto_monoped.study.generation import Generation
-from pareto_monoped.study.meta import StudyMeta
-from pareto_monoped.study.place import StudyPlace, place_of
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.scoring import judge
-from pareto_monoped.study.server.address import Server
-from pareto_monoped.study.store import Store, create_database
-from pareto_monoped.study.summary import read_summary
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge
+from pareto_monoped.storage.columns import Generation
+from pareto_monoped.storage.database import reading
+from pareto_monoped.storage.front_reader import read_front
+from pareto_monoped.storage.meta import StudyMeta
+from pareto_monoped.storage.place import StudyPlace, place_of
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.server.address import Server
+from pareto_monoped.storage.status import read_summary
+from pareto_monoped.storage.store import Store, create_database
 
 SCHEMA = "monoped_server_storage"
 
@@ -132,7 +132,7 @@ def main() -> None:
     server = place_of(given.address)
     if not isinstance(server, Server):
         raise SystemExit("give the address of a server")
-    from pareto_monoped.study.server.connection import opened
+    from pareto_monoped.storage.server.connection import opened
 
     server = server.of_schema(SCHEMA)
     try:

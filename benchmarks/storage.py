@@ -25,16 +25,16 @@ from numpy.typing import NDArray
 from saturation import drawn
 
 from pareto_monoped.compute.threads import cores
+from pareto_monoped.definition.algorithms import RandomSettings
+from pareto_monoped.definition.study import Study
 from pareto_monoped.jump.evaluate import Evaluations
-from pareto_monoped.jump.rows import take
-from pareto_monoped.study.algorithm_settings import RandomSettings
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.generation import Generation
-from pareto_monoped.study.lock import locked
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.jump.variations import take
+from pareto_monoped.search.scoring import judge
+from pareto_monoped.storage.columns import Generation
+from pareto_monoped.storage.lock import locked
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import run
-from pareto_monoped.study.scoring import judge
-from pareto_monoped.study.store import Store
 
 _JUMPED = 2_000
 """Jumps that are stored again and again."""

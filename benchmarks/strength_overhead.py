@@ -20,9 +20,8 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, NAMES, UPPER, complete
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.strength.factors import capacities, safeties, strength_factors
-from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.factors import TABLE, capacities, safeties, strength_factors
+from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
 Floats = NDArray[np.float64]
 

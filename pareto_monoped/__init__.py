@@ -23,26 +23,18 @@ __version__ = "0.3.0"
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.motor import Motor
-    from pareto_monoped.api.jumps import (
-        actuator_map,
-        build_robot,
-        load_calibration,
-        load_motor,
-        simulate,
-        trace,
-    )
+    from pareto_monoped.api.jumps import actuator_map, build_robot, load_calibration, load_motor, simulate, trace
     from pareto_monoped.api.outputs import export, export_trial, write_report
     from pareto_monoped.api.plots import plot_actuators, plot_front, plot_jump
-    from pareto_monoped.api.robustness import robust
-    from pareto_monoped.api.running import resume, run
+    from pareto_monoped.api.running import resume, robust, run
     from pareto_monoped.api.studies import Picked, StoredStudy, load_study
+    from pareto_monoped.definition.study import Study
     from pareto_monoped.design import PAPER_CASES, VARIABLES, Design
     from pareto_monoped.errors import ParetoMonopedError
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.measures import MEASURES
-    from pareto_monoped.study.definition import Study
-    from pareto_monoped.study.optuna_objective import OptunaObjective
-    from pareto_monoped.study.protocol import Scores, Space
+    from pareto_monoped.search.algorithm import Scores, Space
+    from pareto_monoped.study.outside import OptunaObjective
     from pareto_monoped.study.pymoo_problem import MonopedProblem
 
 __all__ = [
@@ -84,16 +76,15 @@ _HOMES = {
     "api.jumps": ("actuator_map", "build_robot", "load_calibration", "load_motor", "simulate", "trace"),
     "api.outputs": ("export", "export_trial", "write_report"),
     "api.plots": ("plot_actuators", "plot_front", "plot_jump"),
-    "api.robustness": ("robust",),
-    "api.running": ("resume", "run"),
+    "api.running": ("resume", "robust", "run"),
     "api.studies": ("Picked", "StoredStudy", "load_study"),
     "design": ("PAPER_CASES", "VARIABLES", "Design"),
     "errors": ("ParetoMonopedError",),
     "jump.calibration": ("Calibration",),
     "measures": ("MEASURES",),
-    "study.definition": ("Study",),
-    "study.optuna_objective": ("OptunaObjective",),
-    "study.protocol": ("Scores", "Space"),
+    "definition.study": ("Study",),
+    "study.outside": ("OptunaObjective",),
+    "search.algorithm": ("Scores", "Space"),
     "study.pymoo_problem": ("MonopedProblem",),
 }
 """Module -> the public names that it defines."""

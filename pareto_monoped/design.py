@@ -33,23 +33,16 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
-    """One design variable.
+    """One design variable."""
 
-    Attributes:
-        name: its name in files, flags, databases and code.
-        symbol: the paper's symbol.
-        unit: of its values and bounds.
-        lower, upper: the paper's bounds (section III-B); of an optional variable our own.
-        meaning: what it is, in a few words.
-        default: value of an optional variable where a study does not name it; None for the paper's seven.
-    """
-
-    name: str
-    symbol: str
-    unit: str
+    name: str  #: its name in files, flags, databases and code
+    symbol: str  #: the paper's symbol
+    unit: str  #: of its values and bounds
+    #: lower, upper: the paper's bounds (section III-B); of an optional variable our own
     lower: float
     upper: float
-    meaning: str
+    meaning: str  #: what it is, in a few words
+    #: Value of an optional variable where a study does not name it; None for the paper's seven
     default: float | None = None
 
 
@@ -308,20 +301,14 @@ class Design:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperCase:
-    """One row of the paper's Table I.
+    """One row of the paper's Table I."""
 
-    Attributes:
-        name: of the row, as the paper has it.
-        design: its variables.
-        height_m, energy_j: what the authors report for it.
-        free: the variables that the paper's optimisation could change (section IV-B).
-    """
-
-    name: str
-    design: Design
+    name: str  #: of the row, as the paper has it
+    design: Design  #: its variables
+    #: height_m, energy_j: what the authors report for it
     height_m: float
     energy_j: float
-    free: tuple[str, ...]
+    free: tuple[str, ...]  #: the variables that the paper's optimisation could change (section IV-B)
 
 
 class _Cases(dict[str, PaperCase]):

@@ -17,29 +17,20 @@ _STRICT = ConfigDict(extra="forbid")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
-    """A material.
-
-    Attributes:
-        name: in words, as it stands in parts lists.
-        density_kg_per_m3: mass over volume.
-        colour: in CAD and report: red, green, blue from 0 to 1.
-    """
+    """A material."""
 
     __pydantic_config__ = _STRICT
 
-    name: str
-    density_kg_per_m3: Positive
-    colour: tuple[Share, Share, Share]
+    name: str  #: in words, as it stands in parts lists
+    density_kg_per_m3: Positive  #: mass over volume
+    colour: tuple[Share, Share, Share]  #: in CAD and report: red, green, blue from 0 to 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElasticMaterial(Material):
-    """A material whose parts give way under load.
+    """A material whose parts give way under load."""
 
-    Attributes:
-        youngs_modulus_mpa, poisson_ratio: of elasticity.
-    """
-
+    #: youngs_modulus_mpa, poisson_ratio: of elasticity
     youngs_modulus_mpa: Positive
     poisson_ratio: Annotated[float, Field(gt=0.0, lt=0.5)]
 
@@ -51,47 +42,32 @@ class ElasticMaterial(Material):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BushMaterial(Material):
-    """A material for plain bushes.
+    """A material for plain bushes."""
 
-    Attributes:
-        friction_coefficient: of a hardened pin in a greased bush.
-        pv_limit_mpa_m_per_s, pv_short_limit_mpa_m_per_s: largest pressure times sliding speed, for good and for short
-            periods.
-    """
-
-    friction_coefficient: Positive
+    friction_coefficient: Positive  #: of a hardened pin in a greased bush
+    #: pv_limit_mpa_m_per_s, pv_short_limit_mpa_m_per_s: largest pressure times sliding speed, for good and for short
+    #: periods
     pv_limit_mpa_m_per_s: Positive
     pv_short_limit_mpa_m_per_s: Positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearMaterial(ElasticMaterial):
-    """A material for gears.
+    """A material for gears."""
 
-    Attributes:
-        allowable_stress_mpa: in bending at the root of a tooth.
-        mesh_friction_coefficient: of two flanks of this material, lubricated.
-    """
-
-    allowable_stress_mpa: Positive
-    mesh_friction_coefficient: Positive
+    allowable_stress_mpa: Positive  #: in bending at the root of a tooth
+    mesh_friction_coefficient: Positive  #: of two flanks of this material, lubricated
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Alloy:
-    """An alloy in one condition, as it is ordered.
-
-    Attributes:
-        name: designation and condition, as they stand in parts lists and on drawings.
-        hardness: in words, with its scale.
-        yield_mpa: 0.2 % proof stress, the least that the standard of the semi-finished product allows.
-    """
+    """An alloy in one condition, as it is ordered."""
 
     __pydantic_config__ = _STRICT
 
-    name: str
-    hardness: str
-    yield_mpa: Positive
+    name: str  #: designation and condition, as they stand in parts lists and on drawings
+    hardness: str  #: in words, with its scale
+    yield_mpa: Positive  #: 0.2 % proof stress, the least that the standard of the semi-finished product allows
 
 
 Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
@@ -99,36 +75,22 @@ Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearGrade:
-    """A steel grade in one heat treatment, as ISO 6336-5 rates it.
-
-    Attributes:
-        name: steel and treatment in words, as it stands in parts lists.
-        treatment: which S-N curves and notch factors apply.
-        quality: quality grade of material and treatment.
-        hardness_hv: Vickers hardness of the flank.
-        hardness: limits of the flank's hardness in words, with their scale.
-        core_hardness: likewise of the core.
-        making: steps by which teeth are made, in their order.
-        layer_modules: limits of the depth of case or nitriding layer in finished teeth, in modules; None without one.
-        flank_limit_mpa: allowable contact stress number sigma_H,lim.
-        root_limit_mpa: nominal bending stress number sigma_F,lim of the standard test gear.
-        yield_mpa: 0.2 % proof stress of the core.
-        slip_layer_mm: thickness rho' of the slip layer.
-    """
+    """A steel grade in one heat treatment, as ISO 6336-5 rates it."""
 
     __pydantic_config__ = _STRICT
 
-    name: str
-    treatment: Treatment
-    quality: Literal["ML", "MQ", "ME"]
-    hardness_hv: Positive
-    hardness: str
-    core_hardness: str
-    making: str
-    flank_limit_mpa: Positive
-    root_limit_mpa: Positive
-    yield_mpa: Positive
-    slip_layer_mm: Positive
+    name: str  #: steel and treatment in words, as it stands in parts lists
+    treatment: Treatment  #: which S-N curves and notch factors apply
+    quality: Literal["ML", "MQ", "ME"]  #: quality grade of material and treatment
+    hardness_hv: Positive  #: Vickers hardness of the flank
+    hardness: str  #: limits of the flank's hardness in words, with their scale
+    core_hardness: str  #: likewise of the core
+    making: str  #: steps by which teeth are made, in their order
+    flank_limit_mpa: Positive  #: allowable contact stress number sigma_H,lim
+    root_limit_mpa: Positive  #: nominal bending stress number sigma_F,lim of the standard test gear
+    yield_mpa: Positive  #: 0.2 % proof stress of the core
+    slip_layer_mm: Positive  #: thickness rho' of the slip layer
+    #: Limits of the depth of case or nitriding layer in finished teeth, in modules; None without one
     layer_modules: tuple[Positive, Positive] | None = None
 
     @property
@@ -139,16 +101,11 @@ class GearGrade:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Elastomer(Material):
-    """A rubber that absorbs impacts.
+    """A rubber that absorbs impacts."""
 
-    Attributes:
-        hardness_shore_a: of the grade.
-        youngs_modulus_mpa: at small strain.
-        rebound_resilience: share of the energy of an impact that comes back (ISO 4662, 23 degrees Celsius).
-    """
-
-    hardness_shore_a: Annotated[float, Field(ge=30.0, le=95.0)]
-    youngs_modulus_mpa: Positive
+    hardness_shore_a: Annotated[float, Field(ge=30.0, le=95.0)]  #: of the grade
+    youngs_modulus_mpa: Positive  #: at small strain
+    #: Share of the energy of an impact that comes back (ISO 4662, 23 degrees Celsius)
     rebound_resilience: Annotated[float, Field(gt=0.0, lt=1.0)]
 
 

@@ -25,34 +25,21 @@ Direction = Literal["maximise", "minimise"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measure:
-    """One measure.
+    """One measure."""
 
-    Attributes:
-        name: of the field, the database column and the JSON key; ends in the unit unless the value is a share.
-        unit: of the stored value, SI; "1" for a share.
-        meaning: what is measured, for documentation.
-        direction: which way is better; None where neither is.
-        label: what the measure is called in reports.
-        shown_unit: unit in reports.
-        decimals: decimals in reports, in the shown unit.
-        scale: factor from the stored unit to the shown one.
-        reference: corner of the hypervolume when the measure is an objective; None where neither way is better. For the
-            smaller-is-better ones it is more than any design with the VT8020 reaches within the paper's bounds (the
-            greatest of 4,000 random ones, rounded up generously), for the others 0; for the height it is 0.55 m, a
-            jump of 5 cm.
-        short: what the measure is called where there is little room.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    direction: Direction | None
-    label: str
-    shown_unit: str
-    decimals: int
-    scale: float = 1.0
+    name: str  #: of the field, the database column and the JSON key; ends in the unit unless the value is a share
+    unit: str  #: of the stored value, SI; "1" for a share
+    meaning: str  #: what is measured, for documentation
+    direction: Direction | None  #: which way is better; None where neither is
+    label: str  #: what the measure is called in reports
+    shown_unit: str  #: unit in reports
+    decimals: int  #: decimals in reports, in the shown unit
+    scale: float = 1.0  #: factor from the stored unit to the shown one
+    #: Corner of the hypervolume when the measure is an objective; None where neither way is better. For the
+    #: smaller-is-better ones it is more than any design with the VT8020 reaches within the paper's bounds (the greatest
+    #: of 4,000 random ones, rounded up generously), for the others 0; for the height it is 0.55 m, a jump of 5 cm.
     reference: float | None = None
-    short: str = ""
+    short: str = ""  #: what the measure is called where there is little room
 
     @property
     def words(self) -> str:

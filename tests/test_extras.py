@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped import extras
+from pareto_monoped import errors
 from pareto_monoped.compute.cluster import DaskWorkers
-from pareto_monoped.errors import InputError
-from pareto_monoped.extras import EXTRAS
+from pareto_monoped.errors import EXTRAS, InputError
 
 ROOT = Path(__file__).parents[1]
 BLOCKED = textwrap.dedent(
@@ -72,7 +71,7 @@ def test_a_command_says_what_to_install(words, extra, tmp_path):
 def test_a_video_without_an_encoder_says_what_to_install(tmp_path):
     code = """
     from pathlib import Path
-    from pareto_monoped.cad.write.film_files import require_video
+    from pareto_monoped.cad.film import require_video
     from pareto_monoped.errors import InputError
     try:
         require_video(Path("jump.mp4"))
@@ -85,17 +84,17 @@ def test_a_video_without_an_encoder_says_what_to_install(tmp_path):
 
 
 def test_a_scheduler_without_dask_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(extras, "find_spec", lambda module: None)
+    monkeypatch.setattr(errors, "find_spec", lambda module: None)
     with pytest.raises(InputError, match=r"scheduler tcp://x:1: needs distributed, .*'pareto-monoped\[cluster\]'"):
         DaskWorkers("tcp://x:1")
 
 
 def test_all_packages_that_are_missing_are_named(monkeypatch):
-    monkeypatch.setattr(extras, "find_spec", lambda module: None)
+    monkeypatch.setattr(errors, "find_spec", lambda module: None)
     with pytest.raises(InputError, match="needs cadquery-ocp-novtk and manifold3d and shapely, which are not"):
-        extras.require_extra("cad", "CAD")
-    monkeypatch.setattr(extras, "find_spec", lambda module: True)
-    extras.require_extra("cad", "CAD")
+        errors.require_extra("cad", "CAD")
+    monkeypatch.setattr(errors, "find_spec", lambda module: True)
+    errors.require_extra("cad", "CAD")
 
 
 def test_searching_choosing_and_reporting_need_no_cad(tmp_path):

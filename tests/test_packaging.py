@@ -121,7 +121,7 @@ REVEALED = {
     "pm.run": "pareto_monoped.api.studies.StoredStudy",
     "pm.resume": "pareto_monoped.api.studies.StoredStudy",
     "pm.load_study": "pareto_monoped.api.studies.StoredStudy",
-    "pm.Study.define": "pareto_monoped.study.definition.Study",
+    "pm.Study.define": "pareto_monoped.definition.study.Study",
     "pm.load_motor": "pareto_monoped.actuator.motor.Motor",
     "pm.actuator_map": "pareto_monoped.actuator.ratiomap.ActuatorMap",
     "pm.load_calibration": "pareto_monoped.jump.calibration.Calibration",

@@ -9,7 +9,7 @@ from pareto_monoped.actuator.actuator import reflected_inertia_kg_m2
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
-from pareto_monoped.geometry.iso286 import limits
+from pareto_monoped.geometry.making import limits
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS, Group, JointKind, Role, Visibility
 from pareto_monoped.robot.build import build_robot
 

@@ -29,9 +29,9 @@ from functools import partial
 from pathlib import Path
 
 from pareto_monoped.cli import main as command_line
-from pareto_monoped.study.definition import Study, load_study
-from pareto_monoped.study.reader import StudyData, read_study
-from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.definition.study import Study, load_study
+from pareto_monoped.storage.extra_rows import read_robustness
+from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.study.run import run
 
 MOST_MB = 200.0

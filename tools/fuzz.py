@@ -37,7 +37,7 @@ from fuzz_calls import WEIGHTS, Call, call_of
 from fuzz_checks import Result, findings, snapshot
 
 ROOT = Path(__file__).parents[1]
-STORED = ROOT / "tests" / "study" / "data"
+STORED = ROOT / "tests" / "storage" / "data"
 PATIENCE_S = 180.0
 """After which a call counts as one that hangs."""
 _STRIKES = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
@@ -127,8 +127,10 @@ def _record(folder: Path) -> dict[str, Any]:
     """A record of an export that was never made."""
     from pareto_monoped.cad.export import simulated_jumps
     from pareto_monoped.cad.jobs import case_job
-    from pareto_monoped.cad.made import expected_record
-    from pareto_monoped.cad.records import record_job  # noqa: F401
+    from pareto_monoped.cad.records import (
+        expected_record,
+        record_job,  # noqa: F401
+    )
 
     job = case_job("C", folder=folder / "export", formats=["urdf"])
     record = expected_record(job)

@@ -28,16 +28,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pareto_monoped.analysis.verify import verify
+from pareto_monoped.definition.algorithms import ALGORITHMS
+from pareto_monoped.definition.study import Study, load_study
 from pareto_monoped.errors import ParetoMonopedError
+from pareto_monoped.storage.front_reader import read_front
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.status import status
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study import run as runs
-from pareto_monoped.study.algorithm_settings import ALGORITHMS
-from pareto_monoped.study.definition import Study, load_study
-from pareto_monoped.study.front_reader import read_front
-from pareto_monoped.study.reader import StudyData, read_study
 from pareto_monoped.study.session import Session
-from pareto_monoped.study.status import status
-from pareto_monoped.study.store import Store
-from pareto_monoped.study.verify import verify
 
 _SOURCE = Path(__file__).with_name("kill_before.c")
 _LIBRARY = "KILL_STORM_LIBRARY"

@@ -24,9 +24,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.definition.study import study_from_dict
+from pareto_monoped.storage.extra_rows import read_robustness
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 
 ROOT = Path(__file__).parents[1]

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from pareto_monoped.actuator.external import external_parts
-from pareto_monoped.actuator.face import face_width_mm
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency
 from pareto_monoped.actuator.internal import BACK_THREAD_MM, internal_parts
 from pareto_monoped.actuator.layout import Family, Layout, layout
-from pareto_monoped.actuator.motors import HolePattern, Motor
+from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.sheet import Rating, rate
+from pareto_monoped.actuator.rating.width import face_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import SCREWS, Group, Role
@@ -20,84 +20,54 @@ from pareto_monoped.geometry.shapes import Numbers
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutputInterface:
-    """Output flange, the same on every actuator: its face lies at z = 0 of the actuator frame.
+    """Output flange, the same on every actuator: its face lies at z = 0 of the actuator frame."""
 
-    Attributes:
-        flange_radius_mm: of the turning face.
-        bolts: M3 threads in the flange, the first on the x axis.
-        dowels: holes for dowels in every second gap of the bolts, as deep as the threads.
-        thread_depth_mm: depth of these threads.
-    """
-
-    flange_radius_mm: float
-    bolts: HolePattern
-    dowels: HolePattern
-    thread_depth_mm: float
+    flange_radius_mm: float  #: of the turning face
+    bolts: HolePattern  #: M3 threads in the flange, the first on the x axis
+    dowels: HolePattern  #: holes for dowels in every second gap of the bolts, as deep as the threads
+    thread_depth_mm: float  #: depth of these threads
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MountInterface:
-    """How the housing is held, the same on every actuator of a motor and family.
+    """How the housing is held, the same on every actuator of a motor and family."""
 
-    Attributes:
-        housing_radius_mm: largest radius of the housing.
-        bolts: M3 threads in the face at z = 0, the first on the x axis.
-        dowels: holes for dowels in every gap of the bolts, as deep as the threads.
-        thread_depth_mm: depth of these threads.
-        back_bolts: the motor's own mounting pattern in the backplate: threads in an ISSPG; in an ESSPG, clearance holes
-            for the screws that reach the motor's base.
-        back_depth_mm: depth of these holes: that of the thread (ISSPG) or of the plate (ESSPG).
-    """
-
-    housing_radius_mm: float
-    bolts: HolePattern
-    dowels: HolePattern
-    thread_depth_mm: float
+    housing_radius_mm: float  #: largest radius of the housing
+    bolts: HolePattern  #: M3 threads in the face at z = 0, the first on the x axis
+    dowels: HolePattern  #: holes for dowels in every gap of the bolts, as deep as the threads
+    thread_depth_mm: float  #: depth of these threads
+    #: The motor's own mounting pattern in the backplate: threads in an ISSPG; in an ESSPG, clearance holes for the
+    #: screws that reach the motor's base
     back_bolts: HolePattern
-    back_depth_mm: float
+    back_depth_mm: float  #: depth of these holes: that of the thread (ISSPG) or of the plate (ESSPG)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
-    """A motor with a planetary gearbox, and all its parts in the actuator frame (see ``layout``).
+    """A motor with a planetary gearbox, and all its parts in the actuator frame (see ``layout``)."""
 
-    Attributes:
-        motor: the motor.
-        family: ``ISSPG`` or ``ESSPG``.
-        gears: the gear set.
-        face_width_mm: of all gears.
-        ratio: motor speed over output speed, as the gear set has it.
-        mass_kg: sum over the parts.
-        peak_torque_n_m, continuous_torque_n_m: at the output: ratio times the motor's, without losses (paper, section
-            III-A).
-        no_load_speed_rad_per_s: at the output.
-        efficiency: of both gear meshes together.
-        contact_ratio_sun, contact_ratio_ring: of sun and planet, of planet and ring.
-        reflected_inertia_kg_m2: of everything that turns with the motor or in the gearbox, at the output.
-        length_mm: from the output face to the back, without the screw heads and the encoder that stand out there.
-        output, mount: where the links are bolted on.
-        parts: every part, including the screws that hold a framed motor.
-        rating: of the gears after ISO 6336; None under the rules ``paper``.
-    """
-
-    motor: Motor
-    family: Family
-    gears: GearSet
-    face_width_mm: float
-    ratio: float
-    mass_kg: float
+    motor: Motor  #: the motor
+    family: Family  #: ``ISSPG`` or ``ESSPG``
+    gears: GearSet  #: the gear set
+    face_width_mm: float  #: of all gears
+    ratio: float  #: motor speed over output speed, as the gear set has it
+    mass_kg: float  #: sum over the parts
+    #: peak_torque_n_m, continuous_torque_n_m: at the output: ratio times the motor's, without losses (paper, section
+    #: III-A)
     peak_torque_n_m: float
     continuous_torque_n_m: float
-    no_load_speed_rad_per_s: float
-    efficiency: float
+    no_load_speed_rad_per_s: float  #: at the output
+    efficiency: float  #: of both gear meshes together
+    #: contact_ratio_sun, contact_ratio_ring: of sun and planet, of planet and ring
     contact_ratio_sun: float
     contact_ratio_ring: float
-    reflected_inertia_kg_m2: float
-    length_mm: float
+    reflected_inertia_kg_m2: float  #: of everything that turns with the motor or in the gearbox, at the output
+    length_mm: float  #: from the output face to the back, without the screw heads and the encoder that stand out there
+    #: output, mount: where the links are bolted on
     output: OutputInterface
     mount: MountInterface
-    parts: tuple[Part, ...]
-    rating: Rating | None = None
+    parts: tuple[Part, ...]  #: every part, including the screws that hold a framed motor
+    rating: Rating | None = None  #: of the gears after ISO 6336; None under the rules ``paper``
 
     def __repr__(self) -> str:
         """One line: motor, gearbox, ratio, mass and torque."""

@@ -1,4 +1,11 @@
-"""Ball bearings: catalogue with ratings, choice of the main bearing, the paper's regression of mass over bore."""
+"""Ball bearings: catalogue with ratings, choice of the main bearing, the paper's regression of mass over bore.
+
+Retaining rings of shafts and bores: catalogue after DIN 471 and DIN 472, with the grooves that they need.
+
+Rings with inverted lugs (makers' V-rings) fit the same grooves. They are used here, because thin-section bearings leave
+no room for the others: the eyes of DIN 471 - 40 x 1.75 reach to 24.75 mm and those of DIN 472 - 52 x 2 to 20.8 mm, but
+the shoulder of the outer ring begins at 24.5 mm and that of the inner ring ends at 21 mm.
+"""
 
 import csv
 from dataclasses import dataclass
@@ -26,22 +33,18 @@ class Bearing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RatedBearing:
-    """One deep groove ball bearing of the catalogue with its load ratings.
+    """One deep groove ball bearing of the catalogue with its load ratings."""
 
-    Attributes:
-        designation: of the maker.
-        inner_diameter_mm, outer_diameter_mm, width_mm, mass_kg: as of ``Bearing``.
-        dynamic_rating_n, static_rating_n: C and C0.
-        balls, ball_diameter_mm: of its row.
-    """
-
-    designation: str
+    designation: str  #: of the maker
+    #: inner_diameter_mm, outer_diameter_mm, width_mm, mass_kg: as of ``Bearing``
     inner_diameter_mm: float
     outer_diameter_mm: float
     width_mm: float
     mass_kg: float
+    #: dynamic_rating_n, static_rating_n: C and C0
     dynamic_rating_n: float
     static_rating_n: float
+    #: balls, ball_diameter_mm: of its row
     balls: int
     ball_diameter_mm: float
 
@@ -198,3 +201,100 @@ def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "
     if model == "regression":
         mass = np.polyval(_regression(), inner)
     return Bearing(inner_diameter_mm=inner, outer_diameter_mm=outer, width_mm=width, mass_kg=mass)
+
+
+Standard = Literal["DIN 471", "DIN 472"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RetainingRing:
+    """One retaining ring in its groove, or an array of them."""
+
+    standard: Standard  #: ``DIN 471`` for shafts, ``DIN 472`` for bores
+    size_mm: Numbers  #: d1, diameter of shaft or bore
+    thickness_mm: Numbers  #: s
+    radial_width_mm: Numbers  #: b, opposite the gap
+    groove_diameter_mm: Numbers  #: d2
+    groove_zone: str  #: tolerance class of d2 (ISO 286); '' for arrays
+    groove_width_mm: Numbers  #: m, with the tolerance H13
+    mass_kg: Numbers  #: of the ring, which is narrower towards its ends
+
+    @property
+    def r_groove(self) -> Numbers:
+        """Radius of the groove's bottom, in mm, on which the ring sits."""
+        return 0.5 * self.groove_diameter_mm
+
+    @property
+    def r_free(self) -> Numbers:
+        """Radius of the ring's other edge, in mm, opposite the gap."""
+        return self.r_groove + (self.radial_width_mm if self.standard == "DIN 471" else -self.radial_width_mm)
+
+    @property
+    def play_mm(self) -> Numbers:
+        """How much wider the groove is than the ring."""
+        return self.groove_width_mm - self.thickness_mm
+
+    @property
+    def name(self) -> str:
+        """As it is ordered, such as ``V-ring (DIN 471, inverted lugs) 40 x 1.75``; '' for arrays."""
+        if np.ndim(self.size_mm):
+            return ""
+        return f"V-ring ({self.standard}, inverted lugs) {self.size_mm:g} x {self.thickness_mm:g}"
+
+    @property
+    def groove_note(self) -> str:
+        """What a drawing must say of the groove besides its diameter; '' for arrays."""
+        return "" if np.ndim(self.size_mm) else f"groove of the retaining ring {self.groove_width_mm:g} H13 wide"
+
+
+_NUMBERS = ("size_mm", "thickness_mm", "radial_width_mm", "groove_diameter_mm", "groove_width_mm", "mass_kg")
+
+
+def read_retaining_rings(text: str) -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
+    """The rings of a table in CSV with ``#`` comments: by standard, numbers of shape (n, 6) and zones of the grooves.
+
+    Raises:
+        InputError: a ring does not fit its groove, or the sizes do not increase.
+    """
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    found = {}
+    for standard, outwards in (("DIN 471", -1.0), ("DIN 472", 1.0)):
+        own = [row for row in rows if row["standard"] == standard]
+        table = np.array([[float(row[name]) for name in _NUMBERS] for row in own])
+        for size, thickness, width, groove, room, _ in table.tolist():
+            ring = f"retaining ring {standard} - {size:g}: "
+            if not 0.0 < outwards * (groove - size) < 2.0 * width:
+                _refuse(ring + "groove_diameter_mm", groove, f"{size:g} {outwards * 2.0 * width:+g} at most")
+            if not 0.0 < thickness < room:
+                _refuse(ring + "groove_width_mm", room, f"more than the ring's {thickness:g}")
+        for before, after in pairwise(table[:, 0].tolist()):
+            if after <= before:
+                _refuse(f"retaining ring {standard} - {after:g}: size_mm", after, f"more than the {before:g} above it")
+        table.flags.writeable = False
+        found[standard] = table, tuple(row["groove_zone"] for row in own)
+    return found
+
+
+def _refuse(quantity: str, value: float, allowed: str) -> None:
+    raise InputError(complaint(quantity, value, allowed, "correct data/retaining_rings.csv"))
+
+
+@lru_cache(maxsize=1)
+def _catalogue() -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
+    """The shipped catalogue."""
+    path = resources.files("pareto_monoped") / "data" / "retaining_rings.csv"
+    return read_retaining_rings(path.read_text(encoding="utf-8"))
+
+
+def retaining_ring(standard: Standard, size_mm: Numbers) -> RetainingRing:
+    """The ring of a shaft (DIN 471) or of a bore (DIN 472); NaN where the catalogue has none.
+
+    Args:
+        standard: which one.
+        size_mm: diameter of shaft or bore, float or shape (n,).
+    """
+    table, zones = _catalogue()[standard]
+    place = np.minimum(np.searchsorted(table[:, 0], np.asarray(size_mm) - 1e-9), len(table) - 1)
+    row = np.where((np.abs(table[place, 0] - size_mm) < 1e-6)[..., None], table[place], np.nan)
+    values = dict(zip(_NUMBERS, (row[..., column][()] for column in range(len(_NUMBERS))), strict=True))
+    return RetainingRing(standard=standard, groove_zone="" if np.ndim(place) else zones[int(place)], **values)

@@ -2,25 +2,34 @@
 
 import numpy as np
 
-from pareto_monoped.actuator.encoder import encoder_parts, shaft_end
 from pareto_monoped.actuator.external_housing import BACK_BORE_MM, housing_parts
-from pareto_monoped.actuator.external_layout import ExternalLayout, external_layout
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
+    encoder_parts,
     gear_accuracy,
     gear_grade,
     gear_note,
+    made,
     motor_holes,
+    rated_teeth,
+    shaft_end,
     slab,
+    spline_teeth,
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.motors import HolePattern, Motor
+from pareto_monoped.actuator.layout import (
+    COUPLING_DOWEL,
+    DOWEL_STANDS_OUT_MM,
+    ExternalLayout,
+    Layout,
+    external_layout,
+    hub_note,
+    spline_note,
+)
+from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, hub_note, spline_note
-from pareto_monoped.actuator.tooth_making import made, rated_teeth, spline_teeth
 from pareto_monoped.geometry.dowels import dowel_part
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part

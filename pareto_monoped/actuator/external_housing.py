@@ -1,6 +1,5 @@
 """The housing of the ESSPG: ring housing in front, casing around the motor, backplate, and what holds them together."""
 
-from pareto_monoped.actuator.external_layout import ExternalLayout
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     SPIGOT_MM,
@@ -12,8 +11,8 @@ from pareto_monoped.actuator.features import (
     tube,
     vents,
 )
-from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.layout import ExternalLayout, Layout
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit

@@ -1,18 +1,31 @@
-"""Building blocks of an actuator's parts: slabs, tubes, hole patterns, bearings, notes."""
+"""Building blocks of an actuator's parts: slabs, tubes, hole patterns, bearings, notes.
+
+The encoder at the back of an actuator: a magnet in the end of the motor's shaft, and a sensor in the backplate.
+
+The sensor is RLS's RM08 (data sheet RM08D01): a sealed body of 8 mm diameter and 7 mm length, which reads a magnet of
+4 x 4 mm, magnetised across, over a gap of 1 mm within 0.5 mm. 12 bit per turn of the motor, up to 30,000 rpm. It is
+bonded into a cap, which is bonded into the backplate's bore once the gap is set.
+
+Both joints have the same actuator. At the knee, sensor and cable stand in the journal's bore.
+
+How the teeth of gears and splines are made: what their rating takes for granted, for drawings and parts list.
+"""
 
 import numpy as np
 
 from pareto_monoped.actuator.bearings import Bearing
 from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.making import ToothMaking
 from pareto_monoped.geometry.parts import Part, Prism
-from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
-from pareto_monoped.materials import GearGrade, Material
+from pareto_monoped.materials import ALLOYS, MATERIALS, GearGrade, Material
 
 SPIGOT_MM = 1.5
 """Height of the backplate's step that centres it in the casing; our own choice."""
@@ -162,3 +175,116 @@ def bought_bearing(
         ),
         joint=joint,
     )
+
+
+BODY_RADIUS_MM, _BODY_MM = 4.0, 7.0
+MAGNET_RADIUS_MM, MAGNET_MM = 2.0, 4.0
+_GAP_MM = 1.0
+_BODY_KG = 0.002
+"""Body and 0.3 m of its cable; our own estimate, the data sheet gives none."""
+_CAP_MM = 1.5
+"""Thickness of the cap: 0.5 mm from the inner ring of an ISSPG's rear bearing; our own choice."""
+
+
+def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, shaft: str) -> tuple[Part, ...]:
+    """Magnet, sensor and cap.
+
+    Args:
+        z_shaft_mm: height of the rear end of the motor's shaft, float or shape (n,).
+        z_back_mm: height of the backplate's outer face, likewise.
+        bore_mm: radius of the backplate's central bore, likewise.
+        shaft: name of the part whose end takes the magnet, see ``shaft_end``.
+    """
+    z_sensor = z_shaft_mm - _GAP_MM
+    return (
+        Part(
+            name="encoder_magnet",
+            role=Role.ELECTRONICS,
+            visibility=Visibility.INSIDE,
+            material=MATERIALS.magnet,
+            prisms=slab(z_shaft_mm, z_shaft_mm + MAGNET_MM, MAGNET_RADIUS_MM),
+            process="bought",
+            group=Group.ROTOR,
+            note="4 x 4 mm, magnetised across its axis",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner=shaft),
+        ),
+        Part(
+            name="encoder",
+            role=Role.ELECTRONICS,
+            visibility=Visibility.DETAIL,
+            material=MATERIALS.electronics,
+            prisms=slab(z_sensor - _BODY_MM, z_sensor, BODY_RADIUS_MM),
+            process="bought",
+            group=Group.HOUSING,
+            catalogue_mass_kg=_BODY_KG,
+            note=f"RM08 (RLS), 12 bit; {_GAP_MM:g} mm from the magnet, within 0.5 mm",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap"),
+        ),
+        Part(
+            name="encoder_cap",
+            role=Role.HOUSING,
+            visibility=Visibility.INSIDE,
+            material=MATERIALS.aluminium,
+            prisms=tube(z_back_mm, z_back_mm + _CAP_MM, bore_mm, BODY_RADIUS_MM),
+            process="machined",
+            group=Group.HOUSING,
+            grade=ALLOYS["aw_6082_t6"],
+            note="flush with the backplate",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate"),
+        ),
+    )
+
+
+def shaft_end(z0_mm: Numbers, z1_mm: Numbers, radius_mm: Numbers) -> tuple[Prism, ...]:
+    """A shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
+    split = np.minimum(z0_mm + MAGNET_MM, z1_mm)[()]
+    return (*tube(z0_mm, split, radius_mm, MAGNET_RADIUS_MM), *slab(split, z1_mm, radius_mm))
+
+
+SPLINE_CLASS = 8
+"""ISO 1328-1 class of splines; our own choice: they are bonded and do not roll."""
+
+
+def rated_teeth(
+    gear: ExternalGear | InternalGear, steel: GearGrade, settings: ActuatorSettings, *mates: ExternalGear | InternalGear
+) -> ToothMaking | None:
+    """How a rated gear is made, and its mates; None under the rules of the paper, which rate none, and for arrays."""
+    if settings.rules == "paper" or np.ndim(gear.teeth):
+        return None
+    data, module = settings.parts.rating, float(gear.module_mm)
+    low, high = steel.layer_modules or (0.0, 0.0)
+    runout = runout_um(2.0 * float(gear.pitch_radius_mm), module, data.accuracy_class)
+    return ToothMaking(
+        teeth=int(gear.teeth),
+        module_mm=module,
+        accuracy_class=data.accuracy_class,
+        making=steel.making,
+        mates_mm=tuple(2.0 * float(mate.pitch_radius_mm) for mate in mates),
+        quality=steel.quality,
+        core_hardness=steel.core_hardness,
+        layer=steel.layer,
+        layer_mm=(
+            float(np.ceil(100.0 * low * module - 1e-9)) / 100.0,
+            float(np.floor(100.0 * high * module + 1e-9)) / 100.0,
+        ),
+        flank_rz_um=data.flank_roughness_um,
+        root_rz_um=data.root_roughness_um,
+        runout_mm=1e-3 * float(np.floor(runout)),
+    )
+
+
+def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMaking:
+    """How a spline is made, on the shaft and in the hub."""
+    return ToothMaking(
+        teeth=int(spline.teeth),
+        module_mm=float(spline.module_mm),
+        accuracy_class=SPLINE_CLASS,
+        making="hobbed; hub wire-cut to fit",
+        mates_mm=(2.0 * float(spline.pitch_radius_mm),),
+        play_mm=settings.parts.spline.play_mm,
+    )
+
+
+def made(*teeth: ToothMaking | None) -> tuple[ToothMaking, ...]:
+    """Those that are known."""
+    return tuple(one for one in teeth if one is not None)

@@ -7,20 +7,20 @@ from pareto_monoped.actuator.features import (
     gear_accuracy,
     gear_grade,
     gear_note,
+    made,
     output_dowel_holes,
     output_holes,
+    rated_teeth,
     slab,
     tube,
 )
 from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.tooth_making import made, rated_teeth
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
 from pareto_monoped.geometry.features import Hole, bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
-from pareto_monoped.geometry.iso286 import limits
-from pareto_monoped.geometry.making import Fit, raceway_note
+from pareto_monoped.geometry.making import Fit, limits, raceway_note
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped

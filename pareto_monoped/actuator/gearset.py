@@ -1,4 +1,7 @@
-"""Planetary gear sets: teeth, module, planets, and what follows from them alone."""
+"""Planetary gear sets: teeth, module, planets, and what follows from them alone.
+
+How evenly the planets share the load.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -7,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear, involute
 from pareto_monoped.geometry.shapes import Numbers
 
@@ -31,22 +35,16 @@ class GearSet:
     follow from meshing without backlash (ISO 21771): the working pressure angle alpha_w from
     cos(alpha_w) = cos(alpha) a / a_w, and sum of shifts = (z1 + z2) (inv(alpha_w) - inv(alpha)) / (2 tan(alpha)), for
     the internal mesh with the differences of teeth and shifts.
-
-    Attributes:
-        sun_teeth, planet_teeth, ring_teeth: Ns, Np, Nr.
-        module_mm: m.
-        planets: n_p.
-        centre_shift: y, by how much the centre distance exceeds m (Ns + Np) / 2.
-        sun_shift: x of the sun.
     """
 
+    #: sun_teeth, planet_teeth, ring_teeth: Ns, Np, Nr
     sun_teeth: Numbers
     planet_teeth: Numbers
     ring_teeth: Numbers
-    module_mm: Numbers
-    planets: Numbers
-    centre_shift: Numbers = 0.0
-    sun_shift: Numbers = 0.0
+    module_mm: Numbers  #: m
+    planets: Numbers  #: n_p
+    centre_shift: Numbers = 0.0  #: y, by how much the centre distance exceeds m (Ns + Np) / 2
+    sun_shift: Numbers = 0.0  #: x of the sun
     _shifts: _Shifts = field(init=False, repr=False, compare=False)
 
     @property
@@ -261,3 +259,11 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
     )
     basic = (1.0 - outer) * (1.0 - inner)
     return (1.0 + (gears.ratio - 1.0) * basic) / gears.ratio
+
+
+def load_sharing(planets: Numbers, settings: ActuatorSettings) -> Numbers:
+    """K_gamma by the number of planets, from the settings' table for the sun's support."""
+    data = settings.parts.rating
+    table = data.load_sharing_fixed if data.sun_support == "fixed" else data.load_sharing_floating
+    factor: Numbers = np.asarray(table)[np.minimum(np.asarray(planets).astype(int) - 2, len(table) - 1)][()]
+    return factor

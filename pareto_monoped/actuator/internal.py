@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from pareto_monoped.actuator.encoder import encoder_parts, shaft_end
 from pareto_monoped.actuator.features import (
     END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
@@ -10,23 +9,34 @@ from pareto_monoped.actuator.features import (
     bought_bearing,
     casing_dowel_holes,
     casing_holes,
+    encoder_parts,
     gear_accuracy,
     gear_grade,
     gear_note,
+    made,
     motor_holes,
     note_with,
+    rated_teeth,
+    shaft_end,
     slab,
     spigot,
+    spline_teeth,
     tube,
     vents,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.internal_layout import InternalLayout, frameless, internal_layout
-from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.layout import (
+    COUPLING_DOWEL,
+    DOWEL_STANDS_OUT_MM,
+    InternalLayout,
+    Layout,
+    frameless,
+    hub_note,
+    internal_layout,
+    spline_note,
+)
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sun_shaft import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, hub_note, spline_note
-from pareto_monoped.actuator.tooth_making import made, rated_teeth, spline_teeth
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit

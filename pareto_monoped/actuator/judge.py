@@ -2,6 +2,8 @@
 
 Most gear sets are ruled out by teeth and room alone. What costs more is worked out for the others only: first the
 layout and the rules that need it, then the mass, and last the rating.
+
+Every gear set that the search looks at: whole tooth numbers, standard modules, planets, profile shifts.
 """
 
 from collections.abc import Mapping
@@ -11,26 +13,79 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg
-from pareto_monoped.actuator.candidates import interval_tenths
 from pareto_monoped.actuator.constraint_names import ConstraintName
-from pareto_monoped.actuator.face import face_width_mm
-from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.gearset import GearSet, joined
 from pareto_monoped.actuator.layout import Family, Layout, layout
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.stage import Stage
 from pareto_monoped.actuator.rating.width import (
     LOAD_RULES,
     STRENGTH_RULES,
     WidthBounds,
+    face_width_mm,
     least_width_mm,
     strength_margins,
     width_bounds,
 )
-from pareto_monoped.actuator.ratiomap import RATIO_HIGH
+from pareto_monoped.actuator.ratiomap import RATIO_HIGH, RATIO_LOW
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, active_rules, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.shapes import Numbers
+
+_BEYOND_MM = 12.0
+"""How far beyond the room candidates are enumerated, so that the rules can say why a gearbox is missing."""
+_TEETH_LEAST = 12
+"""Fewest teeth enumerated, for the same reason and for searches with ``teeth_min`` off."""
+
+
+def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
+    """Every gear set with Nr = Ns + 2 Np, a ratio in the map's range, and m Nr not far beyond the room."""
+    sets = []
+    intervals = (10 * RATIO_LOW, 10 * RATIO_HIGH)
+    for module in settings.modules_mm:
+        ring_most = int((room_mm + _BEYOND_MM) / module)
+        least = min(_TEETH_LEAST, settings.teeth_min)
+        sun, planet = np.meshgrid(
+            np.arange(least, ring_most, dtype=np.int64),
+            np.arange(least, ring_most // 2 + 1, dtype=np.int64),
+            indexing="ij",
+        )
+        ring = sun + 2 * planet
+        tenths = interval_tenths(sun, ring)
+        keep = (ring <= ring_most) & (tenths >= intervals[0]) & (tenths < intervals[1])
+        for planets in range(settings.planets_least, settings.planets_max + 1):
+            shape = int(keep.sum())
+            sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
+    columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
+    gears = GearSet(
+        sun_teeth=columns[0],
+        planet_teeth=columns[1],
+        ring_teeth=columns[2],
+        module_mm=columns[3],
+        planets=columns[4],
+    )
+    return _with_shifts(gears, room_mm, settings)
+
+
+def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> GearSet:
+    """Every gear set with every profile shift of the settings.
+
+    No shift helps planets that do not mesh or a ring beyond the room, so that such sets come with the first shift only.
+    """
+    first, *others = settings.shift_choices
+    everything = gears.shifted(*first) if any(first) else gears
+    if not others:
+        return everything
+    meshing = (gears.sun_teeth + gears.ring_teeth) % gears.planets == 0.0
+    hopeful = gears.where(np.asarray(meshing & (2.0 * gears.ring_pitch_radius_mm <= room_mm)))
+    return joined([everything, *(hopeful.shifted(*shifts) for shifts in others)])
+
+
+def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; exact, in integers."""
+    return 10 * (sun_teeth + ring_teeth) // sun_teeth
+
 
 _FIRST = 4
 """How many sets of every interval are rated first, the lightest at a width that they cannot go below."""
@@ -38,23 +93,18 @@ _FIRST = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judged:
-    """What the rules say of every gear set of a family; arrays of shape (n,).
+    """What the rules say of every gear set of a family; arrays of shape (n,)."""
 
-    Attributes:
-        gears: the gear sets.
-        tenths: lower end of each set's interval.
-        width_mm, mass_kg: face width and mass; infinite mass for sets that cannot be built, or need not be weighed.
-        names, broken: rules, and which of them each set breaks, shape (names, n).
-        considered: sets that are solutions or are kept out by a single rule, as far as these may be lighter than the
-            two lightest of their interval.
-    """
-
-    gears: GearSet
-    tenths: NDArray[np.int64]
+    gears: GearSet  #: the gear sets
+    tenths: NDArray[np.int64]  #: lower end of each set's interval
+    #: width_mm, mass_kg: face width and mass; infinite mass for sets that cannot be built, or need not be weighed
     width_mm: NDArray[np.float64]
     mass_kg: NDArray[np.float64]
+    #: names, broken: rules, and which of them each set breaks, shape (names, n)
     names: tuple[ConstraintName, ...]
     broken: NDArray[np.bool_]
+    #: Sets that are solutions or are kept out by a single rule, as far as these may be lighter than the two lightest of
+    #: their interval
     considered: NDArray[np.bool_]
 
     @property
@@ -258,17 +308,11 @@ class _Rating:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Bounded:
-    """Some of the gear sets of a screen.
+    """Some of the gear sets of a screen."""
 
-    Attributes:
-        rows: which.
-        stage: they, to be rated.
-        bounds: of their widths.
-    """
-
-    rows: NDArray[np.intp]
-    stage: Stage
-    bounds: WidthBounds
+    rows: NDArray[np.intp]  #: which
+    stage: Stage  #: they, to be rated
+    bounds: WidthBounds  #: of their widths
 
     def where(self, mask: NDArray[np.bool_]) -> "_Bounded":
         """Some of them."""

@@ -6,6 +6,12 @@ is flush with this face and points to +z; everything lies at z <= 0. From the fr
     output flange, main bearing around the carrier | planets between sun and ring | secondary carrier | coupling, motor
 
 In the ISSPG, the stator sits on the ring housing around the gears. In the ESSPG, the motor follows behind them.
+
+Radii and heights of the ESSPG behind the common front: housing, coupling, motor, backplate.
+
+Radii and heights of the ISSPG behind the common front: ring housing, rotor, coupling, rear bearing, backplate.
+
+The sun's shaft: its end in the carrier's end bearing, and the spline by which the motor drives it.
 """
 
 from dataclasses import dataclass
@@ -13,12 +19,14 @@ from typing import Literal
 
 import numpy as np
 
-from pareto_monoped.actuator.bearings import Bearing, main_bearing, small_bearing
+from pareto_monoped.actuator.bearings import Bearing, RetainingRing, main_bearing, retaining_ring, small_bearing
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.actuator.motors import AIR_GAP_MM, Motor
-from pareto_monoped.actuator.retaining_rings import RetainingRing, retaining_ring
+from pareto_monoped.actuator.motor import AIR_GAP_MM, FramelessMotor, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import Webs, webs_of
+from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.gears import ExternalGear
+from pareto_monoped.geometry.screws import LENGTHS_MM, screw_for
 from pareto_monoped.geometry.shapes import Numbers
 
 Family = Literal["ISSPG", "ESSPG"]
@@ -157,3 +165,230 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         z_secondary_front=z_secondary_front,
         z_secondary_back=z_secondary_front - carrier.secondary_thickness_mm,
     )
+
+
+_NECK_RADIUS_MM = 3.8
+"""Of the sun's neck, which touches the inner ring of its end bearing only (619/6: abutment from 7.6 mm diameter)."""
+_NECK_PLAY_MM = 0.2
+"""Axial play of the rotor between end bearing and rear bearing; our own choice."""
+COUPLING_DOWEL = Dowel(diameter_mm=2.5)
+"""Between the coupling and what turns it; our own choice: they stand between screws of M3 or M4 on 22 mm."""
+DOWEL_STANDS_OUT_MM = 1.0
+"""How far such a dowel may stand out: half of ``motor_carrier_clearance_mm``."""
+_RUN_OUT_MM = 2.0
+"""Along the shaft, of a hob of 24 mm that cuts 0.125 mm into it: sqrt(12^2 - 11.875^2) = 1.7 mm, rounded up."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SunNeck:
+    """The front end of the sun's shaft, in mm."""
+
+    z: Numbers  #: back of the end that turns in the end bearing
+    #: r_journal, r: radii of this end and of the neck behind it
+    r_journal: Numbers
+    r: Numbers
+
+
+def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
+    """The neck keeps the sun from moving forwards and clears the carrier."""
+    r_journal = 0.5 * at.end_bearing.inner_diameter_mm
+    room = at.r_carrier_in - settings.parts.casing.rotor_clearance_mm
+    return SunNeck(
+        z=-at.end_bearing.width_mm - _NECK_PLAY_MM,
+        r_journal=r_journal,
+        r=np.maximum(r_journal, np.minimum(_NECK_RADIUS_MM, room))[()],
+    )
+
+
+def hub_note(settings: ActuatorSettings) -> str:
+    """How the coupling is made to fit."""
+    return f"wire-cut to the shaft's spline, {settings.parts.spline.play_mm:g} mm play"
+
+
+def spline_note(spline: ExternalGear, shaft_radius_mm: float) -> str:
+    """The spline in words. It is toothed like a gear, so that a hob and a wire-cutter do, not a tool of its own.
+
+    Args:
+        spline: its teeth.
+        shaft_radius_mm: of the shaft beside them.
+    """
+    note = f"splined end of {spline.teeth:g} teeth, module {spline.module_mm:g} mm, 20 degrees"
+    root, shaft = 2.0 * float(spline.root_radius_mm), 2.0 * shaft_radius_mm
+    if root >= shaft:
+        return note
+    return (
+        f"{note}, roots of {root:g} mm below the shaft's {shaft:g} mm: hob may run out into it over {_RUN_OUT_MM:g} mm"
+    )
+
+
+_FLANGE_WIDTH_MM = 6.0
+"""Of the flange between ring housing and casing: 2.8 mm outside the bolt circle, a hexagon head's inner radius."""
+_FLANGE_BOLTS_MM = 3.2
+"""From the tube to that flange's bolt circle. A hexagon head of M3, 6.01 mm over its corners, turns beside the tube; a
+spanner reaches it from the side, where the front plate bars a key."""
+_THREAD_SHARE = 0.6
+"""Least depth of thread over the screw's diameter, as the export's check of held parts asks for."""
+_RING_STEP_MM = 1.0
+"""How far the ring stands out of its housing into the casing, which it centres; our own choice."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExternalLayout:
+    """Radii and heights of coupling, motor and housing, in mm, beyond what ``Layout`` has.
+
+    From the front: the neck of the sun's shaft; the ring housing's seat and its ring's groove; flange and web, where
+    ring housing and casing meet; coupling; motor; backplate.
+    """
+
+    z_groove_back: Numbers
+    z_seat_back: Numbers
+    z_flange: Numbers
+    z_web: Numbers
+    z_coupling: Numbers
+    z_motor: Numbers
+    z_plate: Numbers
+    z_end: Numbers
+    r_boss: Numbers
+    r_tube: Numbers
+    r_tube_in: Numbers
+    r_flange: Numbers
+    r_web: Numbers
+    r_bolts: Numbers
+    neck: SunNeck
+    coupling_mm: float
+    base_mm: float
+
+
+def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> ExternalLayout:
+    """The layout of an ESSPG behind its front, for one gear set or for arrays of them."""
+    casing, coupling_mm = settings.parts.casing, _coupling_mm(motor, settings)
+    assert motor.framed is not None
+    z_coupling = at.z_secondary_back - casing.motor_carrier_clearance_mm
+    z_motor = z_coupling - coupling_mm
+    z_plate = z_motor - motor.framed.length_mm
+    z_groove_back = at.z_bearing_back - at.bore_ring.thickness_mm
+    z_flange = at.z_gear_back + _RING_STEP_MM
+    r_boss = at.r_seat + casing.seat_wall_mm
+    r_tube = np.maximum(at.r_ring + casing.ring_wall_mm, r_boss)
+    r_flange = r_tube + _FLANGE_WIDTH_MM
+    return ExternalLayout(
+        z_groove_back=z_groove_back,
+        z_seat_back=z_groove_back - BORE_GROOVE_WALL_MM,
+        z_flange=z_flange,
+        z_web=z_flange - casing.flange_mm,
+        z_coupling=z_coupling,
+        z_motor=z_motor,
+        z_plate=z_plate,
+        z_end=z_plate - casing.plate_mm,
+        r_boss=r_boss,
+        r_tube=r_tube,
+        r_tube_in=np.maximum(at.r_ring - casing.ring_lip_mm, r_boss),
+        r_flange=r_flange,
+        r_web=np.maximum(r_flange, at.r_casing + casing.wall_mm),
+        r_bolts=r_tube + _FLANGE_BOLTS_MM,
+        neck=sun_neck(at, settings),
+        coupling_mm=coupling_mm,
+        base_mm=_frame_base_mm(motor, coupling_mm),
+    )
+
+
+def _coupling_mm(motor: Motor, settings: ActuatorSettings) -> float:
+    """Thickness of the coupling, in which the heads of its countersunk screws must find room, in steps of 0.1 mm."""
+    assert motor.output_holes is not None
+    screw = screw_for(motor.output_holes.diameter_mm, 0.0)
+    return max(
+        settings.parts.coupling.thickness_mm, float(np.ceil(10.0 * (screw.countersunk - screw.shank) - 1e-9)) / 10.0
+    )
+
+
+def _frame_base_mm(motor: Motor, coupling_mm: float) -> float:
+    """Thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones.
+
+    It is more where the face would not hold the coupling's screws by ``_THREAD_SHARE`` of their diameter.
+    """
+    assert motor.framed is not None
+    assert motor.output_holes is not None
+    least = coupling_mm + _THREAD_SHARE * motor.output_holes.diameter_mm
+    length = LENGTHS_MM[np.searchsorted(LENGTHS_MM, least - 1e-9)]
+    return max(min(3.0, 0.1 * motor.framed.length_mm), float(length) - coupling_mm)
+
+
+_FLANGE_LESS_MM = 1.0
+"""By how much the ring housing's flange is narrower than the casing's, within whose bolts it stays."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InternalLayout:
+    """Radii and heights of ring housing, rotor, coupling, rear bearing and backplate, in mm, beyond ``Layout``."""
+
+    #: z_flange, z_lip: backs of the ring housing's flange and of the lip behind the main bearing
+    z_flange: float
+    z_lip: Numbers
+    #: z_bell, z_stator_back: front of the bell, back of the stator
+    z_bell: Numbers
+    z_stator_back: Numbers
+    z_coupling: Numbers  #: front of the coupling, at the bell's back
+    #: z_seat, z_plate, z_end: front of the rear bearing, front and back of the backplate
+    z_seat: Numbers
+    z_plate: Numbers
+    z_end: Numbers
+    neck: SunNeck  #: front end of the sun's shaft
+    #: r_seat_out, r_flange, r_flange_bolts, r_lip, r_ring_lip: of the ring housing: outside of its seat, its flange,
+    #: the flange's bolt circle, the openings of the lips behind the main bearing and in front of the ring
+    r_seat_out: Numbers
+    r_flange: Numbers
+    r_flange_bolts: Numbers
+    r_lip: Numbers
+    r_ring_lip: Numbers
+    r_rear_seat: Numbers  #: of the rear bearing's seat
+
+
+def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> InternalLayout:
+    """The layout of an ISSPG behind its front, for one gear set or for arrays of them."""
+    data, kit = settings.parts, frameless(motor)
+    casing = data.casing
+    assert kit.stator_height_mm is not None
+    # Where the main bearing is too large for the stator's bore, its seat stands in front of the stator.
+    fits = at.r_seat + casing.ring_wall_mm <= at.r_stator_in
+    r_seat_out = np.where(fits, at.r_stator_in, at.r_seat + casing.ring_wall_mm)[()]
+    z_flange = -(casing.plate_mm + casing.flange_mm)
+    z_lip = at.z_shoulder
+    z_free = np.where(fits, z_flange, z_lip)[()] - casing.rotor_clearance_mm
+    # The rotor's cavity is as high as the stator, and the rotor needs axial clearance to the second carrier.
+    z_bell = np.minimum(
+        z_free - kit.stator_height_mm - casing.rotor_clearance_mm,
+        at.z_secondary_back - casing.motor_carrier_clearance_mm,
+    )
+    z_coupling = z_bell - kit.bell_thickness_mm
+    z_seat = z_coupling - data.coupling.thickness_mm - casing.bearing_play_mm
+    z_plate = z_seat - at.rear_bearing.width_mm
+    r_shoulder = at.r_bore + data.carrier.shoulder_height_mm
+    r_flange = r_seat_out + casing.flange_width_mm - _FLANGE_LESS_MM
+    return InternalLayout(
+        z_flange=z_flange,
+        z_lip=z_lip,
+        z_bell=z_bell,
+        z_stator_back=z_bell + casing.rotor_clearance_mm,
+        z_coupling=z_coupling,
+        z_seat=z_seat,
+        z_plate=z_plate,
+        z_end=z_plate - casing.wall_mm,
+        neck=sun_neck(at, settings),
+        r_seat_out=r_seat_out,
+        r_flange=r_flange,
+        r_flange_bolts=r_flange - 0.5 * (casing.flange_width_mm - _FLANGE_LESS_MM),
+        # It holds the bearing's outer ring and the ring gear, and clears the carrier's shoulder.
+        r_lip=np.maximum(
+            np.minimum(at.r_seat - casing.lip_mm, at.r_ring - 0.5 * casing.ring_lip_mm),
+            r_shoulder + casing.rotor_clearance_mm,
+        ),
+        # Its corner clears the shoulder's corner, which turns in the same plane.
+        r_ring_lip=np.maximum(at.r_ring - 0.5 * casing.ring_lip_mm, r_shoulder + casing.shoulder_clearance_mm),
+        r_rear_seat=0.5 * at.rear_bearing.outer_diameter_mm,
+    )
+
+
+def frameless(motor: Motor) -> FramelessMotor:
+    """The frameless motor, which every ISSPG has."""
+    assert motor.frameless is not None
+    return motor.frameless

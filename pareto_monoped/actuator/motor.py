@@ -6,8 +6,7 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.actuator.thermal import ThermalData
-from pareto_monoped.actuator.windings import ResistanceKind, line_to_line_ohm, torque_constant_n_m_per_a
+from pareto_monoped.actuator.windings import ResistanceKind, ThermalData, line_to_line_ohm, torque_constant_n_m_per_a
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 # The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
@@ -127,26 +126,6 @@ class FramelessMotor:
 class Motor:
     """A brushless outrunner. Values that are not given are derived.
 
-    Attributes:
-        name: as asked for.
-        description: maker and type.
-        kv_rpm_per_v: speed constant.
-        rated_voltage_v, rated_power_w: as published.
-        max_continuous_current_a: as published, of the equivalent DC machine, see ``windings``.
-        winding_resistance_ohm: as published, at 25 C.
-        winding_resistance_kind: which resistance that is; line to line unless something else is known.
-        torque_constant_n_m_per_a: of the DC-equivalent current; default 60 / (2 pi Kv), the speed constant in SI.
-        continuous_torque_n_m: default torque constant times continuous current.
-        peak_torque_n_m: default ``PEAK_TO_CONTINUOUS`` times the continuous torque.
-        framed: for a gearbox outside the motor (ESSPG), or None.
-        frameless: for a gearbox inside the stator (ISSPG), or None.
-        mount_holes: in the base of the framed motor; default: the VT8020's circle scaled to the diameter, 4 x M4.
-        output_holes: in the rotor's face; default: likewise, 6 x M3.
-        rotor_inertia_kg_m2: about the axis; default: the estimate of ``estimated_rotor_inertia_kg_m2``.
-        rotor_mass_share: of the rotor in the motor's active mass; default: the estimate of
-            ``estimated_rotor_mass_share``.
-        thermal: measured thermal properties, or None.
-
     Example:
         >>> from dataclasses import replace
         >>> from pareto_monoped import load_motor
@@ -158,24 +137,29 @@ class Motor:
 
     __pydantic_config__ = _STRICT
 
-    name: str
-    description: str = ""
-    kv_rpm_per_v: Positive
+    name: str  #: as asked for
+    description: str = ""  #: maker and type
+    kv_rpm_per_v: Positive  #: speed constant
+    #: rated_voltage_v, rated_power_w: as published
     rated_voltage_v: Positive
     rated_power_w: Positive | None = None
-    max_continuous_current_a: Positive
-    winding_resistance_ohm: Positive
+    max_continuous_current_a: Positive  #: as published, of the equivalent DC machine, see ``windings``
+    winding_resistance_ohm: Positive  #: as published, at 25 C
+    #: Of the DC-equivalent current; default 60 / (2 pi Kv), the speed constant in SI
     torque_constant_n_m_per_a: Positive = 0.0
-    continuous_torque_n_m: Positive = 0.0
-    peak_torque_n_m: Positive = 0.0
-    framed: FramedMotor | None = None
-    frameless: FramelessMotor | None = None
+    continuous_torque_n_m: Positive = 0.0  #: default torque constant times continuous current
+    peak_torque_n_m: Positive = 0.0  #: default ``PEAK_TO_CONTINUOUS`` times the continuous torque
+    framed: FramedMotor | None = None  #: for a gearbox outside the motor (ESSPG), or None
+    frameless: FramelessMotor | None = None  #: for a gearbox inside the stator (ISSPG), or None
+    #: In the base of the framed motor; default: the VT8020's circle scaled to the diameter, 4 x M4
     mount_holes: HolePattern | None = None
-    output_holes: HolePattern | None = None
-    rotor_inertia_kg_m2: Positive = 0.0
+    output_holes: HolePattern | None = None  #: in the rotor's face; default: likewise, 6 x M3
+    rotor_inertia_kg_m2: Positive = 0.0  #: about the axis; default: the estimate of ``estimated_rotor_inertia_kg_m2``
+    #: Which resistance that is; line to line unless something else is known
     winding_resistance_kind: ResistanceKind = "line_to_line"
+    #: Of the rotor in the motor's active mass; default: the estimate of ``estimated_rotor_mass_share``
     rotor_mass_share: Share = 0.0
-    thermal: ThermalData | None = None
+    thermal: ThermalData | None = None  #: measured thermal properties, or None
 
     def __post_init__(self) -> None:
         # Zero stands for "not given": a value that is given is checked to be positive before it gets here.

@@ -1,4 +1,7 @@
-"""The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one."""
+"""The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one.
+
+The gearboxes of a robot's joints: hip and knee may have different motors.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +14,7 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.width import LOAD_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -49,35 +52,24 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FamilyResult:
-    """What the search found for one family in one interval.
+    """What the search found for one family in one interval."""
 
-    Attributes:
-        best, runner_up: the lightest set and the next, or None.
-        in_the_way: names of constraints (``rules.CONSTRAINTS``). If there is a best set: each of them alone keeps out a
-            lighter one. If there is none: the constraints that the nearest sets break; empty if no integer tooth set
-            has such a ratio.
-    """
-
+    #: best, runner_up: the lightest set and the next, or None
     best: Candidate | None
     runner_up: Candidate | None
+    #: Names of constraints (``rules.CONSTRAINTS``). If there is a best set: each of them alone keeps out a lighter one.
+    #: If there is none: the constraints that the nearest sets break; empty if no integer tooth set has such a ratio.
     in_the_way: tuple[ConstraintName, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapEntry:
-    """One half-open interval [ratio_low, ratio_high).
+    """One half-open interval [ratio_low, ratio_high)."""
 
-    Attributes:
-        ratio_low: lower end.
-        actuator: the lightest of both families, or None.
-        runner_up: the second lightest of both families, or None.
-        families: what was found for each family that the motor has.
-    """
-
-    ratio_low: float
-    actuator: Actuator | None
-    runner_up: Candidate | None
-    families: Mapping[Family, FamilyResult]
+    ratio_low: float  #: lower end
+    actuator: Actuator | None  #: the lightest of both families, or None
+    runner_up: Candidate | None  #: the second lightest of both families, or None
+    families: Mapping[Family, FamilyResult]  #: what was found for each family that the motor has
 
     def __repr__(self) -> str:
         """One line: the interval and its gearbox."""
@@ -282,3 +274,59 @@ def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
     """
     near = np.clip(ratios, -_FAR, _FAR)
     return np.floor(np.round(10.0 * near, _EDGE_DECIMALS)).astype(np.intp)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointMaps:
+    """The gearboxes that hip and knee choose from: one map twice where both have the same motor.
+
+    Compared by the identity of both maps, as ``ActuatorMap`` is.
+
+    Raises:
+        DesignError: the maps follow different rules.
+    """
+
+    #: hip, knee: ratio -> lightest actuator of the joint's motor
+    hip: ActuatorMap
+    knee: ActuatorMap
+
+    def __post_init__(self) -> None:
+        one, other = self.hip.settings.rules, self.knee.settings.rules
+        if one != other:
+            raise DesignError(
+                f"rules of the hip's gearboxes = {one!r}: must be those of the knee's, {other!r}; build both maps with "
+                "the same rules"
+            )
+
+    def of(self, joint: str) -> ActuatorMap:
+        """The map of ``hip`` or ``knee``."""
+        return {"hip": self.hip, "knee": self.knee}[joint]
+
+    @property
+    def rules(self) -> str:
+        """Rules of all gearboxes, see ``actuator.settings``."""
+        return self.hip.settings.rules
+
+    @property
+    def motors(self) -> tuple[Motor, ...]:
+        """The motor of both joints, or that of the hip and that of the knee."""
+        return (self.hip.motor,) if self.hip is self.knee else (self.hip.motor, self.knee.motor)
+
+    @property
+    def label(self) -> str:
+        """Name of the motor, or the names of both, such as ``U8 hip, VT8020 knee``."""
+        return motor_label(self.hip.motor.name, self.knee.motor.name)
+
+
+Maps = ActuatorMap | JointMaps
+"""The gearboxes of a robot; one map stands for both joints."""
+
+
+def joint_maps(maps: Maps) -> JointMaps:
+    """The gearboxes of both joints."""
+    return maps if isinstance(maps, JointMaps) else JointMaps(hip=maps, knee=maps)
+
+
+def motor_label(hip: str, knee: str) -> str:
+    """Name of the motor of both joints, or the names of both motors with the joints."""
+    return hip if hip == knee else f"{hip} hip, {knee} knee"

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import END_BEARING_BORE_MM, Family, Layout, radial_room_mm
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
-from pareto_monoped.actuator.service.output import output_margin
-from pareto_monoped.actuator.service.planets import planet_margin
+from pareto_monoped.actuator.service.loads import output_margin, planet_margin
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import RULE_SETS, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
@@ -49,25 +48,16 @@ class CandidateSets:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constraint:
-    """One rule.
+    """One rule."""
 
-    Attributes:
-        says: what it says.
-        source: where it comes from.
-        margin: what is left until it is broken, negative beyond.
-        cures: what would help where it forbids every gearbox.
-        rule_sets: the sets of rules that it belongs to.
-        laid_out: whether it looks at the layout, which costs more to work out than all other rules together.
-        of_width: whether it looks at the face width.
-    """
-
-    says: str
-    source: str
-    margin: Callable[[CandidateSets], Numbers]
-    cures: tuple[str, ...]
-    rule_sets: tuple[RuleSet, ...] = RULE_SETS
+    says: str  #: what it says
+    source: str  #: where it comes from
+    margin: Callable[[CandidateSets], Numbers]  #: what is left until it is broken, negative beyond
+    cures: tuple[str, ...]  #: what would help where it forbids every gearbox
+    rule_sets: tuple[RuleSet, ...] = RULE_SETS  #: the sets of rules that it belongs to
+    #: Whether it looks at the layout, which costs more to work out than all other rules together
     laid_out: bool = False
-    of_width: bool = False
+    of_width: bool = False  #: whether it looks at the face width
 
 
 def _meshing(sets: CandidateSets) -> Numbers:

@@ -7,21 +7,14 @@ from itertools import pairwise
 import numpy as np
 
 from pareto_monoped.actuator.actuator import Actuator, build_actuator
-from pareto_monoped.actuator.candidates import candidates
 from pareto_monoped.actuator.gearset import joined
-from pareto_monoped.actuator.judge import Judge
+from pareto_monoped.actuator.judge import Judge, candidates
 from pareto_monoped.actuator.layout import FAMILIES, Family, radial_room_mm
-from pareto_monoped.actuator.motors import Motor, load_motor, motor_source
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.motors import load_motor, motor_source
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.sheet import ratings
-from pareto_monoped.actuator.ratiomap import (
-    RATIO_HIGH,
-    RATIO_LOW,
-    ActuatorMap,
-    Candidate,
-    FamilyResult,
-    MapEntry,
-)
+from pareto_monoped.actuator.ratiomap import RATIO_HIGH, RATIO_LOW, ActuatorMap, Candidate, FamilyResult, MapEntry
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import DEFAULT_RULES, RuleSet
 

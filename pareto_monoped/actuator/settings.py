@@ -6,16 +6,25 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.actuator.carrier_data import NeedleData, PlanetBearing, SecondCarrier, WebData
+from pareto_monoped.actuator.assumptions import (
+    DutyData,
+    GearSteels,
+    NeedleData,
+    PlanetBearing,
+    RatingData,
+    SecondCarrier,
+    ServiceData,
+    WebData,
+    chosen_steels,
+    default_service,
+)
 from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
-from pareto_monoped.actuator.rating_data import DutyData, GearSteels, RatingData, chosen_steels
-from pareto_monoped.actuator.service.data import ServiceData, default_service
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, unknown_name
 from pareto_monoped.geometry.gears import ExternalGear
+from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES
 from pareto_monoped.geometry.shapes import Numbers
-from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES, RATED_SERIES
 from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -108,11 +117,7 @@ class CouplingData:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SplineData:
-    """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm.
-
-    Attributes:
-        play_mm: least backlash along the pitch circle, by which the hub's spaces are wider than drawn.
-    """
+    """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm."""
 
     __pydantic_config__ = _STRICT
 
@@ -120,7 +125,7 @@ class SplineData:
     external_teeth: Annotated[int, Field(ge=6)]
     internal_teeth: Annotated[int, Field(ge=6)]
     sun_shaft_radius_mm: Positive
-    play_mm: Positive
+    play_mm: Positive  #: least backlash along the pitch circle, by which the hub's spaces are wider than drawn
 
     @property
     def external(self) -> ExternalGear:
@@ -182,42 +187,29 @@ _LEAST_PLANETS: dict[RuleSet, int] = {"paper": 2, "iso6336": 3}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorSettings:
-    """Settings of stage 1.
+    """Settings of stage 1."""
 
-    Attributes:
-        modules_mm: modules to choose from.
-        shifts: profile shifts to choose from, pairs of ``GearSet.centre_shift`` and ``sun_shift``; None means those of
-            the rules: none (paper), or ``SHIFTS``.
-        rules: ``paper``, face width by Lewis with the paper's limits, or ``iso6336``, flanks and roots of all gears
-            rated after ISO 6336, see ``rating``.
-        planets_min: least n_p; None is that of the rules: 2 (paper, eq. 5), or 3 under ``iso6336``.
-        planets_max: largest n_p (paper, eq. 5).
-        teeth_min: N_min of sun and planet (paper, eq. 5).
-        planet_gap_mm: delta_p of the no-interference constraint (paper, eq. 4).
-        diameter_clearance_mm: delta_clr between D_GB and the motor (paper, section III-A).
-        contact_ratio_min: least contact ratio of either mesh (Shigley, section 13-6).
-        constraints_off: names of constraints not to apply, see ``rules.CONSTRAINTS``.
-        bearings: source of the main bearing's mass: the catalogue, or the paper's regression over the bore.
-        parts: dimensions and safety factors.
-        materials: what the parts are made of.
-        steels: grades of the gears under ``iso6336``; None takes those that ``parts.rating`` names.
-        service: pace, forces and fits of the joints, and what their bearings must hold.
-    """
-
+    #: ``paper``, face width by Lewis with the paper's limits, or ``iso6336``, flanks and roots of all gears rated after
+    #: ISO 6336, see ``rating``
     rules: RuleSet = DEFAULT_RULES
-    modules_mm: tuple[float, ...] = tuple(sorted(ISO_54_SERIES_1_MM + ISO_54_SERIES_2_MM))
+    modules_mm: tuple[float, ...] = tuple(sorted(ISO_54_SERIES_1_MM + ISO_54_SERIES_2_MM))  #: modules to choose from
+    #: Profile shifts to choose from, pairs of ``GearSet.centre_shift`` and ``sun_shift``; None means those of the
+    #: rules: none (paper), or ``SHIFTS``
     shifts: tuple[tuple[float, float], ...] | None = None
-    planets_min: int | None = None
-    planets_max: int = 7
-    teeth_min: int = 18
-    planet_gap_mm: float = 5.0
-    diameter_clearance_mm: float = 10.0
-    contact_ratio_min: float = 1.2
-    constraints_off: frozenset[str] = frozenset()
+    planets_min: int | None = None  #: least n_p; None is that of the rules: 2 (paper, eq. 5), or 3 under ``iso6336``.
+    planets_max: int = 7  #: largest n_p (paper, eq. 5).
+    teeth_min: int = 18  #: N_min of sun and planet (paper, eq. 5).
+    planet_gap_mm: float = 5.0  #: delta_p of the no-interference constraint (paper, eq. 4).
+    diameter_clearance_mm: float = 10.0  #: delta_clr between D_GB and the motor (paper, section III-A)
+    contact_ratio_min: float = 1.2  #: least contact ratio of either mesh (Shigley, section 13-6)
+    constraints_off: frozenset[str] = frozenset()  #: names of constraints not to apply, see ``rules.CONSTRAINTS``
+    #: Source of the main bearing's mass: the catalogue, or the paper's regression over the bore
     bearings: Literal["catalogue", "regression"] = "catalogue"
-    parts: PartData = field(default_factory=default_parts)
-    materials: Materials = MATERIALS
+    parts: PartData = field(default_factory=default_parts)  #: dimensions and safety factors
+    materials: Materials = MATERIALS  #: what the parts are made of
+    #: Grades of the gears under ``iso6336``; None takes those that ``parts.rating`` names
     steels: GearSteels | None = None
+    #: Pace, forces and fits of the joints, and what their bearings must hold
     service: ServiceData = field(default_factory=default_service)
 
     def __post_init__(self) -> None:

@@ -27,23 +27,14 @@ _SHEAR_SHARE = 1.2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Webs:
-    """Webs of one carrier, or of arrays of them.
+    """Webs of one carrier, or of arrays of them."""
 
-    Attributes:
-        count: as many as planets, or 0 where the gaps have no room for the screw.
-        room_mm: metal around the screw's tapping hole beyond the least one, negative where there is too little.
-        r_out_mm: outer radius.
-        r_screw_mm: radius of the screws' circle.
-        phase_rad: angle of the first web; the first planet is at 0.
-        path: cross-section around the +x axis.
-    """
-
-    count: Numbers
-    room_mm: Numbers
-    r_out_mm: Numbers
-    r_screw_mm: Numbers
-    phase_rad: Numbers
-    path: Path
+    count: Numbers  #: as many as planets, or 0 where the gaps have no room for the screw
+    room_mm: Numbers  #: metal around the screw's tapping hole beyond the least one, negative where there is too little
+    r_out_mm: Numbers  #: outer radius
+    r_screw_mm: Numbers  #: radius of the screws' circle
+    phase_rad: Numbers  #: angle of the first web; the first planet is at 0
+    path: Path  #: cross-section around the +x axis
 
     @property
     def reach_mm(self) -> Numbers:
@@ -69,17 +60,11 @@ class Webs:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WebSection:
-    """Cross-section of one web.
+    """Cross-section of one web."""
 
-    Attributes:
-        present: whether the carrier has webs.
-        area_mm2: of it.
-        second_moment_mm4: of it, against bending around the carrier's axis.
-    """
-
-    present: NDArray[np.bool_]
-    area_mm2: Numbers
-    second_moment_mm4: Numbers
+    present: NDArray[np.bool_]  #: whether the carrier has webs
+    area_mm2: Numbers  #: of it
+    second_moment_mm4: Numbers  #: of it, against bending around the carrier's axis
 
     def stiffness_n_per_mm(self, length_mm: Numbers, material: ElasticMaterial) -> Numbers:
         """Of one web against a force around the carrier's axis, at the second carrier; 0 where there are none.

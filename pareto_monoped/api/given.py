@@ -1,15 +1,41 @@
-"""Checks of plain values that scripts give."""
+"""Checks of plain values that scripts give.
 
+Designs in every form that scripts have them, and what they say of their motors.
+
+What a script brings along: its own functions among the goals of a study, and its own calibration.
+"""
+
+import difflib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.study.plain import as_list, as_table
+from pareto_monoped.actuator.ratiomap import JointMaps, motor_label
+from pareto_monoped.definition.given import as_list, as_plain, as_table, is_series
+from pareto_monoped.definition.variables import MOTOR_KEYS
+from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, Design, complete
+from pareto_monoped.errors import CalibrationError, DesignError, InputError, StudyError, complaint
+from pareto_monoped.jump.calibration import (
+    Calibration,
+    calibration_names,
+    calibration_of,
+    calibration_values,
+    earlier_calibrations,
+)
+from pareto_monoped.jump.calibration import load_calibration as shipped_calibration
+from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
+from pareto_monoped.measures import GOAL_NAMES, is_own
+from pareto_monoped.storage.columns import COLUMNS
+from pareto_monoped.study.own_functions import OwnFunction, functions_of, own_name
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 
 def executor_of(given: Any) -> Any:
@@ -95,3 +121,255 @@ def table_of(what: str, given: Any) -> dict[str, float]:
     if not isinstance(values, Mapping):
         raise InputError(complaint(what, given, "a mapping of names to numbers", "give one"))
     return {name: number_of(f"{what}[{name!r}]", value) for name, value in values.items()}
+
+
+_FORMS = "a Design, a list of them, a mapping or data frame of variables, or an array of numbers"
+_COLUMNS = tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
+"""Columns that frames of designs may have: those of stored trials."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Given:
+    """Designs, and the motors that they were found with."""
+
+    values: NDArray[np.float64]  #: of the n designs, shape (n, number of variables), in the order of ``NAMES``
+    #: Names of each one's motors as ``JointMaps.label`` has them; '' where nothing is said of them
+    motors: tuple[str, ...]
+
+
+def given_designs(designs: Any) -> Given:
+    """Designs in any form that ``simulate`` takes.
+
+    Raises:
+        DesignError: a missing or unknown variable, a value that is no number, or an array of another shape.
+    """
+    several = designs if isinstance(designs, list | tuple) and designs else [designs]
+    for one in several:
+        if isinstance(getattr(one, "design", None), Design):
+            raise DesignError(f"designs: are of class {type(one).__name__}, must be Designs; {_cure_of_holder(one)}")
+    if all(isinstance(one, Design) for one in several):
+        return _unsaid(_of_designs(several))
+    if _is_named(designs):
+        return _of_columns(as_table(designs))
+    if all(isinstance(one, Design) or _is_named(one) for one in several):
+        parts = [given_designs(one) for one in several]
+        motors = tuple(motor for part in parts for motor in part.motors)
+        return Given(values=np.concatenate([part.values for part in parts]), motors=motors)
+    try:
+        values = np.asarray(designs, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError(complaint("designs", designs, _FORMS, "give one of these")) from None
+    if values.ndim == 0:
+        raise DesignError(complaint("designs", designs, _FORMS, "give one of these"))
+    if values.ndim > 2:
+        raise DesignError(complaint("dimensions of designs", values.ndim, "1 or 2", "give one row per design"))
+    return _unsaid(complete(np.atleast_2d(values)))
+
+
+def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
+    """Designs as an array of shape (n, number of variables), of which none says that it has other motors than these.
+
+    Args:
+        designs: in any form that ``simulate`` takes.
+        maps: the gearboxes of the motors that they get.
+
+    Raises:
+        DesignError: see ``given_designs``; or other motors, which would jump otherwise than what the frame says.
+    """
+    given = given_designs(designs)
+    for row, motor in enumerate(given.motors):
+        if motor and motor.casefold() != maps.label.casefold():
+            cure = "let StoredStudy.simulate take each row's own motors, name them here, or drop the columns of motors"
+            raise DesignError(complaint(f"motor of design {row}", motor, f"{maps.label!r}, which is used here", cure))
+    return given.values
+
+
+def one_design(design: Any, maps: JointMaps) -> Design:
+    """One design in any form that ``trace`` takes, see ``with_motors``.
+
+    Raises:
+        DesignError: see ``with_motors``; or another number of designs.
+    """
+    values = with_motors(design, maps)
+    if len(values) != 1:
+        raise DesignError(complaint("number of designs", len(values), "1", "give one"))
+    return Design.from_array(values[0])
+
+
+def _unsaid(values: NDArray[np.float64]) -> Given:
+    return Given(values=values, motors=("",) * len(values))
+
+
+def _is_named(given: Any) -> bool:
+    """Whether something has names of variables: a mapping, a data frame, or a row of one."""
+    if is_series(given):
+        return any(isinstance(label, str) for label in given.index)
+    return isinstance(given, Mapping) or hasattr(given, "columns")
+
+
+def _cure_of_holder(given: Any) -> str:
+    """What to do with an object that has a design: one that was picked from a study has the study's motors, too."""
+    if hasattr(given, "trial"):
+        return "use its .design and the motors of its study, or what knows them: StoredStudy.simulate, export_trial"
+    return "use its .design"
+
+
+def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
+    try:
+        return np.array([one.as_array() for one in designs])
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError("designs: must have a number for each variable; correct them") from None
+
+
+def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
+    """Designs from one column per variable, or one value; other columns may be those of stored trials."""
+    for name in table:
+        if name not in _COLUMNS and not is_own(name):
+            raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
+    if missing := [name for name in PAPER_NAMES if name not in table]:
+        raise DesignError(f"designs: lack {', '.join(missing)}; add them")
+    given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
+    try:
+        columns = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given))
+        values = np.column_stack(columns)
+        said = [_said(table, key, len(values)) for key in MOTOR_KEYS]
+    except (TypeError, ValueError, OverflowError):
+        raise DesignError("designs: must have numbers, as many of each variable; correct them") from None
+    return Given(values=values, motors=tuple(_label(*names) for names in zip(*said, strict=True)))
+
+
+def _near(name: object) -> str:
+    """What to do about an unknown column."""
+    for known in (NAMES, _COLUMNS):
+        if near := difflib.get_close_matches(str(name), known, n=1):
+            return f"did you mean {near[0]!r}?"
+    return "correct the name, or drop it"
+
+
+def _said(table: "Mapping[str, Any] | DataFrame", key: str, count: int) -> list[str]:
+    """What a column says of each row's motor; '' where it says nothing."""
+    column = np.asarray(table.get(key, ""), dtype=object)
+    return [_text(value) for value in np.broadcast_to(np.atleast_1d(column), (count,)).tolist()]
+
+
+def _text(motor: Any) -> str:
+    """The name of a motor; '' for what pandas has in place of a missing one."""
+    return "" if motor is None or isinstance(motor, float) or str(motor) == "<NA>" else str(motor)
+
+
+def _label(motor: str, hip: str, knee: str) -> str:
+    """The motors of one row as ``JointMaps.label`` has them."""
+    return motor_label(hip or motor or "unknown", knee or motor or "unknown") if hip or knee else motor
+
+
+Goal = str | OwnFunction
+"""A measure by its name, or an own function."""
+Limits = Mapping[Any, Any] | OwnFunction | Sequence[Any]
+
+
+def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, OwnFunction]]:
+    """Names of objectives, and the own functions among them.
+
+    Raises:
+        StudyError: no list, or something in it that is neither a name nor a function.
+    """
+    several = as_list(objectives)
+    if isinstance(several, str | Mapping) or not isinstance(several, Sequence):
+        allowed = "a list of two or three measures or functions, such as ['height_m', 'energy_j']"
+        raise StudyError(complaint("objectives", objectives, allowed, "give one"))
+    functions = functions_of([one for one in several if not isinstance(one, str)])
+    return [one if isinstance(one, str) else own_name(one) for one in several], functions
+
+
+def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
+    """Limits by their stored keys, such as "max_mass_kg", and the own functions that they are of.
+
+    Args:
+        constraints: a mapping of measures, or functions, to their limits; or a function, which holds at <= 0; or a list
+            of such mappings and functions.
+
+    Raises:
+        StudyError: something else, or a limit that is given twice, in whatever spelling.
+    """
+    given = as_table(constraints)
+    parts = [given] if isinstance(given, Mapping) or callable(given) else given
+    if isinstance(parts, str) or not isinstance(parts, Sequence):
+        allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a list of these and of functions that hold at <= 0"
+        raise StudyError(complaint("constraints", constraints, allowed, "give one of these"))
+    flat: dict[str, Any] = {}
+    functions: list[object] = []
+    for part in parts:
+        table = part if isinstance(part, Mapping) else {part: {"max": 0.0}} if callable(part) else None
+        if table is None:
+            allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a function that holds at <= 0"
+            raise StudyError(complaint("constraint", part, allowed, "give one of these"))
+        functions += [key for key in table if not isinstance(key, str)]
+        for key, limits in table.items():
+            name = key if isinstance(key, str) else own_name(key)
+            new = as_plain(_flattened(name, limits))
+            if twice := [stored for stored in new if stored in flat]:
+                side, _, measured = twice[0].partition("_")
+                raise StudyError(f"constraints: the {side} of {measured} is given twice; drop one")
+            flat |= new
+    return flat, functions_of(functions)
+
+
+def _flattened(name: str, limits: Any) -> dict[str, Any]:
+    """The limits of one measure in their stored form."""
+    if not isinstance(limits, Mapping):
+        return {name: limits}
+    if not limits or not set(limits) <= {"min", "max"}:
+        allowed = "a table with 'min', 'max' or both, such as {'max': 4.0}"
+        raise StudyError(complaint(f"constraints: limits of {name}", dict(limits), allowed, "correct it"))
+    return {f"{side}_{name}": value for side, value in limits.items()}
+
+
+def own_calibration(given: Calibration) -> Calibration:
+    """A calibration that a script made, checked as one from a file.
+
+    Raises:
+        CalibrationError: a value that no calibration can have, or a class of its own, whose behaviour no study stores.
+    """
+    if type(given) is not Calibration:
+        kind = type(given).__name__
+        raise CalibrationError(
+            f"calibration: is a {kind}, must be a Calibration itself, because only its values are stored; change the "
+            "values of one: dataclasses.replace(load_calibration('reference'), ...)"
+        )
+    try:
+        values = calibration_values(given)
+    except (AttributeError, TypeError, ValueError) as error:
+        raise CalibrationError(f"calibration {given.name!r}: {error}; correct its values") from None
+    checked = calibration_of(values, source=f"calibration {given.name!r}")
+    if checked != given:
+        raise CalibrationError(f"calibration {given.name!r}: has values of a class of its own; take plain ones")
+    return checked
+
+
+def stored_calibration_name(calibration: Calibration) -> str:
+    """The name under which a study stores a calibration that a script gives.
+
+    Raises:
+        CalibrationError: it has the name of a shipped one and other values.
+    """
+    if calibration.name not in calibration_names():
+        return f"{OWN_CALIBRATION}{calibration.name}"
+    if calibration.label in earlier_calibrations() and calibration == shipped_calibration(calibration.label):
+        return calibration.label
+    if calibration != shipped_calibration(calibration.name):
+        raise CalibrationError(
+            f"calibration.name = {calibration.name!r}: is a shipped calibration with other values; give yours another "
+            "name: dataclasses.replace(calibration, name='mine')"
+        )
+    return calibration.name
+
+
+def called_after(callback: object) -> Callable[..., Any] | None:
+    """A callback, if it is one.
+
+    Raises:
+        StudyError: it cannot be called.
+    """
+    if callback is None or callable(callback):
+        return callback
+    raise StudyError(complaint("callback", callback, "a function of the progress", "give one"))

@@ -8,30 +8,21 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps
-from pareto_monoped.actuator.motors import Motor, motor_source, motor_values, stored_motor
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.motors import load_motor as motor_of
-from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.motors import motor_source, motor_values, stored_motor
+from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.api.designs import one_design, with_motors
-from pareto_monoped.api.own import own_calibration
-from pareto_monoped.design import (
-    CONTROL,
-    DEFAULT_RULES,
-    NAMES,
-    PAPER_MOTOR,
-    Design,
-    RuleSet,
-    columns,
-)
+from pareto_monoped.api.given import one_design, own_calibration, with_motors
+from pareto_monoped.definition.given import count_of
+from pareto_monoped.design import CONTROL, DEFAULT_RULES, NAMES, PAPER_MOTOR, Design, RuleSet, columns
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
 from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
-from pareto_monoped.leg.motor_fit import require_leg
+from pareto_monoped.leg.thigh_outline import require_leg
 from pareto_monoped.robot.build import Robot
 from pareto_monoped.robot.build import build_robot as robot_of
-from pareto_monoped.study.counts import count_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame

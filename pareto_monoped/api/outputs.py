@@ -5,14 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from pareto_monoped.api.designs import one_design
-from pareto_monoped.api.given import truth_of
+from pareto_monoped.api.given import one_design, truth_of
 from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
+from pareto_monoped.definition.given import as_list
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
-from pareto_monoped.extras import require_extra
+from pareto_monoped.errors import require_extra
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
-from pareto_monoped.study.plain import as_list
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -66,7 +65,7 @@ def export(
     require_extra("cad", "CAD")
     from pareto_monoped.cad.batch import run
     from pareto_monoped.cad.jobs import Job
-    from pareto_monoped.cad.write.formats import chosen_formats
+    from pareto_monoped.cad.write.folder import chosen_formats
 
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)

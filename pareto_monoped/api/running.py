@@ -1,36 +1,43 @@
-"""Run, resume and make robust: studies that grow, from scripts."""
+"""Run, resume and make robust: studies that grow, from scripts.
+
+How stored designs jump as robots are built, from scripts.
+"""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.api.given import executor_of, seed_of
-from pareto_monoped.api.jumps import AnyCalibration, StrPath
-from pareto_monoped.api.own import (
+from numpy.typing import ArrayLike
+
+from pareto_monoped.api.given import (
     Goal,
     Limits,
     called_after,
+    executor_of,
     limits_of,
     objective_names,
     own_calibration,
+    seed_of,
     stored_calibration_name,
+    trial_of,
 )
-from pareto_monoped.api.studies import StoredStudy, as_path, as_place, load_study
-from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.api.jumps import AnyCalibration, StrPath
+from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
+from pareto_monoped.definition.given import as_list, count_of
+from pareto_monoped.definition.study import Study, budgeted, study_from_dict
+from pareto_monoped.errors import InputError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import rules_for
-from pareto_monoped.study.counts import count_of
-from pareto_monoped.study.definition import Study, budgeted, study_from_dict
-from pareto_monoped.study.own import Own
-from pareto_monoped.study.own_algorithm import own_algorithm_name
-from pareto_monoped.study.own_functions import OwnFunction, functions_of, listed
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.search.own_algorithm import own_algorithm_name
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.study.own_functions import Own, OwnFunction, functions_of, listed
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+
     from pareto_monoped.study.run import RunSummary
     from pareto_monoped.study.session import Progress
-
 
 _STUDY = "a Study, or the path of a study file"
 _CALIBRATION = "a Calibration, the name of a shipped one, or the path of a TOML file"
@@ -192,7 +199,9 @@ def resume(
 def _warn_of_no_front(summary: "RunSummary") -> None:
     """Warn the caller of ``run`` or ``resume`` of what the command line notes where no design is feasible."""
     if summary.front_size == 0:
-        for line in summary.remarks:
+        from pareto_monoped.analysis.remarks import remarks
+
+        for line in remarks(summary.data):
             warnings.warn(f"{summary.db}: {line}", UserWarning, stacklevel=3)
 
 
@@ -238,3 +247,83 @@ def _changed(study: Study, changes: Mapping[str, Any]) -> Study:
         return study
     given = "iterations" in changes["algorithm"] if "algorithm" in changes else not study.shared_iterations
     return budgeted(study_from_dict(values, source="study"), given=given, source="study")
+
+
+def robust(
+    study: StoredStudy | StrPath,
+    trials: int | Picked | Sequence[int | Picked] | ArrayLike | None = None,
+    *,
+    samples: int | None = None,
+    seed: int | None = None,
+    uncertainty: StrPath | None = None,
+    workers: int | None = None,
+) -> "DataFrame":
+    """Let designs of a study jump as robots are built: masses, motors, friction, gains and more within their ranges.
+
+    All designs have the same samples. What is stored of earlier calls, also of the command ``robust``, is not simulated
+    again.
+
+    Args:
+        study: the study or its database.
+        trials: a trial by its number or as ``pick`` returned it, or several, such as a column ``trial``; by default the
+            front.
+        samples: jumps per design, a power of two of at least 256; by default 256, or the study's if it asks for more.
+        seed: of the samples, by default the study's.
+        uncertainty: TOML file of the ranges; by default the study's, or the shipped ones.
+        workers: threads that simulate, all cores if None. It does not change the results.
+
+    Returns:
+        One row per trial, with ``trial``, ``samples``, ``failed_share`` and ``overloaded_share`` (shares of the jumps
+        that fail, and that overload a part), and for every measure its ``.mean``, ``.p05`` and ``.p95``, such as
+        ``height_m.p05``, in the unit of its name; NaN where a measure has no value in some jump.
+
+    Raises:
+        SelectionError: a trial that is not there or did not jump, or an empty front.
+        InputError: too few samples, or no usable ranges.
+        StudyError: this code or machine computes other jumps than the stored ones.
+        DatabaseError: the study is missing, damaged, or in use by another process.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> knee = pm.load_study("light.db").pick("knee")
+        >>> built = pm.robust("light.db", knee)
+        >>> bool(built["height_m.p05"][0] < knee.row.height_m)
+        True
+    """
+    import pandas as pd
+
+    from pareto_monoped.analysis.robustness import robust as run_robust
+    from pareto_monoped.measures import MEASURE_NAMES, STATISTICS
+    from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES
+    from pareto_monoped.uncertainty.settings import Sampling, load_uncertainty
+
+    stored = study if isinstance(study, StoredStudy) else load_study(study)
+    own = stored.study.uncertainty or Sampling(ranges=load_uncertainty())
+    results = run_robust(
+        stored.path,
+        own.ranges if uncertainty is None else load_uncertainty(as_path(uncertainty)),
+        trials=_numbers(trials),
+        samples=count_of("samples", samples) or max(own.samples, DEFAULT_SAMPLES),
+        seed=own.seed if seed is None else seed_of(seed),
+        workers=count_of("workers", workers),
+    )
+    rows: list[dict[str, Any]] = []
+    for number, result in results.items():
+        row: dict[str, Any] = {"trial": number, "samples": result.samples}
+        row |= {"failed_share": result.failed, "overloaded_share": result.overloaded}
+        for name in MEASURE_NAMES:
+            spread = result.measures.get(name)
+            row |= {f"{name}.{key}": float("nan") if spread is None else getattr(spread, key) for key in STATISTICS}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _numbers(trials: Any) -> list[int] | None:
+    """Numbers of trials."""
+    if trials is None:
+        return None
+    listed = as_list(trials)
+    several = list(listed) if isinstance(listed, Sequence) and not isinstance(listed, str | bytes) else [listed]
+    if not several:
+        raise InputError(complaint("number of trials", 0, "at least 1", "name one, or leave it out for the front"))
+    return [one.trial if isinstance(one, Picked) else trial_of(one) for one in several]

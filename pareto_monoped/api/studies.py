@@ -10,11 +10,12 @@ import numpy as np
 
 from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
 from pareto_monoped.api.jumps import StrPath
+from pareto_monoped.definition.given import as_list, count_of
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.measures import is_own, near_measures
-from pareto_monoped.pareto.conditions import CONDITION_NAMES
 from pareto_monoped.pareto.selectors import (
+    CONDITION_NAMES,
     Among,
     Chooser,
     Compromise,
@@ -26,18 +27,16 @@ from pareto_monoped.pareto.selectors import (
     Trial,
     Weights,
 )
-from pareto_monoped.study.counts import count_of
-from pareto_monoped.study.place import StudyPlace, place_of
-from pareto_monoped.study.plain import as_list
-from pareto_monoped.study.server.address import Server, is_address
+from pareto_monoped.storage.place import StudyPlace, place_of
+from pareto_monoped.storage.server.address import Server, is_address
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
 
+    from pareto_monoped.analysis.alternatives import Alternative
+    from pareto_monoped.definition.study import Study
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.study.alternatives import Alternative
-    from pareto_monoped.study.definition import Study
-    from pareto_monoped.study.reader import StudyData
+    from pareto_monoped.storage.reader import StudyData
 
 By = Literal["knee", "tradeoff"]
 
@@ -46,12 +45,6 @@ By = Literal["knee", "tradeoff"]
 class Picked:
     """A design picked from a front.
 
-    Attributes:
-        trial: its number.
-        design: its variables.
-        row: its row of ``StoredStudy.trials``.
-        why: the reason in one sentence.
-
     Example:
         >>> import pareto_monoped as pm
         >>> picked = pm.load_study("light.db").pick(min_height_m=0.7)
@@ -59,10 +52,10 @@ class Picked:
         (True, 0.5)
     """
 
-    trial: int
-    design: Design
-    row: "Series[Any]"
-    why: str
+    trial: int  #: its number
+    design: Design  #: its variables
+    row: "Series[Any]"  #: its row of ``StoredStudy.trials``
+    why: str  #: the reason in one sentence
 
     def __repr__(self) -> str:
         """One line: the trial and the reason."""
@@ -73,11 +66,6 @@ class Picked:
 class StoredStudy:
     """A study in its database, finished or still growing; each property reads what was there at ``load_study``.
 
-    Attributes:
-        path: the database; as text the name of a file, or the address of a server without its password.
-        study: its definition.
-        data: everything that was read; its form may change between versions.
-
     Example:
         >>> import pareto_monoped as pm
         >>> stored = pm.load_study("light.db")
@@ -85,9 +73,9 @@ class StoredStudy:
         (True, 200, True)
     """
 
-    path: StudyPlace
-    study: "Study"
-    data: "StudyData"
+    path: StudyPlace  #: the database; as text the name of a file, or the address of a server without its password
+    study: "Study"  #: its definition
+    data: "StudyData"  #: everything that was read; its form may change between versions
 
     def __repr__(self) -> str:
         """One line: name, place, trials and objectives."""
@@ -163,8 +151,8 @@ class StoredStudy:
             >>> pm.load_study("light.db").pick(min_height_m=0.7, at_most={"mass_kg": 6.0}).design.start_height_m
             0.5
         """
+        from pareto_monoped.analysis.remarks import refuse_empty
         from pareto_monoped.pareto.pick import pick
-        from pareto_monoped.study.infeasible import refuse_empty
 
         chosen = self._objectives(objectives) or self.study.objectives
         front = self.data.front(objectives=chosen)
@@ -207,7 +195,7 @@ class StoredStudy:
         Raises:
             SelectionError: no such trial.
         """
-        from pareto_monoped.study.alternatives import alternatives
+        from pareto_monoped.analysis.alternatives import alternatives
 
         self._row(trial)
         most, share = count_of("count", count) or 5, number_of("tolerance", tolerance)
@@ -236,7 +224,7 @@ class StoredStudy:
             >>> bool((stored.simulate(stored.front()).height_m == stored.front().height_m).all())
             True
         """
-        from pareto_monoped.api.designs import given_designs
+        from pareto_monoped.api.given import given_designs
         from pareto_monoped.api.jumps import jumps_of
 
         given = given_designs(_rows(designs))
@@ -262,7 +250,7 @@ class StoredStudy:
         return rows.iloc[0]
 
     def _objectives(self, names: Sequence[str] | None) -> "Objectives | None":
-        from pareto_monoped.study.goals import objectives_of
+        from pareto_monoped.definition.goals import objectives_of
 
         if names is None:
             return None
@@ -294,7 +282,7 @@ def load_study(path: StrPath | StudyPlace) -> StoredStudy:
         >>> pm.load_study("light.db").study.name
         'light'
     """
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.storage.reader import read_study
 
     data = read_study(as_place(path))
     return StoredStudy(path=data.db, study=data.study, data=data)

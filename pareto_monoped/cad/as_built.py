@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.actuator.joint_maps import Maps, joint_maps
-from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.actuator.ratiomap import Maps, joint_maps
+from pareto_monoped.cad.product import Pose
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.leg.chain_drives import SAFETY
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.build import Robot, build_robot
@@ -24,19 +24,12 @@ _REST = Pose(hip_rad=-0.8, knee_rad=1.6)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Built:
-    """A design as it is exported.
+    """A design as it is exported."""
 
-    Attributes:
-        design: with lengths of whole 0.1 mm and real ratios.
-        robot: its parts.
-        arrays: the robot as it is simulated.
-        pose: of the assembly.
-    """
-
-    design: Design
-    robot: Robot
-    arrays: RobotArrays
-    pose: Pose
+    design: Design  #: with lengths of whole 0.1 mm and real ratios
+    robot: Robot  #: its parts
+    arrays: RobotArrays  #: the robot as it is simulated
+    pose: Pose  #: of the assembly
 
 
 def built_of(

@@ -8,26 +8,19 @@ from typing import Any
 
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job
-from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.records import is_made
 from pareto_monoped.cad.sent import exported
 from pareto_monoped.cad.workers import Workers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far a batch is.
+    """How far a batch is."""
 
-    Attributes:
-        job: the one that was made last.
-        made: how many were made so far.
-        total: how many there are to make.
-        elapsed_s: time since the beginning.
-    """
-
-    job: Job
-    made: int
-    total: int
-    elapsed_s: float
+    job: Job  #: the one that was made last
+    made: int  #: how many were made so far
+    total: int  #: how many there are to make
+    elapsed_s: float  #: time since the beginning
 
     @property
     def left_s(self) -> float:

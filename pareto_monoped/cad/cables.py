@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.cad.assembly import unit_frame
+from pareto_monoped.cad.product import unit_frame
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.leg.actuator_fit import MotorDriver, peak_current_a
 from pareto_monoped.leg.electronics import BoardPlace, board_place
 from pareto_monoped.leg.journal import far_cheek_z_mm
-from pareto_monoped.leg.motor_drivers import MotorDriver, peak_current_a
 from pareto_monoped.robot.build import Robot, Unit
 
 Points = NDArray[np.float64]
@@ -55,34 +55,21 @@ _Run = tuple[float, float, Sequence[Points | Sequence[float]], Sequence[str], st
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cable:
-    """One cable, or the three wires of a motor, which run side by side.
+    """One cable, or the three wires of a motor, which run side by side."""
 
-    Attributes:
-        name: such as ``hip_motor``.
-        start, end: what it joins, in words.
-        wires: how many are cut.
-        designation: what is bought.
-        diameter_mm: of one wire.
-        bend_radius_mm: of its middle line at every corner.
-        points_mm: corners in the assembly's frame, shape (n, 3), with the thigh hanging down.
-        notes: what is at each corner.
-        tails_mm: what is added at both ends.
-        mass_g: of all wires; counted in no body's mass. 0 where it is counted.
-        cure: what helps if it bends more tightly than its maker allows.
-    """
-
-    name: str
+    name: str  #: such as ``hip_motor``
+    #: start, end: what it joins, in words
     start: str
     end: str
-    wires: int
-    designation: str
-    diameter_mm: float
-    bend_radius_mm: float
-    points_mm: Points
-    notes: tuple[str, ...]
-    tails_mm: tuple[float, float]
-    mass_g: float
-    cure: str = _CURE
+    wires: int  #: how many are cut
+    designation: str  #: what is bought
+    diameter_mm: float  #: of one wire
+    bend_radius_mm: float  #: of its middle line at every corner
+    points_mm: Points  #: corners in the assembly's frame, shape (n, 3), with the thigh hanging down
+    notes: tuple[str, ...]  #: what is at each corner
+    tails_mm: tuple[float, float]  #: what is added at both ends
+    mass_g: float  #: of all wires; counted in no body's mass. 0 where it is counted.
+    cure: str = _CURE  #: what helps if it bends more tightly than its maker allows
 
     @property
     def least_bend_radius_mm(self) -> float:

@@ -1,8 +1,12 @@
-"""Export a design: build it as it can be built, check it, and write one folder that is either whole or not there."""
+"""Export a design: build it as it can be built, check it, and write one folder that is either whole or not there.
+
+What the kernel's process makes for an export while this one simulates and checks: solids, drawings and pictures.
+"""
 
 import gc
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,53 +14,104 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.joint_maps import Maps, joint_maps
+from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.run import run_checks
-from pareto_monoped.cad.elsewhere import order
+from pareto_monoped.cad.drawing.drawings import Origin, origin_of, part_drawings
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.picture.drawing import prepare
-from pareto_monoped.cad.product import Product, build_product
+from pareto_monoped.cad.product import ListedPart, Product, build_product, step_assembly
 from pareto_monoped.cad.write import files
-from pareto_monoped.cad.write.checks_record import checks_record
+from pareto_monoped.cad.write.assembly_pack import assembly_pack
 from pareto_monoped.cad.write.design_record import design_record
-from pareto_monoped.cad.write.folder import beside, files_in, move_in, require_free, write
-from pareto_monoped.cad.write.formats import RECORD, chosen_formats
+from pareto_monoped.cad.write.folder import RECORD, beside, chosen_formats, files_in, move_in, require_free, safe, write
+from pareto_monoped.cad.write.meshes import visuals
 from pareto_monoped.cad.write.parameters import equations, parameters, parameters_csv
-from pareto_monoped.cad.write.parts_list import parts_list
 from pareto_monoped.cad.write.readme import readme
-from pareto_monoped.cad.write.strength_table import strength_table
-from pareto_monoped.cad.write.visuals import visuals
+from pareto_monoped.cad.write.tables import checks_record, parts_list, strength_table
 from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
-from pareto_monoped.strength.single import GearLife, JointFactor, gear_life, joint_factors
+from pareto_monoped.strength.factors import GearLife, JointFactor, gear_life, joint_factors
+from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
+
+_AT_ONCE = 6
+"""Drawings in a question: few, so that both processes end at about the same time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ordered:
+    """Files that are being made; None for what is not wanted."""
+
+    #: The STEP file of the assembly, and those of the parts by name
+    solids: Future[tuple[bytes, dict[str, bytes]]] | None
+    pack: Future[dict[str, bytes]] | None  #: the assembly pack: content by path
+    sheets: Sequence[Future[dict[str, bytes]]]  #: the parts' drawings by name, some in each
+    pictures: Mapping[str, Future[bytes]]  #: PNG files by name
+
+    def write(self, folder: Path) -> None:
+        """Do here what the kernel's process has not begun, wait for the rest, and write everything."""
+        kernel.help_out()
+        for sheets in self.sheets:
+            for name, content in sheets.result().items():
+                write(folder, f"drawings/{safe(name)}.pdf", content)
+        if self.pack is not None:
+            for path, content in self.pack.result().items():
+                write(folder, path, content)
+        for name, picture in self.pictures.items():
+            write(folder, name, picture.result())
+        if self.solids is not None:
+            assembly, parts = self.solids.result()
+            write(folder, "assembly.step", assembly)
+            for name, content in parts.items():
+                write(folder, f"parts/step/{safe(name)}.step", content)
+
+
+def order(product: Product, record: Mapping[str, Any], formats: Collection[str]) -> Ordered:
+    """Ask for all files of the formats that the kernel's process makes.
+
+    Args:
+        product: the parts.
+        record: for the title blocks; it may still lack what is computed last.
+        formats: of ``FORMATS``.
+    """
+    listed = product.listed
+    # The longest first, as the last ones may be done in either process.
+    pack = kernel.do(assembly_pack, listed) if "assembly" in formats else None
+    solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in formats else None
+    return Ordered(
+        solids=solids,
+        pack=pack,
+        sheets=_sheets(listed.unique, origin_of(record)) if "pdf" in formats else (),
+        pictures=files.pictures(product) if "png" in formats else {},
+    )
+
+
+def _sheets(parts: Sequence[ListedPart], origin: Origin) -> list[Future[dict[str, bytes]]]:
+    """Ask for the drawings of all parts that are made."""
+    made = [part for part in parts if part.part.process != "bought"]
+    return [
+        kernel.do(part_drawings, made[start : start + _AT_ONCE], origin, start + 1)
+        for start in range(0, len(made), _AT_ONCE)
+    ]
+
 
 _NAMED_FAILURES = 3  # more would not fit on a line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSummary:
-    """What an export made.
+    """What an export made."""
 
-    Attributes:
-        folder: where it is.
-        record: the content of its ``design.json``.
-        checks: all checks; all of them passed.
-        files: paths relative to the folder.
-        gear_life: of the gears under strikes, where it is known.
-    """
-
-    folder: Path
-    record: dict[str, Any]
-    checks: tuple[Check, ...]
-    files: tuple[str, ...]
-    gear_life: GearLife | None
+    folder: Path  #: where it is
+    record: dict[str, Any]  #: the content of its ``design.json``
+    checks: tuple[Check, ...]  #: all checks; all of them passed
+    files: tuple[str, ...]  #: paths relative to the folder
+    gear_life: GearLife | None  #: of the gears under strikes, where it is known
 
 
 def export_design(

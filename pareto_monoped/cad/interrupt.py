@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from pareto_monoped.cad.kernel import client as kernel
-from pareto_monoped.cad.write.unbroken import without_unfinished
+from pareto_monoped.cad.write.folder import without_unfinished
 
 GRACE_S = 1.4
 """From the signal until the guard ends the process. Our own choice: a user waits two seconds at most."""

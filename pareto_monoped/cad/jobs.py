@@ -5,50 +5,35 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.actuator.joint_maps import JointMaps
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.cad.write.formats import FORMATS, chosen_formats
+from pareto_monoped.cad.write.folder import FORMATS, chosen_formats
 from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
-from pareto_monoped.leg.motor_fit import maps_for
+from pareto_monoped.leg.thigh_outline import maps_for
 
 if TYPE_CHECKING:
-    from pareto_monoped.study.reader import StudyData
+    from pareto_monoped.storage.reader import StudyData
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One design to export: everything that another process needs.
+    """One design to export: everything that another process needs."""
 
-    Attributes:
-        design: as searched.
-        motor: of both actuators, or of the hip's where ``knee_motor`` is another one.
-        knee_motor: of the knee's actuator; None where both have the same.
-        calibration: the jump model.
-        rules: of the gearboxes.
-        folder: where to.
-        formats: of ``FORMATS``, in its order.
-        force: replace an export of something else.
-        source: where the design comes from.
-        strength: refuse it if a joint has less than its required safety factor.
-        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-    """
-
-    design: Design
-    motor: Motor
-    calibration: Calibration
-    rules: RuleSet = DEFAULT_RULES
-    folder: Path
-    formats: tuple[str, ...] = FORMATS
-    force: bool = False
-    source: dict[str, Any]
-    strength: bool = False
-    hip_rad: float | None = None
-    knee_rad: float | None = None
-    knee_motor: Motor | None = None
+    design: Design  #: as searched
+    motor: Motor  #: of both actuators, or of the hip's where ``knee_motor`` is another one
+    calibration: Calibration  #: the jump model
+    rules: RuleSet = DEFAULT_RULES  #: of the gearboxes
+    folder: Path  #: where to
+    formats: tuple[str, ...] = FORMATS  #: of ``FORMATS``, in its order
+    force: bool = False  #: replace an export of something else
+    source: dict[str, Any]  #: where the design comes from
+    strength: bool = False  #: refuse it if a joint has less than its required safety factor
+    hip_rad: float | None = None  #: angle of the hip in the assembly, instead of that of the start pose
+    knee_rad: float | None = None  #: angle of the knee, likewise
+    knee_motor: Motor | None = None  #: of the knee's actuator; None where both have the same
 
     def maps(self) -> JointMaps:
         """The gearboxes of both joints.

@@ -1,23 +1,128 @@
-"""An export again, from its ``design.json``; a record that contradicts itself is refused."""
+"""An export again, from its ``design.json``; a record that contradicts itself is refused.
+
+Compare JSON values, numbers to within a tolerance, and say where they differ.
+
+Whether the export that a job asks for exists already, complete and up to date.
+"""
 
 import json
+import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.motors import stored_motor
-from pareto_monoped.cad.as_built import as_built
-from pareto_monoped.cad.compare import Difference, difference
+from pareto_monoped.cad.as_built import as_built, built_of
 from pareto_monoped.cad.export import simulated_jumps
 from pareto_monoped.cad.jobs import Job
-from pareto_monoped.cad.made import REL_TOLERANCE, expected_record
-from pareto_monoped.cad.write.design_record import MADE_BY
-from pareto_monoped.cad.write.formats import chosen_formats
+from pareto_monoped.cad.write.design_record import MADE_BY, design_record
+from pareto_monoped.cad.write.folder import ALWAYS, FILES, RECORD, chosen_formats
 from pareto_monoped.config import read_json
 from pareto_monoped.design import DEFAULTS, NAMES, RULE_SETS, Design, RuleSet
-from pareto_monoped.errors import InputError
+from pareto_monoped.errors import DesignError, InputError
 from pareto_monoped.jump.calibration import calibration_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """A place where two values differ."""
+
+    field: str  #: its keys from the outside in, with dots between them
+    #: found, expected: what stands there; ``ABSENT`` where there is nothing
+    found: Any
+    expected: Any
+
+
+ABSENT = "nothing"
+
+
+def difference(found: Any, expected: Any, *, rel_tolerance: float, field: str = "") -> Difference | None:
+    """The first place where two JSON values differ, None if there is none."""
+    if isinstance(found, dict) and isinstance(expected, dict):
+        for key in (*expected, *(key for key in found if key not in expected)):
+            inner = difference(
+                found.get(key, ABSENT),
+                expected.get(key, ABSENT),
+                rel_tolerance=rel_tolerance,
+                field=f"{field}.{key}" if field else str(key),
+            )
+            if inner is not None:
+                return inner
+        return None
+    if isinstance(found, list) and isinstance(expected, list) and len(found) == len(expected):
+        pairs = enumerate(zip(found, expected, strict=True))
+        inside = (difference(a, b, rel_tolerance=rel_tolerance, field=f"{field}.{k}") for k, (a, b) in pairs)
+        return next(filter(None, inside), None)
+    if isinstance(found, float) and isinstance(expected, float):
+        equal = math.isclose(found, expected, rel_tol=rel_tolerance, abs_tol=1e-12)
+    else:
+        equal = type(found) is type(expected) and bool(found == expected)
+    return None if equal else Difference(field=field, found=found, expected=expected)
+
+
+_NOT_COMPARED = ("jumps", "formats", "files")
+"""Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
+_GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
+"""Keys whose values the job gives; all others are computed, and another machine may round them differently."""
+REL_TOLERANCE = 1e-9
+"""Of numbers that another machine may round in another way."""
+
+
+def is_made(job: Job, *, any_pose: bool = False) -> bool:
+    """Whether the job's folder holds this very export: same version, design, motor, calibration, source and pose.
+
+    Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
+    have the job's formats, and every file that it lists must be there and not empty.
+
+    Args:
+        job: what is asked for.
+        any_pose: whether the assembly may stand in another pose than the job's.
+    """
+    try:
+        record = read_json(job.folder / RECORD)
+        if not (set(job.formats) <= set(record["formats"]) and _is_whole(job.folder, record)):
+            return False
+        found = {key: value for key, value in record.items() if key not in _NOT_COMPARED}
+        expected = expected_record(job)
+        if any_pose:
+            expected["pose"] = found["pose"]
+        given = all(found[key] == expected[key] for key in _GIVEN)
+        return given and difference(found, expected, rel_tolerance=REL_TOLERANCE) is None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, DesignError):
+        # No record, or none of ours; or a design that cannot be built, which the export itself will explain.
+        return False
+
+
+def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
+    """Whether all listed files are there, and the list has what the record's formats make."""
+    names = [str(name) for name in record["files"]]
+    needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
+    if record["jumps"]["as_built"]["status"] == "cannot_stand":
+        needed = [path for path in needed if path != "model/monoped.xml"]
+    listed = all(
+        any(name == path or (path.endswith("/") and name.startswith(path)) for name in names) for path in needed
+    )
+    return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
+
+
+def expected_record(job: Job) -> dict[str, Any]:
+    """The record that this version would write, without what is not compared."""
+    maps = job.maps()
+    built = built_of(job.design, maps, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
+    record = design_record(
+        searched=job.design,
+        built=built,
+        maps=maps,
+        jumps={},
+        calibration=job.calibration,
+        source=job.source,
+        formats=(),
+        strength=job.strength,
+    )
+    return {key: value for key, value in record.items() if key not in _NOT_COMPARED}
+
 
 _JUMP_REL_TOLERANCE = 1e-3
 """Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""

@@ -9,8 +9,8 @@ from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Sto
 from pareto_monoped.campaign.processes import GRACE_S, WorkerProcess, dismiss, speakers
 from pareto_monoped.campaign.worker import Advanced, Ended, Failed, Noted, Said, Task
 from pareto_monoped.compute.threads import cores as cores_here
+from pareto_monoped.storage.lock import holder
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.lock import holder
 
 MOST_DEATHS = 2
 """A study whose process was killed so often is given up: our own choice. Once may be chance, such as a full memory."""
@@ -26,36 +26,25 @@ _HELD_S = 3.0
 
 @dataclass(slots=True, kw_only=True)
 class Standing:
-    """How one study stands.
+    """How one study stands."""
 
-    Attributes:
-        place: the study and its database.
-        state: ``failed`` studies have a ``reason``.
-        evaluations, budget: number of trials stored, and how many there shall be.
-        new_evaluations: trials stored since the campaign was started.
-        hypervolume, hypervolume_unit: of the front.
-        per_second, seconds_left: of a running study.
-        threads: of a running study.
-        seconds: running time that is stored, over all sessions.
-        front: number of designs on the front.
-        reason: why it failed.
-        deaths: how often its process was killed.
-    """
-
-    place: Place
-    state: State
+    place: Place  #: the study and its database
+    state: State  #: ``failed`` studies have a ``reason``
+    #: evaluations, budget: number of trials stored, and how many there shall be
     evaluations: int
     budget: int
+    #: hypervolume, hypervolume_unit: of the front
     hypervolume: float
     hypervolume_unit: str
-    new_evaluations: int = 0
+    new_evaluations: int = 0  #: trials stored since the campaign was started
+    #: per_second, seconds_left: of a running study
     per_second: float = 0.0
     seconds_left: float | None = None
-    threads: int = 0
-    seconds: float = 0.0
-    front: int = 0
-    reason: str = ""
-    deaths: int = 0
+    threads: int = 0  #: of a running study
+    seconds: float = 0.0  #: running time that is stored, over all sessions
+    front: int = 0  #: number of designs on the front
+    reason: str = ""  #: why it failed
+    deaths: int = 0  #: how often its process was killed
 
     @classmethod
     def of(cls, place: Place, stored: Stored) -> "Standing":

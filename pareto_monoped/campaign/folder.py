@@ -7,18 +7,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from pareto_monoped.campaign.grid import Campaign, Member
-from pareto_monoped.campaign.naming import canonical
+from pareto_monoped.campaign.grid import Campaign, Member, canonical
+from pareto_monoped.definition.provenance import decisive, differences
+from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.files import unwritable
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study.arrival import is_vacant
-from pareto_monoped.study.database import reading
-from pareto_monoped.study.definition import Study, study_from_dict
-from pareto_monoped.study.lock import holder, locked
-from pareto_monoped.study.meta import StudyMeta, meta_of_rows
-from pareto_monoped.study.provenance import decisive, differences
-from pareto_monoped.study.summary import Summary, read_summary
+from pareto_monoped.storage.arrival import is_vacant
+from pareto_monoped.storage.database import reading
+from pareto_monoped.storage.lock import holder, locked
+from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
+from pareto_monoped.storage.status import Summary, read_summary
 
 State = Literal["waiting", "running", "finished", "unfinished", "failed"]
 """Of a study: ``waiting`` has not begun, ``unfinished`` can be continued, ``finished`` has a front."""
@@ -28,44 +27,30 @@ NO_FEASIBLE_DESIGN = "no feasible design"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Place:
-    """A study and its database.
+    """A study and its database."""
 
-    Attributes:
-        name: of the study in the campaign.
-        db: its database; missing before the study began.
-        study: its definition, under the name that the database has.
-        member: what it is in the campaign.
-    """
-
-    name: str
-    db: Path
-    study: Study
-    member: Member
+    name: str  #: of the study in the campaign
+    db: Path  #: its database; missing before the study began
+    study: Study  #: its definition, under the name that the database has
+    member: Member  #: what it is in the campaign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stored:
-    """How far a study is according to its database.
+    """How far a study is according to its database."""
 
-    Attributes:
-        state: of the study; ``failed`` if the database cannot be read, or the study ended without a feasible design.
-        evaluations, budget: number of trials, and how many there shall be.
-        hypervolume, hypervolume_unit: of its front.
-        front: number of designs on it.
-        seconds: running time so far.
-        reason: why it failed; else empty.
-        summary: the rest; None before the study began, and if its database cannot be read.
-    """
-
+    #: Of the study; ``failed`` if the database cannot be read, or the study ended without a feasible design
     state: State
+    #: evaluations, budget: number of trials, and how many there shall be
     evaluations: int
     budget: int
+    #: hypervolume, hypervolume_unit: of its front
     hypervolume: float
     hypervolume_unit: str
-    front: int = 0
-    seconds: float = 0.0
-    reason: str = ""
-    summary: Summary | None = None
+    front: int = 0  #: number of designs on it
+    seconds: float = 0.0  #: running time so far
+    reason: str = ""  #: why it failed; else empty
+    summary: Summary | None = None  #: the rest; None before the study began, and if its database cannot be read
 
 
 @contextmanager

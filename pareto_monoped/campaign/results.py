@@ -1,15 +1,25 @@
-"""What the studies of a campaign found: the part of each database that tables and charts compare."""
+"""What the studies of a campaign found: the part of each database that tables and charts compare.
 
+Medians and bands over studies: by motor, by seed, by whatever varies, where studies can be compared at all.
+
+A campaign as a table for other programs: one row per study.
+"""
+
+import csv
+import io
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.campaign.folder import Place, Stored, stored_state
-from pareto_monoped.pareto.knees import knee
+from pareto_monoped.campaign.grid import Campaign
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.pareto.trade_offs import knee
+from pareto_monoped.storage.reader import read_study
 
 Floats = NDArray[np.float64]
 
@@ -19,23 +29,14 @@ LEVELS_M = (0.7, 0.8, 0.9)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """A study of a campaign and what it found.
+    """A study of a campaign and what it found."""
 
-    Attributes:
-        place: the study.
-        stored: how far it is.
-        calibration: name and version; the name alone before the study began.
-        front: values of the objectives of the designs on the front, shape (n, m).
-        history: evaluations and hypervolume after each generation, shape (k, 2).
-        feasible: share of its trials that are feasible; NaN without trials.
-    """
-
-    place: Place
-    stored: Stored
-    calibration: str
-    front: Floats
-    history: Floats
-    feasible: float
+    place: Place  #: the study
+    stored: Stored  #: how far it is
+    calibration: str  #: name and version; the name alone before the study began
+    front: Floats  #: values of the objectives of the designs on the front, shape (n, m)
+    history: Floats  #: evaluations and hypervolume after each generation, shape (k, 2)
+    feasible: float  #: share of its trials that are feasible; NaN without trials
 
     @property
     def finished(self) -> bool:
@@ -133,3 +134,195 @@ def _result(place: Place, reason: str | None) -> Result:
         history=data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64),
         feasible=float((states == "feasible").mean()) if len(states) else float("nan"),
     )
+
+
+LOW, HIGH = 0.1, 0.9
+"""Ends of the bands: what a tenth of the studies and nine tenths of them reach."""
+POINTS = 120
+"""Of a curve: more than a chart can show apart."""
+SEEDS = "seeds"
+"""The axis that says nothing of the robot; its studies are repetitions."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Finished studies that have something in common, such as all seeds with one motor."""
+
+    label: str
+    results: tuple[Result, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Section:
+    """Finished studies that can be compared: the same objectives under the same calibration."""
+
+    #: objectives, calibration: of all of them
+    objectives: Objectives
+    calibration: str
+    axes: tuple[str, ...]  #: that vary among them
+    results: tuple[Result, ...]  #: the studies
+    groups: tuple[Group, ...]  #: those that differ in nothing but the seed
+
+    def by(self, axis: str) -> tuple[Group, ...]:
+        """The studies by their value on one axis, whatever they have on the others."""
+        return _grouped(self.results, (axis,))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """What half of some values reach, a tenth of them and nine tenths; NaN where so many reach nothing."""
+
+    middle: float
+    low: float
+    high: float
+
+
+def sections_of(results: Sequence[Result], axes: Sequence[str]) -> list[Section]:
+    """The finished studies by what can be compared, in the order of the campaign."""
+    found: dict[tuple[tuple[str, ...], str], list[Result]] = {}
+    for result in results:
+        if result.finished:
+            found.setdefault((result.objectives.names, result.calibration), []).append(result)
+    sections = []
+    for (names, calibration), members in found.items():
+        varying = tuple(axis for axis in axes if _values(members, axis) > 1)
+        sections.append(
+            Section(
+                objectives=Objectives(names=names),
+                calibration=calibration,
+                axes=varying,
+                results=tuple(members),
+                groups=_grouped(members, [axis for axis in varying if axis != SEEDS]),
+            )
+        )
+    return sections
+
+
+def _values(results: Sequence[Result], axis: str) -> int:
+    return len({result.place.member.labels.get(axis) for result in results})
+
+
+def _grouped(results: Sequence[Result], axes: Sequence[str]) -> tuple[Group, ...]:
+    groups: dict[str, list[Result]] = {}
+    for result in results:
+        label = ", ".join(result.place.member.labels[axis] for axis in axes)
+        groups.setdefault(label, []).append(result)
+    return tuple(Group(label=label or "all", results=tuple(members)) for label, members in groups.items())
+
+
+def spread_of(values: Sequence[float] | Floats) -> Spread:
+    """Median and band of some values: order statistics, no values between them.
+
+    Of an even number the median is the lower one of the middle two. Of fewer than ten values the band goes from the
+    least to the greatest. NaN counts as greater than every number.
+    """
+    middle, low, high = quantiles(np.asarray(values, dtype=np.float64)[:, None])[:, 0]
+    return Spread(middle=float(middle), low=float(low), high=float(high))
+
+
+def quantiles(values: Floats) -> Floats:
+    """Median, low and high end of the bands of n runs at k places, shape (3, k) from shape (n, k)."""
+    ranked = np.sort(values, axis=0)  # NaN last
+    count = len(ranked)
+    ranks = [max(int(np.ceil(share * count - 1e-9)) - 1, 0) for share in (0.5, LOW, HIGH)]
+    return np.asarray(ranked[ranks])
+
+
+def levels_of_section(section: Section) -> Floats:
+    """Levels of the first objective of ``pair_of`` from the least to the most on any front, shape (k,)."""
+    first = section.objectives.names.index(pair_of(section.objectives)[0])
+    values = np.concatenate([result.front[:, first] for result in section.results])
+    return np.linspace(values.min(), values.max(), POINTS)
+
+
+def attainment(group: Group, levels: Floats) -> Floats:
+    """What half, a tenth and nine tenths of the runs need at most for each level, shape (3, k).
+
+    These are empirical attainment surfaces (Grunert da Fonseca et al. 2001): order statistics of the runs' best second
+    objectives at each level of the first, such as their least energies at each height.
+    """
+    sign = group.results[0].objectives.signs[
+        group.results[0].objectives.names.index(pair_of(group.results[0].objectives)[1])
+    ]
+    return np.asarray(sign * quantiles(np.stack([sign * result.least(levels) for result in group.results])))
+
+
+def growth(group: Group) -> tuple[Floats, Floats]:
+    """Evaluations, shape (k,), and median and band of the hypervolume there, shape (3, k); the last value is held."""
+    histories = [result.history for result in group.results if len(result.history)]
+    if not histories:
+        return np.zeros(0), np.zeros((3, 0))
+    last = max(float(history[-1, 0]) for history in histories)
+    first = max(float(history[0, 0]) for history in histories)  # from there on all of them have a value
+    at = np.unique(np.linspace(first, last, POINTS).round())
+    return at, quantiles(np.stack([_held(history, at) for history in histories]))
+
+
+def _held(history: Floats, at: Floats) -> Floats:
+    """The latest value at each number of evaluations, none of them before the first."""
+    return np.asarray(history[np.searchsorted(history[:, 0], at, side="right") - 1, 1])
+
+
+def relative(section: Section) -> dict[str, float]:
+    """Name of each study -> its hypervolume as a share of the median of the studies that differ in the seed only."""
+    shares = {}
+    for group in section.groups:
+        middle = spread_of([result.stored.hypervolume for result in group.results]).middle
+        for result in group.results:
+            shares[result.place.name] = result.stored.hypervolume / middle if middle > 0.0 else float("nan")
+    return shares
+
+
+def csv_text(campaign: Campaign, results: Sequence[Result]) -> str:
+    """The table as CSV; what a study does not have is empty.
+
+    Columns: name and database of the study, its value on each axis that varies, settings, how far it is, and what it
+    found: ``knee_NAME`` are the objectives of the knee, ``best_NAME`` is the best value of the first objective,
+    ``NAME_at_0_8_m`` the best second one among the designs that reach 0.8 m.
+    """
+    rows = [_row(campaign, result) for result in results]
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, names, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def _row(campaign: Campaign, result: Result) -> dict[str, Any]:
+    study, stored = result.place.study, result.stored
+    counts = {} if stored.summary is None else stored.summary.counts
+    first, second = pair_of(study.objectives)
+    at_levels = result.least(np.array(levels_of(study.objectives)))
+    return {
+        "study": result.place.name,
+        "database": str(result.place.db),
+        **{axis: result.place.member.labels[axis] for axis in campaign.axes},
+        "motor": study.motor_text,
+        "calibration": result.calibration,
+        "objective_names": " ".join(study.objectives.names),
+        "algorithm": study.algorithm.name,
+        "seed": study.seed,
+        "state": stored.state,
+        "evaluations": stored.evaluations,
+        "budget": stored.budget,
+        **{state: counts.get(state, 0) for state in ("feasible", "infeasible", "failed")},
+        "wall_time_s": stored.seconds,
+        "front": stored.front,
+        "hypervolume": _number(stored.hypervolume if stored.evaluations else math.nan),
+        "hypervolume_unit": stored.hypervolume_unit,
+        f"best_{first}": _number(result.most),
+        **{
+            f"knee_{name}": _number(value)
+            for name, value in zip(study.objectives.names, result.knee.tolist(), strict=True)
+        },
+        **{
+            f"{second}_at_{str(level).replace('.', '_')}_m": _number(value)
+            for level, value in zip(LEVELS_M, at_levels.tolist(), strict=False)
+        },
+        "reason": stored.reason,
+    }
+
+
+def _number(value: float) -> float | str:
+    return value if math.isfinite(value) else ""

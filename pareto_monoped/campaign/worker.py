@@ -16,8 +16,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import ParetoMonopedError
-from pareto_monoped.study.definition import Study
 
 STOP = "stop"
 """Tells a worker to end its study after the generation at hand; it can be continued."""
@@ -25,20 +25,14 @@ STOP = "stop"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """A study to run or to continue.
+    """A study to run or to continue."""
 
-    Attributes:
-        study, db: what and where.
-        threads: that simulate.
-        scheduler: address of a Dask scheduler whose workers simulate in their place; None: they do.
-        seat: tells studies that run side by side apart, see ``compute.crew.Crew``.
-    """
-
+    #: study, db: what and where
     study: Study
     db: Path
-    threads: int
-    scheduler: str | None = None
-    seat: int = 0
+    threads: int  #: that simulate
+    scheduler: str | None = None  #: address of a Dask scheduler whose workers simulate in their place; None: they do
+    seat: int = 0  #: tells studies that run side by side apart, see ``compute.crew.Crew``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,15 +47,10 @@ class Advanced:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Noted:
-    """A study has something to say to the user.
+    """A study has something to say to the user."""
 
-    Attributes:
-        line: for the user.
-        shared: whether it is about scheduler and workers, of which every study hears the same.
-    """
-
-    line: str
-    shared: bool = False
+    line: str  #: for the user
+    shared: bool = False  #: whether it is about scheduler and workers, of which every study hears the same
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,6 +116,7 @@ def _simulating(task: Task, notify: Callable[[str], None]) -> Iterator[Executor 
 
 
 def _done(task: Task, connection: Connection, stop: threading.Event) -> Ended | Failed:
+    from pareto_monoped.analysis.remarks import remarks
     from pareto_monoped.study.run import run
 
     def advance(progress: Any) -> bool:
@@ -163,7 +153,7 @@ def _done(task: Task, connection: Connection, stop: threading.Event) -> Ended | 
         front_size=summary.front_size,
         hypervolume=summary.hypervolume,
         stop_reason=summary.stop_reason,
-        remarks=summary.remarks,
+        remarks=tuple(remarks(summary.data)),
     )
 
 

@@ -13,7 +13,7 @@ from pareto_monoped import __version__
 
 _COMMANDS = {
     "pareto": "pareto",
-    "init": "starting",
+    "init": "pareto",
     "actuators": "actuators",
     "simulate": "jumps",
     "table1": "jumps",
@@ -21,16 +21,16 @@ _COMMANDS = {
     "resume": "studies",
     "status": "studies",
     "campaign": "campaign",
-    "verify": "storage",
-    "repair": "storage",
-    "trials": "trials",
+    "verify": "stored",
+    "repair": "stored",
+    "trials": "stored",
     "front": "fronts",
     "pick": "fronts",
     "robust": "robustness",
-    "sensitivity": "sensitivity",
+    "sensitivity": "robustness",
     "export": "exports",
-    "report": "reports",
-    "dashboard": "dashboard",
+    "report": "stored",
+    "dashboard": "stored",
 }
 """Command -> module of this package that defines it, in the order of use."""
 
@@ -116,10 +116,10 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _run(arguments: list[str] | None) -> int:
-    from pareto_monoped.cli import net
+    from pareto_monoped.cli import process
 
     try:
         code = cli.main(args=arguments, prog_name="pareto-monoped", standalone_mode=False)
         return code if isinstance(code, int) else 0
     except (Exception, KeyboardInterrupt) as error:
-        return net.report(error)
+        return process.report(error)

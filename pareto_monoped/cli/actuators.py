@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from pareto_monoped.cli import completing
+from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE_OR_DASH, Local, force_option
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, RULE_SETS, RuleSet
@@ -41,7 +41,7 @@ class _WithRules(click.Command):
 @click.option(
     "--motor",
     metavar="NAME",
-    shell_complete=completing.motors,
+    shell_complete=options.motors,
     default=PAPER_MOTOR,
     show_default=True,
     help="Name or TOML file.",
@@ -52,7 +52,7 @@ class _WithRules(click.Command):
     "--without",
     metavar="NAME",
     multiple=True,
-    shell_complete=completing.constraints,
+    shell_complete=options.constraints,
     help="Switch a constraint off; may be repeated.",
 )
 @click.option(
@@ -173,8 +173,7 @@ def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Tab
 
 def _print_map(actuator_map: "ActuatorMap") -> None:
 
-    from pareto_monoped.actuator.explain import gaps
-    from pareto_monoped.actuator.motor_facts import motor_facts
+    from pareto_monoped.actuator.explain import gaps, motor_facts
     from pareto_monoped.actuator.ratiomap import either
 
     rated = actuator_map.settings.rules != "paper"
@@ -247,10 +246,15 @@ def _last_cells(actuator: "Actuator") -> tuple[str, ...]:
 
 def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
 
+    from pareto_monoped.actuator.assumptions import default_service
     from pareto_monoped.actuator.explain import details
-    from pareto_monoped.actuator.service.data import default_service
-    from pareto_monoped.cli.gear_sheet import print_gear_sheet
-    from pareto_monoped.cli.service_lines import BEARING_COLUMNS, bearing_rows, duty_lines, service_lines
+    from pareto_monoped.cli.actuator_sheets import (
+        BEARING_COLUMNS,
+        bearing_rows,
+        duty_lines,
+        print_gear_sheet,
+        service_lines,
+    )
 
     actuator, known = entry.actuator, details(entry, sheet)
     assert actuator is not None
@@ -288,7 +292,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
 
 def _torque_lines(actuator: "Actuator") -> list[tuple[str, str]]:
     """The torques with their basis and how long they may be held; all before losses."""
-    from pareto_monoped.actuator.motor_facts import CONTINUOUS_BASIS, how_long, peak_basis
+    from pareto_monoped.actuator.explain import CONTINUOUS_BASIS, how_long, peak_basis
 
     motor = actuator.motor
     lasting = motor.lasting_torque_n_m

@@ -1,17 +1,24 @@
-"""Command ``campaign``: a grid of studies, run side by side, continued as a whole, compared on one page."""
+"""Command ``campaign``: a grid of studies, run side by side, continued as a whole, compared on one page.
+
+How a campaign's studies stand, on a terminal, in a pipe, or as lines of JSON.
+"""
 
 import json
-from collections.abc import Sequence
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli.computing import scheduler_option
-from pareto_monoped.cli.options import CSV_FILE, HTML_FILE, Local, force_option
-from pareto_monoped.cli.terminal import echo, name, note
+from pareto_monoped.cli.options import CSV_FILE, HTML_FILE, Local, force_option, scheduler_option
+from pareto_monoped.cli.terminal import echo, name, new_console, note
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from pareto_monoped.campaign.coordinator import Standing
     from pareto_monoped.campaign.folder import Place
     from pareto_monoped.campaign.grid import Campaign
@@ -64,8 +71,7 @@ def campaign(
     from pareto_monoped.campaign.coordinator import run_campaign, standings_of
     from pareto_monoped.campaign.folder import held, places_of
     from pareto_monoped.campaign.grid import load_campaign
-    from pareto_monoped.cli.campaign_table import as_values, counted, print_table, reports, studies
-    from pareto_monoped.extras import require_extra
+    from pareto_monoped.errors import require_extra
     from pareto_monoped.files import require_writable
 
     if scheduler is not None:
@@ -124,7 +130,7 @@ def _write(
     failed = {one.name: one.reason for one in standings if one.state == "failed"}
     results = results_of([one.place for one in standings], failed)
     if table is not None:
-        from pareto_monoped.campaign.table import csv_text
+        from pareto_monoped.campaign.results import csv_text
 
         write_text(table, csv_text(grid, results), force=force)
         echo(f"wrote {table}", err=True)
@@ -133,3 +139,196 @@ def _write(
 
         write_text(page, campaign_page(grid, results), force=force)
         echo(f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)", err=True)
+
+
+_SECONDS_BETWEEN_LINES = 5.0
+_NAME_WIDTH = 24
+"""Letters of a study's name in 80 columns; longer ones lose their middle, because their ends tell them apart."""
+_AROUND = 5
+"""Lines of the live table that are no studies: what stands above them, their count below, and the prompt."""
+
+Reports = tuple[Callable[["Standing"], object], Callable[[str], None]]
+"""What hears of a study whose standing has changed, and of a line for the user."""
+
+
+@contextmanager
+def reports(standings: "Sequence[Standing]", *, as_json: bool) -> Iterator[Reports]:
+    """What shows the progress of a campaign: a table on a terminal, else a line every few seconds, both on stderr.
+
+    As JSON it is a line on stdout for every stored generation and for every study that ends.
+    """
+    import sys
+
+    if as_json:
+        yield _json_report, _say
+    elif sys.stderr is not None and sys.stderr.isatty():
+        yield from _live(standings)
+    else:
+        yield _lines(standings), _say
+
+
+def print_table(standings: "Sequence[Standing]") -> None:
+    """All studies and how they stand, on stdout."""
+    table = _titled("jumps", "front", "hypervolume", "time")
+    for one in standings:
+        table.add_row(
+            shortened(one.name, _NAME_WIDTH),
+            _jumps(one),
+            str(one.front) if one.front else "",
+            _volume(one),
+            f"{one.seconds:.1f} s" if one.seconds else "",
+            one.doing,
+        )
+    new_console(width=80).print(table)
+
+
+def studies(count: int) -> str:
+    """So many studies, in words."""
+    return "1 study" if count == 1 else f"{count} studies"
+
+
+def counted(standings: "Sequence[Standing]") -> str:
+    """How many studies are in which state."""
+    return ", ".join(f"{count} {state}" for state, count in Counter(one.doing for one in standings).items())
+
+
+def shortened(text: str, width: int) -> str:
+    """A name of at most so many letters, without its middle if it has more."""
+    text = name(text)
+    if len(text) <= width:
+        return text
+    tail = width // 2
+    return f"{text[: width - tail - 1]}…{text[-tail:]}"
+
+
+def as_values(standing: "Standing") -> dict[str, Any]:
+    """A standing as JSON values."""
+    return {
+        "study": standing.name,
+        "database": str(standing.place.db),
+        "state": standing.doing,
+        "evaluations": standing.evaluations,
+        "budget": standing.budget,
+        "per_second": round(standing.per_second, 1),
+        "seconds_left": None if standing.seconds_left is None else round(standing.seconds_left, 1),
+        "hypervolume": standing.hypervolume,
+        "hypervolume_unit": standing.hypervolume_unit,
+        "front": standing.front,
+        "wall_time_s": round(standing.seconds, 1),
+        "reason": standing.reason,
+    }
+
+
+def _json_report(standing: "Standing") -> None:
+    ended = standing.state in ("finished", "failed")
+    echo(json.dumps({"event": "study" if ended else "generation"} | as_values(standing)))
+
+
+def _say(line: str) -> None:
+    echo(name(line), err=True)
+
+
+def _lines(standings: "Sequence[Standing]") -> "Callable[[Standing], None]":
+    last, began = time.monotonic(), time.monotonic()
+
+    def show(standing: "Standing") -> None:
+        nonlocal last
+        if standing.state == "finished":
+            _say(f"{standing.name}: {standing.evaluations} jumps, hypervolume {_volume(standing)}")
+        elif standing.state == "failed":
+            _say(f"{standing.name}: failed: {standing.reason}")
+        elif time.monotonic() - last >= _SECONDS_BETWEEN_LINES:
+            last = time.monotonic()
+            _say(_all(standings, last - began))
+
+    return show
+
+
+def _live(standings: "Sequence[Standing]") -> Iterator[Reports]:
+    from rich.console import Group
+    from rich.live import Live
+    from rich.text import Text
+
+    began = time.monotonic()
+    console = new_console(stderr=True)
+
+    def picture() -> Group:
+        seconds = time.monotonic() - began
+        return Group(
+            Text(_all(standings, seconds), no_wrap=True, overflow="ellipsis"), *_rows(standings, console.height)
+        )
+
+    with Live(get_renderable=picture, console=console, refresh_per_second=4, transient=True):
+        yield (lambda _: None), (lambda line: console.print(name(line)))
+
+
+def _rows(standings: "Sequence[Standing]", height: int) -> list[Any]:
+    """The table and, if not all studies fit into it, what the others are at."""
+    from rich.text import Text
+
+    room = max(height - _AROUND, 3)
+    shown = standings if len(standings) <= room else _of_interest(standings, room - 1)
+    parts: list[Any] = [_table(shown)]
+    if len(shown) < len(standings):
+        left = [one for one in standings if not any(one is other for other in shown)]
+        parts.append(Text(f"and {len(left)} more: {counted(left)}"))
+    return parts
+
+
+def _of_interest(standings: "Sequence[Standing]", room: int) -> "list[Standing]":
+    """So many studies: those at work, then failed ones, the next ones, and those that have ended."""
+    ranks = {"running": 0, "failed": 1, "unfinished": 2, "waiting": 2, "finished": 3}
+    places = sorted(range(len(standings)), key=lambda k: (ranks[standings[k].state], k))
+    return [standings[k] for k in sorted(places[:room])]
+
+
+def _titled(*numbers: str) -> "Table":
+    """A table without rows: studies, columns of numbers, and how each study stands."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("study", no_wrap=True)
+    for title in numbers:
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("state", no_wrap=True)
+    return table
+
+
+def _table(standings: "Sequence[Standing]") -> "Table":
+    table = _titled("jumps", "rate", "hypervolume", "left")
+    for one in standings:
+        table.add_row(
+            shortened(one.name, _NAME_WIDTH),
+            _jumps(one),
+            f"{one.per_second:.0f}/s" if one.per_second else "",
+            _volume(one),
+            "" if one.seconds_left is None else clock(one.seconds_left),
+            one.doing,
+        )
+    return table
+
+
+def _jumps(standing: "Standing") -> str:
+    return f"{standing.evaluations}/{standing.budget}"
+
+
+def _volume(standing: "Standing") -> str:
+    return f"{standing.hypervolume:.3f} {standing.hypervolume_unit}" if standing.evaluations else ""
+
+
+def clock(seconds: float) -> str:
+    """A time as minutes and seconds, or as hours, minutes and seconds."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+def _all(standings: "Sequence[Standing]", seconds: float) -> str:
+    """The campaign in one line."""
+    ended = sum(one.state in ("finished", "failed") for one in standings)
+    done, budget = (sum(getattr(one, key) for one in standings) for key in ("evaluations", "budget"))
+    left = sum(one.budget - one.evaluations for one in standings if one.state != "failed")
+    rate = sum(one.new_evaluations for one in standings) / max(seconds, 1e-9)
+    pace = f", {rate:.0f}/s, {clock(left / rate)} left" if rate > 0.0 else ""
+    return f"{ended} of {studies(len(standings))} ended, {done} of {budget} jumps{pace}"

@@ -9,20 +9,27 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli import completing
-from pareto_monoped.cli.computing import Where, executor_at, scheduler_option, where
-from pareto_monoped.cli.motor_options import chosen_motors, motor_options
-from pareto_monoped.cli.options import DATABASE, Local
+from pareto_monoped.cli import options
+from pareto_monoped.cli.options import (
+    DATABASE,
+    Local,
+    Where,
+    chosen_motors,
+    executor_at,
+    motor_options,
+    scheduler_option,
+    where,
+)
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, new_console, note, wrapped
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.cad.batch import Progress
     from pareto_monoped.cad.jobs import Job
     from pareto_monoped.pareto.selectors import Selector
-    from pareto_monoped.study.reader import StudyData
+    from pareto_monoped.storage.reader import StudyData
 
 
 @click.command()
@@ -49,7 +56,7 @@ if TYPE_CHECKING:
 @click.option(
     "--formats",
     metavar="A,B",
-    shell_complete=completing.formats,
+    shell_complete=options.formats,
     help="From step,stl,3mf,dxf,glb,mjcf,urdf,pdf,\nassembly,png.  [default: all]",
 )
 @click.option("--no-drawings", is_flag=True, help="Leave out pdf, the workshop drawings.")
@@ -94,7 +101,7 @@ def export(
     for option, value in given.items():
         if value is not None and case is None:
             raise click.UsageError(f"{option} goes with --case only, studies and records name theirs; drop it")
-    from pareto_monoped.extras import require_extra
+    from pareto_monoped.errors import require_extra
 
     require_extra("cad", "CAD")
     from pareto_monoped.cad.interrupt import ending_at
@@ -104,9 +111,9 @@ def export(
         if not whole_front:
             # It loads meanwhile; the exports of a front have kernels of their own.
             kernel.start()
+        from pareto_monoped.analysis.remarks import refuse_empty
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
-        from pareto_monoped.study.infeasible import refuse_empty
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
@@ -134,8 +141,8 @@ def export(
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
             _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1, place)
         else:
+            from pareto_monoped.analysis.choices import with_numbered
             from pareto_monoped.pareto.pick import pick
-            from pareto_monoped.study.behind import with_numbered
 
             study, wanted = _given(db), required(selector)
             data = _read(study)
@@ -149,8 +156,8 @@ def export(
 
 
 def _read(db: StudyPlace) -> "StudyData":
-    from pareto_monoped.study.reader import read_study
-    from pareto_monoped.study.seals import UNSEALED
+    from pareto_monoped.storage.reader import read_study
+    from pareto_monoped.storage.seals import UNSEALED
 
     data = read_study(db)
     if not data.sealed:
@@ -216,7 +223,7 @@ def _one(job: "Job") -> None:
 
 def _say_of_strength(jobs: "list[Job]") -> None:
     """Say that designs may not hold, where nobody asked for it."""
-    from pareto_monoped.study.definition import NO_STRENGTH
+    from pareto_monoped.definition.study import NO_STRENGTH
 
     if not all(job.strength for job in jobs):
         note(NO_STRENGTH)

@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli import completing
+from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, DATABASE, force_option
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
 from pareto_monoped.design import VARIABLES, Variable, in_use
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from pareto_monoped.analysis.alternatives import Alternative
+    from pareto_monoped.analysis.robustness import RobustTrials
+    from pareto_monoped.definition.study import Study
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.selectors import Selector
-    from pareto_monoped.study.alternatives import Alternative
-    from pareto_monoped.study.definition import Study
-    from pareto_monoped.study.reader import StudyData
-    from pareto_monoped.study.robust_front import RobustTrials
+    from pareto_monoped.storage.reader import StudyData
 
 
 def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objectives") -> list[str]:
@@ -54,7 +54,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 @click.option(
     "--objectives",
     metavar="A,B",
-    shell_complete=completing.measures,
+    shell_complete=options.measures,
     help="Two or three measures to judge by, instead of the study's.",
 )
 @click.option(
@@ -76,9 +76,8 @@ def front(
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
     """
-    from pareto_monoped.study.foreign import foreign_note
-    from pareto_monoped.study.front_reader import read_front
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.storage.front_reader import foreign_note, read_front
+    from pareto_monoped.storage.reader import read_study
 
     if objectives is None and not include_all:
         kept = read_front(db)
@@ -112,8 +111,8 @@ def front(
 
 def _say_why_empty(db: StudyPlace) -> None:
     """Note why a study with trials has no front."""
-    from pareto_monoped.study.infeasible import why_no_front
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.analysis.remarks import why_no_front
+    from pareto_monoped.storage.reader import read_study
 
     data = read_study(db)
     if len(data.trials):
@@ -137,8 +136,8 @@ def _spread(rows: "DataFrame", most: int | None) -> "DataFrame":
 
 def say_of_study(study: "Study", *, sealed: bool) -> None:
     """Say that designs may not hold, where a study did not ask for it, and that it has no running hash."""
-    from pareto_monoped.study.definition import NO_STRENGTH
-    from pareto_monoped.study.seals import UNSEALED
+    from pareto_monoped.definition.study import NO_STRENGTH
+    from pareto_monoped.storage.seals import UNSEALED
 
     if not study.strength:
         note(NO_STRENGTH)
@@ -148,8 +147,8 @@ def say_of_study(study: "Study", *, sealed: bool) -> None:
 
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
     """The objectives that an option names, or the study's own."""
+    from pareto_monoped.definition.goals import names_of, objectives_of
     from pareto_monoped.errors import SelectionError
-    from pareto_monoped.study.goals import names_of, objectives_of
 
     if given is None:
         return data.study.objectives
@@ -233,14 +232,14 @@ def pick(
     Conditions combine with each other and with one way to choose. Measures and variables have their stored names and
     SI units.
     """
-    from pareto_monoped.pareto.one_more import one_more
+    from pareto_monoped.analysis.alternatives import alternatives
+    from pareto_monoped.analysis.at_bounds import binding_limits, front_alone
+    from pareto_monoped.analysis.choices import better_than, numbered, with_numbered
+    from pareto_monoped.analysis.remarks import refuse_empty
     from pareto_monoped.pareto.pick import pick as pick_design
-    from pareto_monoped.study.alternatives import alternatives
-    from pareto_monoped.study.behind import better_than, numbered, with_numbered
-    from pareto_monoped.study.binding import binding_limits, front_alone
-    from pareto_monoped.study.front_reader import read_front
-    from pareto_monoped.study.infeasible import refuse_empty
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.pareto.trade_offs import one_more
+    from pareto_monoped.storage.front_reader import read_front
+    from pareto_monoped.storage.reader import read_study
 
     wanted = required(selector)
     data = read_front(db)
@@ -303,9 +302,9 @@ def pick(
 
 def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
     """The study, its trials by what is stored of their robustness, and their front."""
-    from pareto_monoped.study.reader import read_study
-    from pareto_monoped.study.robust_front import robust_front, robust_trials
-    from pareto_monoped.study.robust_rows import read_robustness
+    from pareto_monoped.analysis.robustness import robust_front, robust_trials
+    from pareto_monoped.storage.extra_rows import read_robustness
+    from pareto_monoped.storage.reader import read_study
 
     data = read_study(db)
     trials = robust_trials(data, read_robustness(db))

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli import completing
-from pareto_monoped.cli.motor_options import chosen_motors, motor_options
-from pareto_monoped.cli.options import CSV_FILE, Local, force_option
+from pareto_monoped.cli import options
+from pareto_monoped.cli.options import CSV_FILE, Local, chosen_motors, force_option, motor_options
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
@@ -29,7 +28,7 @@ from pareto_monoped.errors import DesignError, SimulationError, complaint, unkno
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.joint_maps import JointMaps
+    from pareto_monoped.actuator.ratiomap import JointMaps
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.jump.single import JumpResult
     from pareto_monoped.jump.table1 import Row
@@ -60,14 +59,14 @@ _VARIABLES = "\n".join(
     "changes",
     metavar="NAME=X",
     multiple=True,
-    shell_complete=completing.variables,
+    shell_complete=options.variables,
     help="Change a design variable; may be repeated.",
 )
 @click.option(
     "--calibration",
     "calibration_name",
     metavar="NAME",
-    shell_complete=completing.calibrations,
+    shell_complete=options.calibrations,
     default=DEFAULT,
     show_default=True,
     help="Name or TOML file.",
@@ -115,8 +114,8 @@ def simulate(
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.calibration_defaults import rules_for
     from pareto_monoped.jump.single import simulate as jump
-    from pareto_monoped.leg.motor_fit import maps_for
-    from pareto_monoped.robot.frames import JOINTS
+    from pareto_monoped.leg.thigh_outline import maps_for
+    from pareto_monoped.robot.units import JOINTS
 
     shown = gif is not None or video is not None or view
     require_what_shows(gif, video, view)
@@ -221,8 +220,8 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
     """How many jumps the gears last that strike their stops in each; with advice if that is too few."""
     import numpy as np
 
-    from pareto_monoped.strength.loads import loads_of
-    from pareto_monoped.strength.single import gear_life
+    from pareto_monoped.strength.factors import gear_life
+    from pareto_monoped.strength.joint import loads_of
 
     known = result.measures | result.design.as_dict()
     life = gear_life(result.design, maps, loads_of({name: np.array([v]) for name, v in known.items()}))

@@ -1,13 +1,33 @@
-"""Options that several commands share."""
+"""Options that several commands share.
 
+The options that name the motors of a robot: ``--motor`` for both joints, or ``--hip-motor`` and ``--knee-motor``.
+
+Options that say where the work is done: threads of this process, processes of this machine, or a cluster.
+
+What the shell completes besides commands, options and files: names of motors, variables, measures and the like.
+
+A name is looked up when the shell asks for it; nothing that takes longer than a key press is imported for that.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from pareto_monoped.cli.terminal import echo
+from pareto_monoped.design import PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError, InputError, complaint
-from pareto_monoped.study.place import place_of
-from pareto_monoped.study.server.address import is_address
+from pareto_monoped.storage.place import place_of
+from pareto_monoped.storage.server.address import is_address
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+    from pareto_monoped.compute.staff import Limits
 
 
 class Local(click.Path):
@@ -98,3 +118,190 @@ uncertainty_option = click.option(
     metavar="FILE.toml",
     help="TOML file of ranges, instead of the study's or ours.",
 )
+
+
+Completion = Callable[["click.Context", "click.Parameter", str], "list[CompletionItem]"]
+
+
+def _completing(known: Callable[[], Iterable[str]], *, files: bool = False) -> Completion:
+    """Complete a name out of those known, in a list with commas the last one; files as well if asked for."""
+
+    def complete(_: "click.Context", __: "click.Parameter", incomplete: str) -> "list[CompletionItem]":
+        from click.shell_completion import CompletionItem
+
+        before, comma, begun = incomplete.rpartition(",")
+        found = [CompletionItem(f"{before}{comma}{name}") for name in known() if name.startswith(begun)]
+        return [*found, CompletionItem(incomplete, type="file")] if files else found
+
+    return complete
+
+
+def _motors() -> Iterable[str]:
+    from pareto_monoped.actuator.motors import motor_names
+
+    return motor_names()
+
+
+def _calibrations() -> Iterable[str]:
+    from pareto_monoped.jump.calibration import calibration_names
+
+    return calibration_names()
+
+
+def _studies() -> Iterable[str]:
+    from pareto_monoped.definition.study_file import shipped_studies
+
+    return shipped_studies()
+
+
+def _constraints() -> Iterable[str]:
+    from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
+
+    return CONSTRAINT_NAMES
+
+
+def _variables() -> Iterable[str]:
+    from pareto_monoped.design import NAMES
+
+    return (f"{name}=" for name in NAMES)
+
+
+def _measures() -> Iterable[str]:
+    from pareto_monoped.measures import MEASURES
+
+    return (entry.name for entry in MEASURES if entry.direction is not None)
+
+
+def _conditions() -> Iterable[str]:
+    return (f"{name}=" for name in (*_measures(), *(name.removesuffix("=") for name in _variables())))
+
+
+def _formats() -> Iterable[str]:
+    from pareto_monoped.cad.write.folder import FORMATS
+
+    return FORMATS
+
+
+def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list[CompletionItem]":
+    """Numbers of the trials on the front of the study that the line names so far; nothing where none can be read.
+
+    Shells that show help beside a word show the objectives.
+    """
+    from click.shell_completion import CompletionItem
+
+    from pareto_monoped.errors import ParetoMonopedError
+    from pareto_monoped.storage.kept_front import front_trials
+    from pareto_monoped.storage.place import place_of
+
+    # An option without its value ends click's reading of a line, before arguments get their names.
+    db = ctx.params.get("db") or next(iter(ctx.args), None)
+    try:
+        known = {} if db is None else front_trials(place_of(db) if isinstance(db, str) else db)
+    except ParetoMonopedError:
+        return []
+    return [CompletionItem(str(n), help=text) for n, text in known.items() if str(n).startswith(incomplete)]
+
+
+motors = _completing(_motors, files=True)
+calibrations = _completing(_calibrations, files=True)
+studies = _completing(_studies)
+constraints = _completing(_constraints)
+variables = _completing(_variables)
+measures = _completing(_measures)
+conditions = _completing(_conditions)
+formats = _completing(_formats)
+
+
+def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Options ``--motor``, ``--hip-motor`` and ``--knee-motor`` of a command; ``chosen_motors`` reads them.
+
+    Args:
+        prefix: of their help texts.
+    """
+    both = click.option(
+        "--motor",
+        metavar="NAME",
+        shell_complete=motors,
+        help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]",
+    )
+    hip = click.option(
+        "--hip-motor",
+        metavar="NAME",
+        shell_complete=motors,
+        help=f"{prefix}The hip's, with --knee-motor instead of --motor.",
+    )
+    knee = click.option(
+        "--knee-motor", metavar="NAME", shell_complete=motors, help=f"{prefix}The knee's, with --hip-motor."
+    )
+    return lambda command: both(hip(knee(command)))
+
+
+def chosen_motors(motor: str | None, hip_motor: str | None, knee_motor: str | None) -> tuple[str, str]:
+    """Names or files of the hip's and the knee's motor.
+
+    Raises:
+        click.UsageError: one joint's alone, or ``--motor`` beside them.
+    """
+    if hip_motor is None and knee_motor is None:
+        return motor or PAPER_MOTOR, motor or PAPER_MOTOR
+    if motor is not None:
+        raise click.UsageError("--motor stands for both joints; drop it, or --hip-motor and --knee-motor")
+    if hip_motor is None or knee_motor is None:
+        missing = "--knee-motor" if knee_motor is None else "--hip-motor"
+        raise click.UsageError(f"{missing} is missing; name both joints' motors, or one for both with --motor")
+    return hip_motor, knee_motor
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Where:
+    """Where the work is done: at most one of them is given; on threads if none is."""
+
+    processes: int | None = None  #: number of processes of this machine
+    scheduler: str | None = None  #: address of a Dask scheduler
+
+
+scheduler_option = click.option(
+    "--scheduler", metavar="ADDRESS", help="Compute on the workers of a Dask scheduler, such as tcp://host:8786."
+)
+
+
+def where_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--processes`` and ``--scheduler``, handed over as ``processes`` and ``scheduler``."""
+    processes = click.option(
+        "--processes", type=click.IntRange(1, 256), metavar="N", help="Compute in N processes instead of threads."
+    )
+    return processes(scheduler_option(command))
+
+
+def where(processes: int | None, scheduler: str | None, workers: int | None) -> Where:
+    """What the options say; a usage error if they contradict each other."""
+    given = {"--processes": processes, "--scheduler": scheduler, "--workers": workers}
+    named = [option for option, value in given.items() if value is not None]
+    if len(named) > 1:
+        raise click.UsageError(f"{named[0]} and {named[1]} exclude each other; drop one")
+    return Where(processes=processes, scheduler=scheduler)
+
+
+@contextmanager
+def executor_at(place: Where, *, limits: "Limits | None" = None, extra: str | None = None) -> Iterator[Executor | None]:
+    """The executor for a place, None for threads; what happens to its workers is said on standard error.
+
+    Args:
+        place: what the options say.
+        limits: how long to wait for tasks and workers; None: as for jumps.
+        extra: whose packages other hosts must have in the same versions, too.
+    """
+    if place.processes is None and place.scheduler is None:
+        yield None
+        return
+    from pareto_monoped.jump.peers import cluster, processes
+
+    def tell(line: str) -> None:
+        echo(line, err=True)
+
+    if place.scheduler is not None:
+        with cluster(place.scheduler, tell=tell, limits=limits, extra=extra) as crew:
+            yield crew
+    else:
+        with processes(place.processes, tell=tell, limits=limits) as crew:
+            yield crew

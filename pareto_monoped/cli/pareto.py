@@ -1,7 +1,12 @@
-"""Command ``pareto``: the main job, from the actuator map to two fronts and the CAD of a knee; made of the others."""
+"""Command ``pareto``: the main job, from the actuator map to two fronts and the CAD of a knee; made of the others.
+
+``init``: a study file to start from.
+"""
 
 import contextlib
 import io
+import textwrap
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,13 +14,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pareto_monoped.cli import options
 from pareto_monoped.cli.options import DATABASE_FILE, Local
 from pareto_monoped.cli.terminal import echo, new_console
 
 if TYPE_CHECKING:
+    from pareto_monoped.analysis.choices import Choice
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.study.choices import Choice
-    from pareto_monoped.study.reader import StudyData
+    from pareto_monoped.storage.reader import StudyData
 
 
 @click.command()
@@ -50,18 +56,18 @@ def pareto(
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
     """
-    from pareto_monoped.extras import require_extra
+    from pareto_monoped.errors import require_extra
 
     # Before the search: minutes later would be too late to say so.
     require_extra("cad", "CAD")
+    from pareto_monoped.analysis.choices import counterpart
+    from pareto_monoped.analysis.remarks import refuse_empty
     from pareto_monoped.cad.jobs import trial_job
-    from pareto_monoped.cad.made import is_made
+    from pareto_monoped.cad.records import is_made
+    from pareto_monoped.definition.study import NO_STRENGTH, load_study
     from pareto_monoped.pareto.pick import pick
     from pareto_monoped.pareto.selectors import Knee
-    from pareto_monoped.study.choices import counterpart
-    from pareto_monoped.study.definition import NO_STRENGTH, load_study
-    from pareto_monoped.study.infeasible import refuse_empty
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.storage.reader import read_study
 
     study_file = study_file or _first_study()
     study = load_study(study_file)
@@ -118,8 +124,7 @@ def pareto(
 
 def _first_study() -> Path:
     """The study of the main job where none is named; outside a checkout, one to begin with is written."""
-    from pareto_monoped.cli.starting import write_study
-    from pareto_monoped.study.shipped import START
+    from pareto_monoped.definition.study_file import START
 
     path = Path("studies") / f"{START}.toml"
     if not path.exists():
@@ -168,7 +173,7 @@ def _beside(db: Path, other: "Objectives") -> Path:
 
 def _by(data: "StudyData") -> str:
     """What the study minimises, in words; for other objectives than height and an energy, their names."""
-    from pareto_monoped.study.choices import WORDS
+    from pareto_monoped.analysis.choices import WORDS
 
     names = data.study.objectives.names
     return next((word for name, word in WORDS.items() if name in names), ", ".join(names))
@@ -182,7 +187,7 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
     from rich import box
     from rich.table import Table
 
-    from pareto_monoped.study.headline import headline
+    from pareto_monoped.analysis.choices import headline
 
     table = Table(box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("design")
@@ -195,7 +200,7 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
 
 def _print_choices(studies: "list[StudyData]") -> None:
     """The closing table: what choosing by mechanical energy costs at the battery, height by height."""
-    from pareto_monoped.study.choices import choices, two_fronts
+    from pareto_monoped.analysis.choices import choices, two_fronts
 
     pair = two_fronts(studies)
     if pair is None:
@@ -220,3 +225,42 @@ def _cells(choice: "Choice | None") -> str:
     if choice is None:
         return f"{'not reached':>31}"
     return f"{choice.energy_j:8.2f} {choice.electrical_energy_j:8.2f} {choice.hip_ratio:6.2f} {choice.knee_ratio:6.2f}"
+
+
+@click.command()
+@click.argument("name", metavar="[STUDY]", required=False, shell_complete=options.studies)
+@click.option("-o", "--output", type=Local(), metavar="FILE.toml", help="The copy.  [default: STUDY.toml]")
+@click.option("--list", "listed", is_flag=True, help="List the studies that there are.")
+@click.option("--force", is_flag=True, help="Replace an existing study file.")
+def init(name: str | None, output: Path | None, listed: bool, force: bool) -> None:
+    """Copy a study file that comes with the program, to start from.
+
+    Without a name it is case_c, the paper's best design with all seven variables free; wide shows every key.
+    """
+    from pareto_monoped.definition.study_file import START, shipped_studies, shipped_study
+
+    if listed:
+        for study in shipped_studies():
+            line = f"{study:<16} {tomllib.loads(shipped_study(study)).get('description', '')}"
+            echo(textwrap.fill(line, width=80, subsequent_indent=" " * 17))
+        return
+    chosen = name or START
+    write_study(chosen, output or Path(f"{chosen}.toml"), force=force)
+
+
+def write_study(name: str, path: Path, *, force: bool = False) -> None:
+    """Write a shipped study to a file, and say what to do with it.
+
+    Raises:
+        StudyError: there is no such study.
+        OutputError: the file exists, and may have changes of the user's.
+    """
+    from pareto_monoped.definition.study_file import shipped_study
+    from pareto_monoped.errors import OutputError
+    from pareto_monoped.files import write_text
+
+    text = shipped_study(name)
+    if path.exists() and not force:
+        raise OutputError(f"study file {str(path)!r}: exists; give another -o, or --force to replace it")
+    write_text(path, text, force=force)
+    echo(f"wrote {path}; run it with: pareto-monoped run {path}", err=True)

@@ -1,14 +1,30 @@
-"""The process of a command: standard streams that always work, signals that end it in order, and a quick end."""
+"""The process of a command: standard streams that always work, signals that end it in order, and a quick end.
+
+The one place that turns whatever a command raises into one line on stderr and an exit code.
+
+Code below the command line raises its own errors (``errors``), which say file, place and cure. What else comes up here
+is an error of the system, or a fault of this program; both end in one line as well.
+"""
 
 import atexit
+import difflib
 import os
+import re
 import signal
 import sys
+import traceback
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from io import TextIOWrapper
+from pathlib import Path
 from typing import NoReturn
+
+import click
+
+from pareto_monoped.cli.terminal import name, wrapped
+from pareto_monoped.errors import ParetoMonopedError
+from pareto_monoped.files import ADRIFT, cure_of, is_adrift, is_failure
 
 _STANDARD = (0, 1, 2)
 _INTERRUPTED = 130
@@ -66,9 +82,9 @@ def _open_streams() -> None:
         except OSError:
             # The lowest free number, which is this one, as all below it are open.
             os.open(os.devnull, os.O_RDONLY if number == 0 else os.O_WRONLY)
-    for name, number in (("stdout", 1), ("stderr", 2)):
-        if getattr(sys, name) is None:
-            setattr(sys, name, os.fdopen(number, "w", encoding="utf-8", errors="backslashreplace", closefd=False))
+    for stream, number in (("stdout", 1), ("stderr", 2)):
+        if getattr(sys, stream) is None:
+            setattr(sys, stream, os.fdopen(number, "w", encoding="utf-8", errors="backslashreplace", closefd=False))
 
 
 def _flush() -> None:
@@ -78,3 +94,87 @@ def _flush() -> None:
         except (OSError, ValueError):
             # What could be told has been told.
             continue
+
+
+TRACEBACK = "PARETO_MONOPED_TRACEBACK"
+"""Environment variable that makes faults of the program show where they come from."""
+_KINDS = {"integer": "whole number", "float": "number"}
+_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")
+"""How click calls what must be a number."""
+_LONGEST = 1200
+"""Characters of a message; of longer ones, such as on a text of a megabyte, the middle is left out. Our own choice."""
+
+
+def told(error: BaseException) -> tuple[str, int]:
+    """The line on stderr and the exit code for what a command raised."""
+    if isinstance(error, click.exceptions.Abort | KeyboardInterrupt):
+        return "interrupted", 130
+    if isinstance(error, click.ClickException):
+        # One line, as for our own errors; by default click prints the usage text, too.
+        hint = ""
+        if isinstance(error, click.UsageError):
+            hint = f" (see '{'pareto-monoped' if error.ctx is None else error.ctx.command_path} --help')"
+        return f"error: {_line(_of_click(error))}{hint}", error.exit_code
+    if isinstance(error, ParetoMonopedError):
+        return f"error: {_line(str(error))}", error.exit_code
+    if isinstance(error, MemoryError):
+        return "error: memory: is used up; close other programs, or give less", 1
+    if isinstance(error, OSError) and error.errno is not None:
+        return _of_system(error)
+    where = _place(error)
+    return (
+        f"error: unexpected {type(error).__name__}{where}: {_line(str(error)) or 'without a message'}; "
+        f"check the files given, or report it with what {TRACEBACK}=1 shows"
+    ), 1
+
+
+def _of_click(error: click.ClickException) -> str:
+    """Its message, in the words of this program."""
+    if isinstance(error, click.NoSuchOption):
+        # The first is the most similar.
+        near = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
+        return f"option {error.option_name!r}: is unknown; {f'did you mean {near[0]!r}?' if near else 'drop it'}"
+    return _KIND.sub(lambda found: f"is no {_KINDS[found[1]]}", error.format_message())
+
+
+def _of_system(error: OSError) -> tuple[str, int]:
+    """An error of the system that no other code has answered."""
+    if error.filename is None and is_adrift():
+        return f"error: {ADRIFT}", 2
+    files = [os.fsdecode(part) for part in (error.filename, error.filename2) if isinstance(part, str | bytes)]
+    what = f"file {', '.join(map(repr, files))}: cannot be used" if files else "output: cannot be written"
+    said = error.strerror or str(error)
+    return f"error: {_line(what)} ({_line(said)}); {cure_of(error)}", 1 if is_failure(error) else 2
+
+
+def _line(text: str) -> str:
+    """A message on one line, of bounded length and without anything that a terminal would obey."""
+    line = name(" ".join(text.splitlines()).strip())
+    if len(line) <= _LONGEST:
+        return line
+    return f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 3 :]}"
+
+
+def _place(error: BaseException) -> str:
+    """Where in this package an error came up."""
+    package = Path(__file__).parent.parent
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        path = Path(frame.filename)
+        if path.is_relative_to(package):
+            return f" in {path.relative_to(package)}, line {frame.lineno}"
+    return ""
+
+
+def report(error: BaseException) -> int:
+    """Print what a command raised; returns the exit code."""
+    if isinstance(error, BrokenPipeError):
+        # The reader (head, less) has closed the pipe, which is no error.
+        return 0
+    line, code = told(error)
+    if os.environ.get(TRACEBACK) and isinstance(error, Exception):
+        traceback.print_exception(error)
+    with suppress(OSError, ValueError):
+        # One line for programs; a terminal would break it within words. A closed stderr is None.
+        terminal = sys.stderr is not None and sys.stderr.isatty()
+        click.echo(wrapped(line) if terminal else line, err=True)
+    return code

@@ -1,4 +1,7 @@
-"""``robust``: designs of a study under uncertainty."""
+"""``robust``: designs of a study under uncertainty.
+
+``sensitivity``: which variable and which assumption moves a design's measures most.
+"""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -7,17 +10,29 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pareto_monoped.cli import completing
-from pareto_monoped.cli.computing import executor_at, where, where_options
-from pareto_monoped.cli.options import DATABASE, sample_seed_option, uncertainty_option, workers_option
-from pareto_monoped.cli.terminal import echo
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.cli import options
+from pareto_monoped.cli.options import (
+    DATABASE,
+    HTML_FILE,
+    executor_at,
+    force_option,
+    sample_seed_option,
+    uncertainty_option,
+    where,
+    where_options,
+    workers_option,
+)
+from pareto_monoped.cli.selection import required, selector_options
+from pareto_monoped.cli.terminal import echo, wrapped
+from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
+    from pareto_monoped.definition.study import Study
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.study.definition import Study
-    from pareto_monoped.uncertainty.ranges import Uncertainty
+    from pareto_monoped.pareto.selectors import Selector
+    from pareto_monoped.uncertainty.sensitivity import FactorInfluence, Sensitivity
+    from pareto_monoped.uncertainty.settings import Uncertainty
     from pareto_monoped.uncertainty.statistics import Robustness
 
 
@@ -29,7 +44,7 @@ if TYPE_CHECKING:
     type=click.IntRange(min=0),
     multiple=True,
     metavar="N",
-    shell_complete=completing.trials,
+    shell_complete=options.trials,
     help="A trial, instead of the front.",
 )
 @click.option(
@@ -66,8 +81,8 @@ def robust(
     Masses, motors, friction, springs, lengths, gains, delay and battery vary together; all designs get the same
     samples. The results are stored in DB; what is there is not simulated again.
     """
-    from pareto_monoped.study.front_reader import read_front
-    from pareto_monoped.study.robustness import robust as run_robust
+    from pareto_monoped.analysis.robustness import robust as run_robust
+    from pareto_monoped.storage.front_reader import read_front
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
@@ -76,8 +91,8 @@ def robust(
     ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
     chosen = list(trials) or kept.rows["trial"].tolist()[::every]
     if count and chosen:
-        from pareto_monoped.study.alternatives import alternatives
-        from pareto_monoped.study.reader import read_study
+        from pareto_monoped.analysis.alternatives import alternatives
+        from pareto_monoped.storage.reader import read_study
 
         data = read_study(db)
         chosen += [other.trial for trial in chosen for other in alternatives(data, trial, count=count)]
@@ -101,9 +116,8 @@ def robust(
 
 def asked(study: "Study", file: Path | None, samples: int | None, seed: int | None) -> "tuple[Uncertainty, int, int]":
     """Ranges, number of samples and seed that options ask for; without them the study's own, or the shipped ones."""
-    from pareto_monoped.uncertainty.ranges import load_uncertainty
     from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES
-    from pareto_monoped.uncertainty.settings import Sampling
+    from pareto_monoped.uncertainty.settings import Sampling, load_uncertainty
 
     own = study.uncertainty or Sampling(ranges=load_uncertainty())
     return (
@@ -132,3 +146,138 @@ def _cells(result: "Robustness", entry: "Measure") -> str:
     values: Sequence[float | None] = (spread.mean, spread.p05, spread.p95) if spread else (None,) * 3
     texts = ["-" if value is None else f"{value * entry.scale:.{entry.decimals}f}" for value in values]
     return "".join(f"{text:>8}" for text in texts)
+
+
+_DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
+
+
+@click.command()
+@click.argument("db", type=DATABASE)
+@selector_options
+@click.option(
+    "--samples",
+    type=int,
+    default=_DEFAULT_BLOCKS,
+    metavar="N",
+    help="Base samples; each takes a jump per factor, and two more.  [default: 256]",
+)
+@click.option(
+    "--within",
+    type=click.FloatRange(0.0, 50.0, min_open=True),
+    default=_DEFAULT_WITHIN,
+    metavar="PERCENT",
+    help="How far variables move, of their ranges.  [default: 2]",
+)
+@sample_seed_option
+@uncertainty_option
+@workers_option
+@where_options
+@click.option("--plot", type=HTML_FILE, metavar="FILE.html", help="Write a chart that needs no network.")
+@force_option
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
+def sensitivity(
+    db: StudyPlace,
+    selector: "Selector | None",
+    samples: int,
+    within: float,
+    seed: int | None,
+    uncertainty: Path | None,
+    workers: int | None,
+    processes: int | None,
+    scheduler: str | None,
+    plot: Path | None,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Say which variable and which assumption moves a design most.
+
+    The free variables move a little around the design; then everything that is uncertain in a built robot moves
+    within its range. Results are stored in DB; what is there is not simulated again.
+    """
+    from pareto_monoped.analysis.remarks import refuse_empty
+    from pareto_monoped.analysis.sensitivity import sensitivity as find
+    from pareto_monoped.pareto.pick import pick as pick_design
+    from pareto_monoped.pareto.selectors import Trial
+    from pareto_monoped.storage.front_reader import read_front
+
+    place = where(processes, scheduler, workers)
+    wanted, kept = required(selector), read_front(db)
+    ranges, _, chosen_seed = asked(kept.study, uncertainty, None, seed)
+    if isinstance(wanted, Trial):
+        trial = wanted.number  # which need not be on the front
+    else:
+        refuse_empty(kept.rows, db)
+        trial = pick_design(kept.rows, wanted, kept.study.objectives).trial
+    with executor_at(place) as executor:
+        found = find(
+            db,
+            trial,
+            ranges,
+            blocks=samples,
+            within=0.01 * within,
+            seed=chosen_seed,
+            workers=workers,
+            executor=executor,
+        )
+    if plot is not None:
+        from pareto_monoped.files import write_text
+        from pareto_monoped.report.figures import sensitivity_page
+
+        write_text(plot, sensitivity_page(trial, found, _shown(kept.study)), force=force)
+        echo(f"wrote {plot}", err=True)
+    if as_json:
+        both = {one.about: one.as_dict() for one in found}
+        echo(json.dumps({"trial": trial, "uncertainty": ranges.name, "seed": chosen_seed, **both}, indent=2))
+        return
+    shown = _shown(kept.study)
+    for one in found:
+        _sensitivity_print(trial, one, shown)
+    _say_which(found[1], shown)
+
+
+def _shown(study: "Study") -> "list[Measure]":
+    """The height, and the energy that is an objective of the study."""
+    from pareto_monoped.measures import measure, nominal
+
+    objectives = [nominal(name) for name in study.objectives.names]
+    energies = ("energy_j", "electrical_energy_j")
+    return [measure("height_m"), measure(next((name for name in energies if name in objectives), energies[0]))]
+
+
+def _unit(entry: "Measure") -> str:
+    """Changes of a height are millimetres."""
+    return "mm" if entry.unit == "m" else entry.unit
+
+
+def _change(entry: "Measure", one: "FactorInfluence") -> str:
+    change = one.measures[entry.name].change
+    return f"{1000.0 * change:+.1f}" if entry.unit == "m" else f"{change:+.2f}"
+
+
+def _sensitivity_print(trial: int, found: "Sensitivity", shown: "list[Measure]") -> None:
+    """One line per factor, by its share of the height's variance."""
+    title = {"variables": "variables, moved around", "assumptions": "assumptions about the robot as built, around"}
+    failed = f"; {100.0 * found.failed:.1f} % fail" if found.failed else ""
+    echo(f"{title[found.about]} trial {trial} ({found.jumps} jumps{failed})")
+    heads = "".join(f"{f'{entry.short} {_unit(entry)}':>10} {'share %':>8}" for entry in shown)
+    echo(f"{'':<19} {'range':>22}{heads}")
+    for one in found.ranked(shown[0].name):
+        cells = ""
+        for entry in shown:
+            influence = one.measures[entry.name]
+            share = f"{100.0 * influence.total:.0f}+-{100.0 * influence.error:.0f}"
+            cells += f"{_change(entry, one):>10} {share:>8}"
+        echo(f"{one.factor.label:<19} {one.factor.text:>22}{cells}")
+
+
+def _say_which(found: "Sensitivity", shown: "list[Measure]") -> None:
+    """Which tolerance of what is made matters most."""
+    words = []
+    for entry in shown:
+        made = [one for one in found.ranked(entry.name) if one.factor.tolerance]
+        if made:
+            share = 100.0 * made[0].measures[entry.name].total
+            words.append(f"for {entry.words} {made[0].factor.label} ({share:.0f} %)")
+    if words:
+        echo(wrapped(f"the manufacturing tolerance that matters most: {', '.join(words)}"))
+    echo(wrapped("share: total Sobol' index, with its 95 percent interval; change from end to end of the range"))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli import completing
+from pareto_monoped.cli import options
 
 if TYPE_CHECKING:
     from pareto_monoped.pareto.selectors import Chooser, Condition, MaxEnergy, Selector
@@ -29,7 +29,7 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
         "--limit",
         multiple=True,
         metavar="NAME=X",
-        shell_complete=completing.conditions,
+        shell_complete=options.conditions,
         help="Condition: a measure at X or better.",
     )
     @click.option(
@@ -37,7 +37,7 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
         "least",
         multiple=True,
         metavar="NAME=X",
-        shell_complete=completing.conditions,
+        shell_complete=options.conditions,
         help="Condition: measure or variable of at least X.",
     )
     @click.option(
@@ -45,7 +45,7 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
         "most",
         multiple=True,
         metavar="NAME=X",
-        shell_complete=completing.conditions,
+        shell_complete=options.conditions,
         help="Condition: measure or variable of at most X.",
     )
     @click.option("--knee", is_flag=True, help="The design where the front bends most.")
@@ -55,14 +55,14 @@ def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @click.option(
         "--nearest",
         metavar="NAME=X,...",
-        shell_complete=completing.conditions,
+        shell_complete=options.conditions,
         help="Nearest to a wished-for point, such as height_m=1,energy_j=20.",
     )
     @click.option(
         "--trial",
         type=click.IntRange(min=0),
         metavar="N",
-        shell_complete=completing.trials,
+        shell_complete=options.trials,
         help="The trial with this number.",
     )
     @functools.wraps(command)
@@ -195,6 +195,6 @@ def _directed() -> list[str]:
 
 def _stored() -> Sequence[str]:
     """Everything that a condition may be about."""
-    from pareto_monoped.pareto.conditions import CONDITION_NAMES
+    from pareto_monoped.pareto.selectors import CONDITION_NAMES
 
     return CONDITION_NAMES

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli import completing
-from pareto_monoped.cli.computing import executor_at, where, where_options
-from pareto_monoped.cli.options import DATABASE, Local, workers_option
+from pareto_monoped.cli import options
+from pareto_monoped.cli.options import DATABASE, Local, executor_at, where, where_options, workers_option
 from pareto_monoped.cli.terminal import echo, name, new_console, note, wrapped
 from pareto_monoped.design import HEADLINE_HEIGHT_M
-from pareto_monoped.study.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.study.run import RunSummary
@@ -48,7 +47,7 @@ _REASONS = {
 @click.option(
     "--objectives",
     metavar="A,B",
-    shell_complete=completing.measures,
+    shell_complete=options.measures,
     help="Two or three measures, instead of the study's; needs a --db of its own.",
 )
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
@@ -69,8 +68,8 @@ def run(
 
     Every evaluated design is stored; the study can be stopped and run again at any time.
     """
-    from pareto_monoped.study.definition import load_study
-    from pareto_monoped.study.goals import names_of
+    from pareto_monoped.definition.goals import names_of
+    from pareto_monoped.definition.study import load_study
     from pareto_monoped.study.run import run as run_study
 
     study = load_study(
@@ -124,9 +123,9 @@ def resume(
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def status(db: StudyPlace, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
-    from pareto_monoped.study.definition import NO_STRENGTH
-    from pareto_monoped.study.foreign import foreign_note
-    from pareto_monoped.study.status import status as study_status
+    from pareto_monoped.definition.study import NO_STRENGTH
+    from pareto_monoped.storage.front_reader import foreign_note
+    from pareto_monoped.storage.status import status as study_status
 
     facts = study_status(db)
     if as_json:
@@ -221,7 +220,7 @@ def _finish(summary: "RunSummary", as_json: bool) -> int:
 
 
 def _print_end(summary: "RunSummary") -> None:
-    from pareto_monoped.study.definition import NO_STRENGTH
+    from pareto_monoped.definition.study import NO_STRENGTH
 
     _say(
         f"{summary.db}: {summary.evaluations} evaluations ({summary.new_evaluations} new, {summary.seconds:.1f} s), "
@@ -233,7 +232,10 @@ def _print_end(summary: "RunSummary") -> None:
     )
     strength = () if summary.strength else (NO_STRENGTH,)
     # Without a front, the first remark says why there is none.
-    said = (*strength, *summary.remarks) if summary.front_size else (*summary.remarks, *strength)
+    from pareto_monoped.analysis.remarks import remarks
+
+    found = remarks(summary.data)
+    said = (*strength, *found) if summary.front_size else (*found, *strength)
     for line in said:
         note(line)
 

@@ -17,7 +17,7 @@ from pareto_monoped.cli.terminal import echo
 from pareto_monoped.errors import InputError
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.joint_maps import JointMaps
+    from pareto_monoped.actuator.ratiomap import JointMaps
     from pareto_monoped.design import Design
     from pareto_monoped.jump.calibration import Calibration
 
@@ -36,10 +36,10 @@ def require_what_shows(gif: Path | None, video: Path | None, view: bool) -> None
     """
     if gif is None and video is None and not view:
         return
-    from pareto_monoped.extras import require_extra
+    from pareto_monoped.errors import require_extra
 
     require_extra("cad", "CAD")
-    from pareto_monoped.cad.write.film_files import require_gif, require_video
+    from pareto_monoped.cad.film import require_gif, require_video
 
     if gif is not None:
         require_gif(gif)
@@ -74,8 +74,7 @@ def write_films(
     force: bool,
 ) -> None:
     """Draw the jump once, and write it to the files that are asked for."""
-    from pareto_monoped.cad.film import film
-    from pareto_monoped.cad.write.film_files import write_gif, write_video
+    from pareto_monoped.cad.film import film, write_gif, write_video
     from pareto_monoped.robot.build import build_robot
 
     pictures = list(film(build_robot(design, maps), trace, slower=slower))

@@ -13,8 +13,7 @@ from ssl import SSLError
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.compute.staff import Member
-from pareto_monoped.errors import InputError, WorkerError
-from pareto_monoped.extras import require_extra
+from pareto_monoped.errors import InputError, WorkerError, require_extra
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -8,36 +8,22 @@ from typing import Protocol
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Member:
-    """A worker.
+    """A worker."""
 
-    Attributes:
-        name: as the user knows it, such as ``worker tcp://10.0.0.7:40001``.
-        slots: tasks that it does at a time.
-        threads: that a task of it may use.
-        executor: does tasks on this worker and nowhere else.
-    """
-
-    name: str
-    executor: Executor
-    threads: int = 1
-    slots: int = 1
+    name: str  #: as the user knows it, such as ``worker tcp://10.0.0.7:40001``
+    executor: Executor  #: does tasks on this worker and nowhere else
+    threads: int = 1  #: that a task of it may use
+    slots: int = 1  #: tasks that it does at a time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more.
+    """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more."""
 
-    Attributes:
-        task_s: least time after which a worker that does not answer counts as hung.
-        times: the same as a multiple of the longest task so far.
-        first_s: the same for a worker's first task, for which it may have to compile.
-        absent_s: how long to wait for scheduler and workers before giving up.
-    """
-
-    task_s: float = 60.0
-    times: float = 20.0
-    first_s: float = 300.0
-    absent_s: float = 60.0
+    task_s: float = 60.0  #: least time after which a worker that does not answer counts as hung
+    times: float = 20.0  #: the same as a multiple of the longest task so far
+    first_s: float = 300.0  #: the same for a worker's first task, for which it may have to compile
+    absent_s: float = 60.0  #: how long to wait for scheduler and workers before giving up
 
 
 EXPORT_LIMITS = Limits(task_s=900.0)
@@ -45,17 +31,11 @@ EXPORT_LIMITS = Limits(task_s=900.0)
 
 
 class Staff(Protocol):
-    """Workers that come and go.
+    """Workers that come and go."""
 
-    Attributes:
-        label: of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``.
-        replaces: whether a worker that is dismissed is ended and replaced.
-        cure: what the user can do if nobody is there.
-    """
-
-    label: str
-    replaces: bool
-    cure: str
+    label: str  #: of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``
+    replaces: bool  #: whether a worker that is dismissed is ended and replaced
+    cure: str  #: what the user can do if nobody is there
 
     def present(self) -> Mapping[str, Member]:
         """Who is there now, by name; returns at once."""

@@ -24,12 +24,9 @@ class Dowel:
 
     Pressed into one part by H7/m6, which leaves aluminium elastic, and bonded there, because this fit may have play.
     The holes of the other parts are reamed together with it.
-
-    Attributes:
-        diameter_mm: nominal.
     """
 
-    diameter_mm: float
+    diameter_mm: float  #: nominal
 
     @property
     def radius_mm(self) -> float:

@@ -156,24 +156,15 @@ def _round_moments(area: Numbers, polar: Numbers) -> Moments:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExternalGear:
-    """A spur gear without its bore: sun or planet.
+    """A spur gear without its bore: sun or planet."""
 
-    Attributes:
-        teeth: number of teeth.
-        module_mm: reference module.
-        backlash_mm: how much thinner each tooth is on the pitch circle.
-        phase_rad: angle of the middle of one tooth from the x axis.
-        shift: profile shift x over module, positive outwards.
-        tip_shortening: by how much the tips are cut short, over module.
-    """
-
-    teeth: Numbers
-    module_mm: Numbers
-    backlash_mm: Numbers = 0.0
-    phase_rad: Numbers = 0.0
+    teeth: Numbers  #: number of teeth
+    module_mm: Numbers  #: reference module
+    backlash_mm: Numbers = 0.0  #: how much thinner each tooth is on the pitch circle
+    phase_rad: Numbers = 0.0  #: angle of the middle of one tooth from the x axis
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
-    shift: Numbers = 0.0
-    tip_shortening: Numbers = 0.0
+    shift: Numbers = 0.0  #: profile shift x over module, positive outwards
+    tip_shortening: Numbers = 0.0  #: by how much the tips are cut short, over module
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -233,21 +224,15 @@ class InternalGear:
     """The toothed hole of a ring gear: to be taken out of the ring's disc.
 
     The hole has the outline of an external gear whose teeth are the ring's spaces: tip and root change places.
-
-    Attributes:
-        teeth: number of teeth.
-        module_mm: reference module.
-        backlash_mm: how much wider each space is on the pitch circle.
-        phase_rad: angle of the middle of one space of the ring from the x axis.
-        shift: profile shift over module, positive outwards: that of the gear whose teeth are the spaces. ISO 21771
-            counts it negative.
     """
 
-    teeth: Numbers
-    module_mm: Numbers
-    backlash_mm: Numbers = 0.0
-    phase_rad: Numbers = 0.0
+    teeth: Numbers  #: number of teeth
+    module_mm: Numbers  #: reference module
+    backlash_mm: Numbers = 0.0  #: how much wider each space is on the pitch circle
+    phase_rad: Numbers = 0.0  #: angle of the middle of one space of the ring from the x axis
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
+    #: Profile shift over module, positive outwards: that of the gear whose teeth are the spaces. ISO 21771 counts it
+    #: negative.
     shift: Numbers = 0.0
 
     @property

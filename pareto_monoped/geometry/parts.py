@@ -13,8 +13,7 @@ from functools import lru_cache, reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.geometry.bevels import Bevel
-from pareto_monoped.geometry.features import Feature
+from pareto_monoped.geometry.features import Bevel, Feature
 from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
@@ -66,19 +65,12 @@ class Prism:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ball:
-    """A ball centred on the y axis, cut flat at a height, with a pocket: a foot moulded onto a tongue.
+    """A ball centred on the y axis, cut flat at a height, with a pocket: a foot moulded onto a tongue."""
 
-    Attributes:
-        radius_mm: of the ball.
-        y_mm: of its centre; x and z are zero.
-        top_mm: height above the centre at which the ball is cut flat, at most the radius.
-        pocket: a prism that is cut out; it lies wholly inside the ball.
-    """
-
-    radius_mm: Numbers
-    y_mm: Numbers
-    top_mm: Numbers
-    pocket: Prism | None = None
+    radius_mm: Numbers  #: of the ball
+    y_mm: Numbers  #: of its centre; x and z are zero
+    top_mm: Numbers  #: height above the centre at which the ball is cut flat, at most the radius
+    pocket: Prism | None = None  #: a prism that is cut out; it lies wholly inside the ball
 
     def volume_mm3(self) -> Numbers:
         """The first of ``integrals``."""
@@ -110,17 +102,11 @@ class Ball:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MassProperties:
-    """Mass and its first and second moments about the frame's origin; the sum over parts is that of the whole.
+    """Mass and its first and second moments about the frame's origin; the sum over parts is that of the whole."""
 
-    Attributes:
-        mass_kg: shape (...).
-        first_kg_m: integral of r dm, shape (..., 3).
-        second_kg_m2: integral of r r^T dm, shape (..., 3, 3).
-    """
-
-    mass_kg: NDArray[np.float64]
-    first_kg_m: NDArray[np.float64]
-    second_kg_m2: NDArray[np.float64]
+    mass_kg: NDArray[np.float64]  #: shape (...)
+    first_kg_m: NDArray[np.float64]  #: integral of r dm, shape (..., 3)
+    second_kg_m2: NDArray[np.float64]  #: integral of r r^T dm, shape (..., 3, 3)
 
     @classmethod
     def zero(cls) -> "MassProperties":
@@ -222,53 +208,35 @@ _HERE: tuple[tuple[Numbers, Numbers, Numbers], ...] = ((0.0, 0.0, 0.0),)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """One kind of part of a unit (an actuator, a link, the base), in the unit's frame.
+    """One kind of part of a unit (an actuator, a link, the base), in the unit's frame."""
 
-    Attributes:
-        name: unique in the unit, lower case with underscores, such as ``planet``.
-        role: what it does.
-        material: what it is made of.
-        prisms: its geometry, around the part's own centre if ``pitch_radius_mm`` is not zero.
-        balls: further geometry, bounded by spheres.
-        process: how it is made: ``machined``, ``laser cut``, ``3D printed``, ``moulded`` or ``bought``.
-        count: number of instances at each place.
-        pitch_radius_mm: the instances are evenly spread on a circle of this radius about the z axis; 0: on the axis.
-        phase_rad: angle of the first instance on that circle.
-        places_mm: centres of the circles of instances, x, y, z from the unit's origin.
-        group: what it moves with.
-        catalogue_mass_kg: mass of one instance if it is bought and its solid is only an envelope; replaces the density.
-        note: what else the maker should know (standard, catalogue number).
-        grade: alloy or steel grade with its condition, where the maker must keep to one.
-        fits: tolerances of its round faces.
-        teeth: how its teeth are made.
-        fastening: size, preload, tightening torque and lock of a screw.
-        accuracy_class: of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters.
-        joint: what holds it where its shape does not.
-        visibility: where it is drawn.
-        features: its holes, chamfers and countersunk heads, whose cones are geometry too.
-    """
-
-    name: str
-    role: Role
-    material: Material
-    prisms: tuple[Prism, ...]
-    process: str
-    count: Numbers = 1
+    name: str  #: unique in the unit, lower case with underscores, such as ``planet``
+    role: Role  #: what it does
+    material: Material  #: what it is made of
+    prisms: tuple[Prism, ...]  #: its geometry, around the part's own centre if ``pitch_radius_mm`` is not zero
+    process: str  #: how it is made: ``machined``, ``laser cut``, ``3D printed``, ``moulded`` or ``bought``
+    count: Numbers = 1  #: number of instances at each place
+    #: The instances are evenly spread on a circle of this radius about the z axis; 0: on the axis
     pitch_radius_mm: Numbers = 0.0
-    phase_rad: Numbers = 0.0
+    phase_rad: Numbers = 0.0  #: angle of the first instance on that circle
+    #: Centres of the circles of instances, x, y, z from the unit's origin
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] = _HERE
-    balls: tuple[Ball, ...] = ()
-    group: Group = Group.FIXED
+    balls: tuple[Ball, ...] = ()  #: further geometry, bounded by spheres
+    group: Group = Group.FIXED  #: what it moves with
+    #: Mass of one instance if it is bought and its solid is only an envelope; replaces the density
     catalogue_mass_kg: Numbers | None = None
-    note: str = field(default="", compare=False)
+    note: str = field(default="", compare=False)  #: what else the maker should know (standard, catalogue number)
+    #: Alloy or steel grade with its condition, where the maker must keep to one
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
-    fits: tuple[Fit, ...] = field(default=(), compare=False)
+    fits: tuple[Fit, ...] = field(default=(), compare=False)  #: tolerances of its round faces
+    #: Of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters
     accuracy_class: int | None = field(default=None, compare=False)
-    teeth: tuple[ToothMaking, ...] = field(default=(), compare=False)
+    teeth: tuple[ToothMaking, ...] = field(default=(), compare=False)  #: how its teeth are made
+    #: Size, preload, tightening torque and lock of a screw
     fastening: Fastening | None = field(default=None, compare=False)
-    joint: Joint | None = None
-    visibility: Visibility = Visibility.OUTSIDE
-    features: tuple[Feature, ...] = ()
+    joint: Joint | None = None  #: what holds it where its shape does not
+    visibility: Visibility = Visibility.OUTSIDE  #: where it is drawn
+    features: tuple[Feature, ...] = ()  #: its holes, chamfers and countersunk heads, whose cones are geometry too
 
     @property
     def bevels(self) -> tuple[Bevel, ...]:

@@ -71,17 +71,11 @@ class JointKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """A joint that the shapes of the parts do not show.
+    """A joint that the shapes of the parts do not show."""
 
-    Attributes:
-        kind: what holds.
-        how: the joint in words, without the partner, such as ``pressed onto``.
-        partner: name of the part of the same unit that holds.
-    """
-
-    kind: JointKind
-    how: str
-    partner: str
+    kind: JointKind  #: what holds
+    how: str  #: the joint in words, without the partner, such as ``pressed onto``
+    partner: str  #: name of the part of the same unit that holds
 
     @property
     def text(self) -> str:

@@ -28,22 +28,15 @@ _SMALL = "countersunk (ISO 14581)"  # ISO 10642 begins at M3 and 8 mm
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Screw:
-    """Radii of a metric screw in mm, and the height of its cap head.
+    """Radii of a metric screw in mm, and the height of its cap head."""
 
-    Attributes:
-        shank: nominal.
-        hole: clearance hole (ISO 273, fine).
-        core: tapping hole; a screw inside a thread is drawn with this radius, so that it overlaps nothing.
-        head, head_height: cap screw (ISO 4762).
-        countersunk: of a countersunk head in its face, the cone drawn sharp.
-    """
-
-    shank: float
-    hole: float
-    core: float
+    shank: float  #: nominal
+    hole: float  #: clearance hole (ISO 273, fine)
+    core: float  #: tapping hole; a screw inside a thread is drawn with this radius, so that it overlaps nothing
+    #: head, head_height: cap screw (ISO 4762)
     head: float
     head_height: float
-    countersunk: float
+    countersunk: float  #: of a countersunk head in its face, the cone drawn sharp
 
     def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
         """A screw on the z axis without its head: through a grip into a thread, in ``direction`` (-1 or 1)."""

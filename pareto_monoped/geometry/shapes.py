@@ -176,16 +176,11 @@ class Spread:
     """The same path repeated evenly around the origin, turned each time: webs, spokes.
 
     Moments as of ``Pattern``: exact for three and more.
-
-    Attributes:
-        path: one of them, drawn around the +x axis.
-        count: how many; those of an array may be 0.
-        phase_rad: by which the first is turned.
     """
 
-    path: Path
-    count: Numbers
-    phase_rad: Numbers = 0.0
+    path: Path  #: one of them, drawn around the +x axis
+    count: Numbers  #: how many; those of an array may be 0
+    phase_rad: Numbers = 0.0  #: by which the first is turned
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""

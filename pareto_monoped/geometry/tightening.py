@@ -30,12 +30,9 @@ for instance Loctite 243."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThreadSize:
-    """A metric coarse thread of a screw (ISO 724).
+    """A metric coarse thread of a screw (ISO 724)."""
 
-    Attributes:
-        diameter_mm, pitch_mm: nominal.
-    """
-
+    #: diameter_mm, pitch_mm: nominal
     diameter_mm: float
     pitch_mm: float
 
@@ -81,24 +78,15 @@ def thread_size(diameter_mm: float) -> ThreadSize:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fastening:
-    """How a screw is tightened and locked.
+    """How a screw is tightened and locked."""
 
-    Attributes:
-        thread: its size.
-        property_class: after ISO 898-1.
-        head: shape of the head.
-        head_mm: outer diameter of the head, or width across flats of a hexagon.
-        hole_mm: diameter of the clearance hole.
-        lock: what keeps it from turning loose.
-        most_preload_n: what the nut or the clamped parts allow, where that is less than the screw can give.
-    """
-
-    thread: ThreadSize
-    property_class: str
-    head: Literal["cap", "countersunk", "hexagon"]
-    head_mm: float
-    hole_mm: float
-    lock: str = LOCKER
+    thread: ThreadSize  #: its size
+    property_class: str  #: after ISO 898-1
+    head: Literal["cap", "countersunk", "hexagon"]  #: shape of the head
+    head_mm: float  #: outer diameter of the head, or width across flats of a hexagon
+    hole_mm: float  #: diameter of the clearance hole
+    lock: str = LOCKER  #: what keeps it from turning loose
+    #: What the nut or the clamped parts allow, where that is less than the screw can give
     most_preload_n: float = np.inf
 
     @property

@@ -15,12 +15,12 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.joint_maps import Maps
+from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
+from pareto_monoped.jump.balance import balance_errors
 from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
-from pareto_monoped.jump.closure import balance_errors
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
 from pareto_monoped.measures import measure
@@ -44,17 +44,11 @@ not shows in one or the other (``benchmarks/audit_time.py``)."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """The most that a measure of the audit may be.
+    """The most that a measure of the audit may be."""
 
-    Attributes:
-        name: of the measure, in ``measures.AUDIT_MEASURES``.
-        most: in the stored unit of the measure.
-        text: what is off if the limit is exceeded.
-    """
-
-    name: str
-    most: float
-    text: str
+    name: str  #: of the measure, in ``measures.AUDIT_MEASURES``
+    most: float  #: in the stored unit of the measure
+    text: str  #: what is off if the limit is exceeded
 
 
 LIMITS: tuple[Limit, ...] = (
@@ -107,15 +101,13 @@ class Audits:
     """The audits of n designs; ``measures.AUDIT_MEASURES`` says what each measure means.
 
     Attributes:
-        status: of the jump, as in ``Evaluations``, shape (n,).
-        height_m, energy_j: as evaluated, shape (n,).
         energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump, and
             where a brief audit leaves a measure out; infinity where a jump is lost by a finer step, a perturbation or a
             shorter control period.
-        reason: why the jump is not well-conditioned; empty where it is.
     """
 
-    status: NDArray[np.str_]
+    status: NDArray[np.str_]  #: of the jump, as in ``Evaluations``, shape (n,)
+    #: height_m, energy_j: as evaluated, shape (n,)
     height_m: Floats
     energy_j: Floats
     energy_balance_error: Floats
@@ -129,7 +121,7 @@ class Audits:
     worst_energy: Floats
     control_period_height_m: Floats
     control_period_energy: Floats
-    reason: tuple[str, ...] = field(default=())
+    reason: tuple[str, ...] = field(default=())  #: why the jump is not well-conditioned; empty where it is
 
     @property
     def well_conditioned(self) -> NDArray[np.bool_]:

@@ -39,22 +39,18 @@ class EndStop:
 
     A bumper is a spring-damper that hardens with compression (see ``SpringContact``), so that force sets in smoothly.
     A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
-
-    Attributes:
-        lower_rad, upper_rad: angles at which the joint meets the bumpers.
-        width_rad: compression at which stiffness and damping reach their full values.
-        stiffness_n_m_per_rad, damping_n_m_s_per_rad: at that compression and beyond.
-        impedance: MuJoCo's impedance d at that compression.
     """
 
     __pydantic_config__ = _STRICT
 
+    #: lower_rad, upper_rad: angles at which the joint meets the bumpers
     lower_rad: float
     upper_rad: float
-    width_rad: Positive
+    width_rad: Positive  #: compression at which stiffness and damping reach their full values
+    #: stiffness_n_m_per_rad, damping_n_m_s_per_rad: at that compression and beyond
     stiffness_n_m_per_rad: Positive
     damping_n_m_s_per_rad: NotNegative
-    impedance: Impedance
+    impedance: Impedance  #: MuJoCo's impedance d at that compression
 
     def __post_init__(self) -> None:
         """Reject an empty range."""
@@ -64,25 +60,22 @@ class EndStop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joints:
-    """Losses and ends of both joints.
-
-    Attributes:
-        damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint.
-        rotors: how the parts that turn with the knee actuator are booked: as ``armature`` of the joint alone, or with
-            their ``absolute`` speeds, which the thigh's rotation is part of.
-        motor_damping_n_m_s_per_rad: viscous friction at each motor's shaft; acts on the joint times the ratio squared.
-        stops: where the end stops come from: ``given`` here as ``hip_stop`` and ``knee_stop``, or ``parts`` of the leg
-            (``leg.stops``).
-        hip_stop, knee_stop: end stops; None for a joint that turns freely.
-    """
+    """Losses and ends of both joints."""
 
     __pydantic_config__ = _STRICT
 
+    #: damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint
     damping_n_m_s_per_rad: NotNegative
     friction_n_m: NotNegative
+    #: Viscous friction at each motor's shaft; acts on the joint times the ratio squared
     motor_damping_n_m_s_per_rad: NotNegative = 0.0
+    #: How the parts that turn with the knee actuator are booked: as ``armature`` of the joint alone, or with their
+    #: ``absolute`` speeds, which the thigh's rotation is part of
     rotors: Literal["armature", "absolute"] = "armature"
+    #: Where the end stops come from: ``given`` here as ``hip_stop`` and ``knee_stop``, or ``parts`` of the leg
+    #: (``leg.stops``)
     stops: Literal["given", "parts"] = "given"
+    #: hip_stop, knee_stop: end stops; None for a joint that turns freely
     hip_stop: EndStop | None = None
     knee_stop: EndStop | None = None
 
@@ -94,30 +87,23 @@ class Joints:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What lies between motor and joint.
-
-    Attributes:
-        mesh_losses: whether the gearbox has losses.
-        efficiency: which losses: those of the ``mesh`` alone, or the ``total`` of meshes, planets' bushes and bearings.
-        chain_efficiency: of the chain that drives the knee.
-        loss_speed_rad_per_s: joint speed over which the load-dependent losses change sign; smooths the change.
-        voltage_limit: whether the torque limit falls along the voltage-speed line to zero at the no-load speed.
-        peak_torque_scale: factor on the motors' peak torque.
-        knee_torque_scale: further factor on the knee's peak torque; its speed and inertia stay as they are.
-        regeneration_share: of the electrical power that flows back, what the battery takes.
-        standby_power_w: of the electronics, as long as the jump lasts.
-    """
+    """What lies between motor and joint."""
 
     __pydantic_config__ = _STRICT
 
-    mesh_losses: bool
-    chain_efficiency: Share = 1.0
+    mesh_losses: bool  #: whether the gearbox has losses
+    chain_efficiency: Share = 1.0  #: of the chain that drives the knee
+    #: Joint speed over which the load-dependent losses change sign; smooths the change
     loss_speed_rad_per_s: Positive = 0.5
+    #: Whether the torque limit falls along the voltage-speed line to zero at the no-load speed
     voltage_limit: bool = True
-    peak_torque_scale: Positive = 1.0
+    peak_torque_scale: Positive = 1.0  #: factor on the motors' peak torque
+    #: Further factor on the knee's peak torque; its speed and inertia stay as they are
     knee_torque_scale: Positive = 1.0
+    #: Of the electrical power that flows back, what the battery takes
     regeneration_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
-    standby_power_w: NotNegative = 0.0
+    standby_power_w: NotNegative = 0.0  #: of the electronics, as long as the jump lasts
+    #: Which losses: those of the ``mesh`` alone, or the ``total`` of meshes, planets' bushes and bearings
     efficiency: Literal["mesh", "total"] = "mesh"
 
 
@@ -129,24 +115,18 @@ class SpringContact:
     the normal force of a slow compression is k w u^3 (1 - d) / (1 - d u) up to w. Force and damping set in smoothly, as
     in the model of Hunt and Crossley (1975), which makes the jump well-posed. While the foot touches, the constraint
     adds a virtual mass d u / (1 - d u) / A, where A is the inverse mass of the foot's body.
-
-    Attributes:
-        stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond.
-        width_m: compression at which stiffness and damping reach their full values.
-        impedance: MuJoCo's impedance d at that compression.
-        friction: Coulomb coefficient.
-        slip_ratio: tangential over normal damping (MuJoCo's ``impratio``).
     """
 
     __pydantic_config__ = _STRICT
 
     kind: Literal["spring"]
+    #: stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond
     stiffness_n_per_m: Positive
     damping_n_s_per_m: Positive
-    width_m: Positive
-    impedance: Impedance
-    friction: Positive
-    slip_ratio: Positive = 1.0
+    width_m: Positive  #: compression at which stiffness and damping reach their full values
+    impedance: Impedance  #: MuJoCo's impedance d at that compression
+    friction: Positive  #: Coulomb coefficient
+    slip_ratio: Positive = 1.0  #: tangential over normal damping (MuJoCo's ``impratio``)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,16 +146,13 @@ class MujocoContact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGate:
-    """Torque whenever the foot touches the floor, decided at every step, as the paper words it.
-
-    Attributes:
-        lags: True takes the contact of the state before the last step, which is what MuJoCo's contact list holds after
-            a step; False takes the contact of the current state.
-    """
+    """Torque whenever the foot touches the floor, decided at every step, as the paper words it."""
 
     __pydantic_config__ = _STRICT
 
     rule: Literal["contact"]
+    #: True takes the contact of the state before the last step, which is what MuJoCo's contact list holds after a step;
+    #: False takes the contact of the current state
     lags: bool = False
 
 
@@ -184,17 +161,13 @@ class FadeGate:
     """Torque that fades to zero as the foot rises.
 
     At a foot clearance c the torque is multiplied by 1 - s(c / length_m), with s(u) = 3 u^2 - 2 u^3 for u from 0 to 1.
-
-    Attributes:
-        length_m: clearance at which no torque is left.
-        latch: whether the controller stays off after the foot has risen that far.
     """
 
     __pydantic_config__ = _STRICT
 
     rule: Literal["fade"]
-    length_m: Positive
-    latch: bool = True
+    length_m: Positive  #: clearance at which no torque is left
+    latch: bool = True  #: whether the controller stays off after the foot has risen that far
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,51 +185,37 @@ class Flight:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Controller:
-    """What the paper's final text leaves open about the virtual controller (section II-B).
-
-    Attributes:
-        rest_length_m: l0, rest length of the virtual spring; 10 m in a passage missing from the final text.
-        gravity_feed_forward: factor on the term m g of F_z; 1 in the paper.
-        weight: whose mass m is, that of the whole ``robot`` or of its ``base``.
-        flight: what the motors do while the foot is off the floor; None: nothing.
-    """
+    """What the paper's final text leaves open about the virtual controller (section II-B)."""
 
     __pydantic_config__ = _STRICT
 
+    #: L0, rest length of the virtual spring; 10 m in a passage missing from the final text
     rest_length_m: Positive = 10.0
-    gravity_feed_forward: NotNegative = 1.0
-    weight: Literal["robot", "base"] = "robot"
-    flight: Flight | None = None
+    gravity_feed_forward: NotNegative = 1.0  #: factor on the term m g of F_z; 1 in the paper
+    weight: Literal["robot", "base"] = "robot"  #: whose mass m is, that of the whole ``robot`` or of its ``base``
+    flight: Flight | None = None  #: what the motors do while the foot is off the floor; None: nothing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulation:
-    """Integration of the equations of motion.
-
-    Attributes:
-        integrator: MuJoCo's integrator.
-        timestep_s: step of the integrator.
-        control_period_s: period of the controller, a whole number of steps, in which the motors' torques are held;
-            None: each step is a period.
-        delay_s: from measuring to acting, a whole number of control periods, at most 8.
-        time_limit_s: a jump that is not over by then has failed.
-        base_slides: whether the base may move in x; otherwise a vertical guide holds it.
-        work_speed: speed used for the work of a step. ``mean`` of both ends is what MuJoCo's step turns into kinetic
-            energy; ``start`` is how the paper's sum is written.
-        positions_read: which positions the controller reads: those of MuJoCo's ``state``, or those half a step earlier.
-            A semi-implicit step moves the positions with the new speeds, so that they belong to a time half a step
-            later than the speeds. ``half_step_back`` reads positions and speeds of one time.
-    """
+    """Integration of the equations of motion."""
 
     __pydantic_config__ = _STRICT
 
-    integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]
-    timestep_s: Positive
-    time_limit_s: Positive = 3.0
-    base_slides: bool = True
+    integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]  #: MuJoCo's integrator
+    timestep_s: Positive  #: step of the integrator
+    time_limit_s: Positive = 3.0  #: a jump that is not over by then has failed
+    base_slides: bool = True  #: whether the base may move in x; otherwise a vertical guide holds it
+    #: Period of the controller, a whole number of steps, in which the motors' torques are held; None: each step is a
+    #: period
     control_period_s: Positive | None = None
-    delay_s: NotNegative = 0.0
+    delay_s: NotNegative = 0.0  #: from measuring to acting, a whole number of control periods, at most 8
+    #: Speed used for the work of a step. ``mean`` of both ends is what MuJoCo's step turns into kinetic energy;
+    #: ``start`` is how the paper's sum is written.
     work_speed: Literal["mean", "start"] = "mean"
+    #: Which positions the controller reads: those of MuJoCo's ``state``, or those half a step earlier. A semi-implicit
+    #: step moves the positions with the new speeds, so that they belong to a time half a step later than the speeds.
+    #: ``half_step_back`` reads positions and speeds of one time.
     positions_read: Literal["state", "half_step_back"] = "state"
 
     def __post_init__(self) -> None:

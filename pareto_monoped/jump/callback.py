@@ -5,6 +5,10 @@ documentation, "Programming, Simulation, Simulation loop"). A compiled callback 
 Python. The controller's record of a jump is the user data of its simulation and thus part of MuJoCo's own state, so
 that the callback needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C
 functions.
+
+MuJoCo's own log, switched off while jumps run: it would be a file ``MUJOCO_LOG.TXT`` in the folder one works in.
+
+What MuJoCo warns of is counted in every simulation, and stands in the status and the reason of the jump.
 """
 
 import ctypes
@@ -21,11 +25,42 @@ import mujoco
 import numpy as np
 from numba import types
 
+from pareto_monoped.compute.compiled import c_function
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import controller
-from pareto_monoped.jump.compiled import c_function
 from pareto_monoped.jump.controller import RECORD, RECORD_NUMBERS, control
-from pareto_monoped.jump.quiet import quiet
+
+_lock = threading.Lock()
+_users = 0
+_quiet_before = (True, True)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Let MuJoCo write neither to a file nor to standard output; what was set before holds again after the last user.
+
+    Also a decorator.
+    """
+    global _users, _quiet_before
+    import mujoco
+
+    with _lock:
+        if _users == 0:
+            config = mujoco.MjLogConfig.get()
+            _quiet_before = (config.logto_console, config.logto_file)
+            config.logto_console = config.logto_file = False
+            config.set()
+        _users += 1
+    try:
+        yield
+    finally:
+        with _lock:
+            _users -= 1
+            if _users == 0:
+                config = mujoco.MjLogConfig.get()
+                config.logto_console, config.logto_file = _quiet_before
+                config.set()
+
 
 _POSITION = types.CPointer(types.float64)
 _STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
@@ -40,8 +75,6 @@ _WRITTEN = int(mujoco.mjtState.mjSTATE_CTRL) | _USER
 _READ = _POSITIONS | int(mujoco.mjtState.mjSTATE_QVEL) | _WRITTEN
 _JOINTS = 2
 
-_lock = threading.Lock()
-_users = 0
 _before: Callable[..., object] | None = None
 
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2
-from pareto_monoped.jump.compiled import compiled
 
 Floats = NDArray[np.float64]
 

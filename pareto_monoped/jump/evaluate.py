@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
+from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.design import (
     CONTROL,
     GRAVITY_M_PER_S2,
@@ -20,15 +20,14 @@ from pareto_monoped.design import (
     nonsense,
 )
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
-from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.jump.rows import joined, take
-from pareto_monoped.jump.variations import Variations, varied_control, varied_robots
+from pareto_monoped.jump.variations import Variations, joined, take, varied_control, varied_robots
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.robot.frames import JOINTS
 from pareto_monoped.robot.population import JointStops, RobotArrays, robot_arrays
+from pareto_monoped.robot.units import JOINTS
 from pareto_monoped.strength.factors import safeties, strength_factors
-from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
+from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
 
 Floats = NDArray[np.float64]
 
@@ -45,14 +44,12 @@ class Evaluations:
     """Results of n jumps: one field per measure, with what it means in ``measures.MEASURES``.
 
     Attributes:
-        status: one of ``STATUSES``, shape (n,).
-        reason: why the status is not ``ok``; empty where it is.
         height_m, ...: the measures, each of shape (n,); NaN where the jump failed, except for the mass of a robot that
             could be built.
     """
 
-    status: NDArray[np.str_]
-    reason: tuple[str, ...]
+    status: NDArray[np.str_]  #: one of ``STATUSES``, shape (n,)
+    reason: tuple[str, ...]  #: why the status is not ``ok``; empty where it is
     height_m: Floats
     energy_j: Floats
     energy_hip_j: Floats
@@ -125,10 +122,9 @@ class Evaluator:
         actuator_maps: of every kit.
         calibration: the jump model.
         workers: threads.
-        executor: what shares out the jumps, see ``jump.shared``; None: these threads do them all.
     """
 
-    executor: Executor | None = None
+    executor: Executor | None = None  #: what shares out the jumps, see ``jump.shared``; None: these threads do them all
 
     def __init__(
         self,

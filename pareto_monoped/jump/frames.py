@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import GRAVITY_M_PER_S2, complete_control
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
-from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.jump.rows import take
+from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
 Floats = NDArray[np.float64]
@@ -32,21 +32,13 @@ _FIRST_ROOM = 512  # steps that there is room for at first; most jumps end soone
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recording:
-    """A jump in a few frames.
+    """A jump in a few frames."""
 
-    Attributes:
-        height_m: of the apex.
-        step_s: time of one step.
-        lift_off_step: number of the last step with contact, from 0.
-        steps: number of every frame's step.
-        columns: ``FRAME_COLUMNS`` to values, each of shape (frames,).
-    """
-
-    height_m: float
-    step_s: float
-    lift_off_step: int
-    steps: NDArray[np.intp]
-    columns: Mapping[str, Floats]
+    height_m: float  #: of the apex
+    step_s: float  #: time of one step
+    lift_off_step: int  #: number of the last step with contact, from 0
+    steps: NDArray[np.intp]  #: number of every frame's step
+    columns: Mapping[str, Floats]  #: ``FRAME_COLUMNS`` to values, each of shape (frames,)
 
     @property
     def time_s(self) -> Floats:

@@ -21,9 +21,8 @@ from pareto_monoped.compute.local import LocalProcesses
 from pareto_monoped.compute.staff import Limits, Staff
 from pareto_monoped.compute.threads import cores, set_task_threads
 from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_MOTOR, UPPER, complete
-from pareto_monoped.errors import InputError
+from pareto_monoped.errors import EXTRAS, InputError
 from pareto_monoped.errors import complaint as complaint_of
-from pareto_monoped.extras import EXTRAS
 from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
@@ -33,20 +32,15 @@ _DRAWN = 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Facts:
-    """What decides the numbers of a worker.
+    """What decides the numbers of a worker."""
 
-    Attributes:
-        versions: of this package and of those that compute.
-        system, machine: operating system and processor.
-        numbers: digest of every measure of the probe designs under every shipped calibration, to the last bit.
-        linear_algebra: kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is
-            not compared, but is the likeliest reason of other numbers between hosts.
-    """
-
-    versions: dict[str, str]
+    versions: dict[str, str]  #: of this package and of those that compute
+    #: system, machine: operating system and processor
     system: str
     machine: str
-    numbers: str
+    numbers: str  #: digest of every measure of the probe designs under every shipped calibration, to the last bit
+    #: Kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is not compared, but
+    #: is the likeliest reason of other numbers between hosts.
     linear_algebra: str
 
 

@@ -11,12 +11,12 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
+from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.end_stops import EndStops, end_stops
-from pareto_monoped.jump.pose import StartPose, start_pose
-from pareto_monoped.jump.quiet import quiet
+from pareto_monoped.jump.model import StartPose, start_pose
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
-from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.robot.units import BODIES
 
 Floats = NDArray[np.float64]
 Records = NDArray[np.void]
@@ -40,17 +40,12 @@ _WARNINGS = {
 
 @dataclass(slots=True, kw_only=True)
 class Population:
-    """The jumps of n robots in progress.
+    """The jumps of n robots in progress."""
 
-    Attributes:
-        batch: their simulations.
-        records: the controller's record of each, shape (n,) of ``controller.RECORD``; a view of the batch's user data.
-        errors: what MuJoCo raised, by jump.
-    """
-
-    batch: Any
+    batch: Any  #: their simulations
+    #: The controller's record of each, shape (n,) of ``controller.RECORD``; a view of the batch's user data
     records: Records
-    errors: dict[int, str] = field(default_factory=dict)
+    errors: dict[int, str] = field(default_factory=dict)  #: what MuJoCo raised, by jump
 
     def run(self) -> None:
         """Step all jumps to their end; a jump in which MuJoCo raises an error ends as diverged.

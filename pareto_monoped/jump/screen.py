@@ -11,16 +11,16 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.joint_maps import Maps
+from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
 from pareto_monoped.design import CONTROL, columns
 from pareto_monoped.jump.audit import LIMITS, Floats, Jumps, perturbed
+from pareto_monoped.jump.balance import balanced
 from pareto_monoped.jump.calibration import Calibration, FadeGate
-from pareto_monoped.jump.closure import balanced
-from pareto_monoped.jump.pose import start_pose
-from pareto_monoped.jump.rows import joined, take
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.shared import built, setup_text
+from pareto_monoped.jump.variations import joined, take
 from pareto_monoped.robot.population import robot_arrays
 
 CLEAR: dict[str, float] = {"half_step_height_m": 0.5, "half_step_energy": 1.5, "energy_balance_error": 0.5}
@@ -31,18 +31,12 @@ doubles, too, which changes the energy by half a percent and more, smoothly."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Screened:
-    """What coarse jumps say of n designs.
+    """What coarse jumps say of n designs."""
 
-    Attributes:
-        double_step_height_m: change of height, shape (n,); infinite where the coarse jump failed, NaN where there was
-            none.
-        double_step_energy: relative change of energy, shape (n,).
-        double_step_balance_error: what its energy balance leaves open, shape (n,).
-    """
-
+    #: Change of height, shape (n,); infinite where the coarse jump failed, NaN where there was none
     double_step_height_m: Floats
-    double_step_energy: Floats
-    double_step_balance_error: Floats
+    double_step_energy: Floats  #: relative change of energy, shape (n,)
+    double_step_balance_error: Floats  #: what its energy balance leaves open, shape (n,)
 
     @property
     def clear(self) -> NDArray[np.bool_]:

@@ -12,8 +12,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
 from pareto_monoped.actuator.motors import motor_values, stored_motor
+from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.compute.chunks import Pace, pace_of, spread
@@ -22,8 +22,7 @@ from pareto_monoped.design import complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, calibration_values
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.jump.rows import joined, take
-from pareto_monoped.jump.variations import Variations
+from pareto_monoped.jump.variations import Variations, joined, take
 
 Floats = NDArray[np.float64]
 Setup = tuple[tuple[JointMaps, ...], Calibration]

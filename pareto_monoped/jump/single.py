@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.joint_maps import Maps
+from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.model import mjcf
-from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
@@ -34,21 +34,15 @@ joint before and after losses; the floor's force on the foot; the robot's energy
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JumpResult:
-    """One jump.
+    """One jump."""
 
-    Attributes:
-        design: the design that jumped.
-        calibration: name and version of the calibration.
-        status, reason: as in ``Evaluations``.
-        measures: name to value of every measure of ``Evaluations``.
-        trace: ``TRACE_COLUMNS`` to values, shape (steps,); empty if not asked for or if the robot could not start.
-    """
-
-    design: Design
-    calibration: str
+    design: Design  #: the design that jumped
+    calibration: str  #: name and version of the calibration
+    #: status, reason: as in ``Evaluations``
     status: str
     reason: str
-    measures: dict[str, float]
+    measures: dict[str, float]  #: name to value of every measure of ``Evaluations``
+    #: ``TRACE_COLUMNS`` to values, shape (steps,); empty if not asked for or if the robot could not start
     trace: dict[str, Floats]
 
 
@@ -86,26 +80,17 @@ def result_of(
 
 @dataclass(slots=True, kw_only=True)
 class Moment:
-    """One state of the loop and the step that starts there.
+    """One state of the loop and the step that starts there."""
 
-    Attributes:
-        model: MuJoCo's model.
-        data: MuJoCo's derived quantities of the state, and the torques held during the step.
-        after: MuJoCo's data after the step.
-        qpos, qvel: the state.
-        record: the controller's record at that state.
-        scratch: data of the same model for whatever else is to be computed.
-        last: whether the jump ends here, without a step.
-    """
-
-    model: Any
-    data: Any
-    after: Any
+    model: Any  #: MuJoCo's model
+    data: Any  #: MuJoCo's derived quantities of the state, and the torques held during the step
+    after: Any  #: MuJoCo's data after the step
+    #: qpos, qvel: the state
     qpos: Floats
     qvel: Floats
-    record: Any
-    scratch: Any
-    last: bool
+    record: Any  #: the controller's record at that state
+    scratch: Any  #: data of the same model for whatever else is to be computed
+    last: bool  #: whether the jump ends here, without a step
 
 
 def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[Moment]:

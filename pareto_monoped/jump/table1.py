@@ -31,15 +31,14 @@ class Spread(Result):
 
     Attributes:
         height_m, energy_j: medians; NaN if no copy jumps, as the percentiles.
-        height_p05_m, height_p95_m, energy_p05_j, energy_p95_j: percentiles.
-        jumped_share: share of the copies that jump.
     """
 
+    #: height_p05_m, height_p95_m, energy_p05_j, energy_p95_j: percentiles
     height_p05_m: float
     height_p95_m: float
     energy_p05_j: float
     energy_p95_j: float
-    jumped_share: float
+    jumped_share: float  #: share of the copies that jump
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,47 +3,44 @@
 A robot that was built has other masses, motors and springs than its model. Its controller does not know them: the term
 m g of the virtual leg keeps the nominal mass. Its links are measured, so the controller knows their true lengths. It
 starts in the balanced pose of its true masses and lengths, on a foot that is compressed as nominal.
+
+Rows of a struct of arrays.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, PAPER_CONTROL
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.robot.frames import BODIES
 from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.robot.units import BODIES
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variations:
-    """How n robots depart from their design. Factors of 1, lengths and delays of 0 leave a jump as it is to the bit.
+    """How n robots depart from their design. Factors of 1, lengths and delays of 0 leave a jump as it is to the bit."""
 
-    Attributes:
-        masses: factors on mass and inertia of the bodies, shape (n, 3), in the order of ``BODIES``.
-        peak_torques: factors on the motors' peak torque, shape (n, 2).
-        no_load_speeds: factors on the no-load speed of both motors, which goes with the voltage, shape (n,).
-        friction, damping: factors on Coulomb and viscous friction of both joints, shape (n,).
-        stop_stiffness, foot_stiffness: factors on the stiffness of the end stops and of the foot, shape (n,).
-        link_lengths_m: added to thigh and shank, shape (n, 2).
-        gains: factors on K, C and T, shape (n, 3).
-        delays_s: added to the delay of the calibration, in which they count as whole control periods, shape (n,).
-    """
-
-    masses: Floats
-    peak_torques: Floats
-    no_load_speeds: Floats
+    masses: Floats  #: factors on mass and inertia of the bodies, shape (n, 3), in the order of ``BODIES``
+    peak_torques: Floats  #: factors on the motors' peak torque, shape (n, 2)
+    no_load_speeds: Floats  #: factors on the no-load speed of both motors, which goes with the voltage, shape (n,)
+    #: friction, damping: factors on Coulomb and viscous friction of both joints, shape (n,)
     friction: Floats
     damping: Floats
+    #: stop_stiffness, foot_stiffness: factors on the stiffness of the end stops and of the foot, shape (n,)
     stop_stiffness: Floats
     foot_stiffness: Floats
-    link_lengths_m: Floats
-    gains: Floats
-    delays_s: Floats
+    link_lengths_m: Floats  #: added to thigh and shank, shape (n, 2)
+    gains: Floats  #: factors on K, C and T, shape (n, 3)
+    delays_s: Floats  #: added to the delay of the calibration, in which they count as whole control periods, shape (n,)
 
     def __len__(self) -> int:
         return len(self.masses)
@@ -91,3 +88,41 @@ def vary_fields(batch: Any, foot_geom: int, variations: Variations) -> None:
     foot, stops = batch.expand("geom_solref")[:, foot_geom, 0], batch.expand("jnt_solref")[:, -2:, 0]
     foot *= np.where(foot < 0.0, variations.foot_stiffness, 1.0)
     stops *= np.where(stops < 0.0, variations.stop_stiffness[:, None], 1.0)
+
+
+T = TypeVar("T", bound="DataclassInstance")
+
+
+def take(record: T, rows: NDArray[np.intp]) -> T:
+    """A copy of a frozen dataclass whose fields are arrays or tuples with one row per item, with only some rows.
+
+    Args:
+        record: the dataclass; every array and tuple has n rows, anything else is the same for all items.
+        rows: indices of the rows to keep, in this order.
+    """
+    kept: dict[str, Any] = {}
+    for field in fields(record):
+        values = getattr(record, field.name)
+        if isinstance(values, tuple):
+            kept[field.name] = tuple(values[i] for i in rows)
+        elif isinstance(values, np.ndarray):
+            kept[field.name] = values[rows]
+    return replace(record, **kept)
+
+
+def joined(records: Sequence[T]) -> T:
+    """One record with the rows of all, see ``take``; a single record stays as it is.
+
+    Args:
+        records: at least one; what is the same for all items must be the same in all of them.
+    """
+    if len(records) == 1:
+        return records[0]
+    together: dict[str, Any] = {}
+    for field in fields(records[0]):
+        parts = [getattr(record, field.name) for record in records]
+        if isinstance(parts[0], tuple):
+            together[field.name] = tuple(item for part in parts for item in part)
+        elif isinstance(parts[0], np.ndarray):
+            together[field.name] = np.concatenate(parts)
+    return replace(records[0], **together)

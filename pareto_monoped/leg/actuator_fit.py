@@ -1,56 +1,128 @@
-"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and their motor's driver."""
+"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and their motor's driver.
+
+The motor drivers that the base can carry, and the choice by the motor's voltage and current.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap
+from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.screws import M3, M25, Screw
 from pareto_monoped.geometry.shapes import Pattern
-from pareto_monoped.leg.motor_drivers import MotorDriver, motor_driver_for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotorDriver:
+    """A motor driver as a bare board."""
+
+    name: str  #: of the board, as it is ordered
+    mass_kg: float  #: of the bare board
+    #: width_mm, length_mm, height_mm: of the board with everything on it; the length runs along its longer side
+    width_mm: float
+    length_mm: float
+    height_mm: float
+    #: hole_width_mm, hole_length_mm: distances of its four mounting holes along width and length
+    hole_width_mm: float
+    hole_length_mm: float
+    screw: Screw  #: for these holes
+    voltage_v: float  #: largest supply voltage
+    peak_current_a: float  #: largest phase current, for a few seconds
+
+    def carries(self, motor: Motor) -> bool:
+        """Whether it stands the motor's rated voltage and its peak current."""
+        return motor.rated_voltage_v <= self.voltage_v and peak_current_a(motor) <= self.peak_current_a
+
+    def limit(self, motor: Motor) -> str:
+        """What a motor cannot do with it, in words, where it does not carry the motor."""
+        needed = peak_current_a(motor)
+        if motor.rated_voltage_v > self.voltage_v:
+            return f"takes {self.voltage_v:g} V, less than the {motor.rated_voltage_v:g} V of {motor.name}"
+        return (
+            f"gives {self.peak_current_a:g} A of the {needed:.0f} A that {motor.name} takes at its peak torque, and so "
+            f"{self.peak_current_a / needed:.0%} of that torque"
+        )
+
+
+# Holes: the authors' published actuator design files (motor driver mounts). All other figures: the makers' data sheets.
+# Neither says where the holes lie on the board; they are taken as centred on it.
+MOTOR_DRIVERS = (
+    MotorDriver(
+        name="moteus r4.11",
+        mass_kg=0.0142,
+        width_mm=46.0,
+        length_mm=53.0,
+        height_mm=10.0,  # our own estimate from its connectors, the data sheet gives none
+        hole_width_mm=40.0,
+        hole_length_mm=38.0,
+        screw=M25,
+        voltage_v=44.0,
+        peak_current_a=100.0,
+    ),
+    MotorDriver(
+        name="ODrive Pro",
+        mass_kg=0.032,
+        width_mm=51.0,
+        length_mm=64.0,
+        height_mm=17.5,
+        hole_width_mm=45.0,
+        hole_length_mm=42.0,
+        screw=M3,
+        voltage_v=58.0,
+        peak_current_a=120.0,
+    ),
+)
+"""From the lightest to the heaviest."""
+
+
+def peak_current_a(motor: Motor) -> float:
+    """Phase current, as an amplitude, at the motor's peak torque.
+
+    Drivers feed sinusoidal currents and are rated by their amplitude.
+    """
+    return motor.peak_torque_n_m / (PER_PHASE_AMPLITUDE * motor.torque_constant_n_m_per_a)
+
+
+def motor_driver_for(motor: Motor) -> MotorDriver:
+    """The lightest driver that carries a motor; the strongest one if none does, which its part's note then says."""
+    return next((driver for driver in MOTOR_DRIVERS if driver.carries(motor)), MOTOR_DRIVERS[-1])
+
 
 _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our own choice
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorFit:
-    """Dimensions that a leg takes from the actuators of a joint.
+    """Dimensions that a leg takes from the actuators of a joint."""
 
-    Attributes:
-        mount_pitch_radius_mm, mount_holes: bolts between the actuator's housing and a plate (M3).
-        mount_thread_mm: usable depth of their threads in the housing.
-        mount_dowel_mm, mount_dowels: dowels in gaps between these bolts, as deep as their threads.
-        housing_radius_mm: of the actuator's case.
-        output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3).
-        output_thread_mm: usable depth of their threads in the flange.
-        output_dowel_mm, output_dowels: dowels in gaps between these bolts, as deep as their threads.
-        coupler_radius_mm: of the output flange.
-        back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
-            their diameter.
-        driver: the motor driver.
-        driver_note: what the parts list says beside its name: that it limits the motor, where it does.
-        torque_n_m: largest peak torque of the joint's actuators.
-    """
-
+    #: mount_pitch_radius_mm, mount_holes: bolts between the actuator's housing and a plate (M3)
     mount_pitch_radius_mm: float
     mount_holes: int
-    mount_thread_mm: float
+    mount_thread_mm: float  #: usable depth of their threads in the housing
+    #: mount_dowel_mm, mount_dowels: dowels in gaps between these bolts, as deep as their threads
     mount_dowel_mm: float
     mount_dowels: int
-    housing_radius_mm: float
+    housing_radius_mm: float  #: of the actuator's case
+    #: output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3)
     output_pitch_radius_mm: float
     output_holes: int
-    output_thread_mm: float
+    output_thread_mm: float  #: usable depth of their threads in the flange
+    #: output_dowel_mm, output_dowels: dowels in gaps between these bolts, as deep as their threads
     output_dowel_mm: float
     output_dowels: int
-    coupler_radius_mm: float
+    coupler_radius_mm: float  #: of the output flange
+    #: back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
+    #: their diameter
     back_pitch_radius_mm: float
     back_holes: int
     back_screw_mm: float
-    driver: MotorDriver
-    driver_note: str
-    torque_n_m: float
+    driver: MotorDriver  #: the motor driver
+    driver_note: str  #: what the parts list says beside its name: that it limits the motor, where it does
+    torque_n_m: float  #: largest peak torque of the joint's actuators
 
     @property
     def output_dowel(self) -> Pattern:

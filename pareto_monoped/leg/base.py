@@ -11,10 +11,9 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
-from pareto_monoped.leg.bearing import LIP, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.electronics import DRIVER_PLATE_MM, driver_parts
-from pareto_monoped.leg.journal import far_cheek_z_mm
+from pareto_monoped.leg.journal import LIP, bearing_part, far_cheek_z_mm
 from pareto_monoped.leg.sandwich import Place, holes_at
 from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
 from pareto_monoped.materials import ALLOYS, MATERIALS

@@ -13,34 +13,21 @@ _STOP_SHARE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainDrive:
-    """A roller chain (ISO 606) and its two equal sprockets.
+    """A roller chain (ISO 606) and its two equal sprockets."""
 
-    Attributes:
-        name: number of the chain.
-        pitch_mm: between two pins.
-        roller_mm: diameter of the rollers.
-        inner_width_mm: width between the inner plates.
-        inner_link_mm: width over the inner plates.
-        pin_mm, pin_diameter_mm: length and diameter of the pins.
-        plate_mm: height of a plate.
-        kg_per_m: mass per length, from makers' catalogues.
-        breaking_n: least breaking load.
-        teeth: of a sprocket, our own choice.
-        sprocket_width_mm: of the teeth, 0.93 of the chain's inner width with h14 (ISO 606), in steps of 0.2 mm.
-    """
-
-    name: str
-    pitch_mm: float
-    roller_mm: float
-    inner_width_mm: float
-    inner_link_mm: float
+    name: str  #: number of the chain
+    pitch_mm: float  #: between two pins
+    roller_mm: float  #: diameter of the rollers
+    inner_width_mm: float  #: width between the inner plates
+    inner_link_mm: float  #: width over the inner plates
+    #: pin_mm, pin_diameter_mm: length and diameter of the pins
     pin_mm: float
     pin_diameter_mm: float
-    plate_mm: float
-    kg_per_m: float
-    breaking_n: float
-    teeth: int
-    sprocket_width_mm: float
+    plate_mm: float  #: height of a plate
+    kg_per_m: float  #: mass per length, from makers' catalogues
+    breaking_n: float  #: least breaking load
+    teeth: int  #: of a sprocket, our own choice
+    sprocket_width_mm: float  #: of the teeth, 0.93 of the chain's inner width with h14 (ISO 606), in steps of 0.2 mm
 
     @property
     def pitch_radius_mm(self) -> float:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from pareto_monoped.actuator.bearings import small_bearing
-from pareto_monoped.actuator.joint_maps import Maps, joint_maps
+from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.actuator_fit import ActuatorFit, actuator_fit
 from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
@@ -38,58 +38,46 @@ class LegDimensions:
 
     What must fit the motor has no default: it comes from ``leg_dimensions``. The defaults are our own design, sized so
     that a link weighs what the reference link does.
-
-    Attributes:
-        hip, knee: what the actuators of either joint need.
-        chain: the thigh's chain and its sprockets.
-        bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base.
-        plate_mm: thickness of the aluminium plates of the thigh.
-        shank_plate_mm: thickness of the aluminium plates of the shank.
-        gap_mm: distance between the thigh's plates: both knee bearings and the sprocket between them fit in.
-        play_mm: lateral distance between thigh and shank, for the spacers on the knee's axle.
-        hip_play_mm: lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.
-        thigh_half_width_mm, thigh_window_half_width_mm: the bar of the thigh's plates.
-        thigh_core_half_width_mm, thigh_core_window_half_width_mm: the thigh's printed core, which is
-            at least 3.4 mm inside the strands of the chain.
-        knee_radius_mm: of the thigh plates at the knee; covers the chain, which reaches out to 34.1 mm.
-        shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates.
-        shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core.
-        fork_mm: free depth of the shank's fork below the knee axis, enough for the thigh at the end of
-            ``stops.knee_stop``.
-        foot_radius_mm: of the rubber ball.
-        rod_radius_mm: of the base's rods: a common tube, with 3.35 mm of wall around its M4 thread.
-        cheek_mm: thickness of the base's near cheek.
-        far_cheek_mm: thickness of the base's far cheek: the bearing's seat and a lip of 1 mm.
     """
 
+    #: hip, knee: what the actuators of either joint need
     hip: ActuatorFit
     knee: ActuatorFit
-    chain: ChainDrive
+    chain: ChainDrive  #: the thigh's chain and its sprockets
+    #: bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base
     bearing_bore_radius_mm: float
     bearing_outer_radius_mm: float
     bearing_width_mm: float
     bearing_kg: float
     thigh_window_half_width_mm: float
 
-    plate_mm: float = 2.5
-    shank_plate_mm: float = 3.0
+    plate_mm: float = 2.5  #: thickness of the aluminium plates of the thigh
+    shank_plate_mm: float = 3.0  #: thickness of the aluminium plates of the shank
+    #: Distance between the thigh's plates: both knee bearings and the sprocket between them fit in
     gap_mm: float = 24.0
-    play_mm: float = 2.0
+    play_mm: float = 2.0  #: lateral distance between thigh and shank, for the spacers on the knee's axle
+    #: Lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output
     hip_play_mm: float = 3.0
+    #: thigh_half_width_mm, thigh_window_half_width_mm: the bar of the thigh's plates
     thigh_half_width_mm: float = THIGH_HALF_WIDTH_MM
+    #: thigh_core_half_width_mm, thigh_core_window_half_width_mm: the thigh's printed core, which is at least 3.4 mm
+    #: inside the strands of the chain
     thigh_core_half_width_mm: float = 19.5
     thigh_core_window_half_width_mm: float = 16.0
-    knee_radius_mm: float = 35.5
+    knee_radius_mm: float = 35.5  #: of the thigh plates at the knee; covers the chain, which reaches out to 34.1 mm
+    #: shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates
     shank_top_radius_mm: float = 24.0
     shank_bottom_radius_mm: float = 18.0
     shank_window_half_width_mm: float = 7.5
+    #: shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core
     shank_core_half_width_mm: float = 17.0
     shank_core_window_half_width_mm: float = 12.5
+    #: Free depth of the shank's fork below the knee axis, enough for the thigh at the end of ``stops.knee_stop``
     fork_mm: float = 113.0
-    foot_radius_mm: float = 33.0
-    rod_radius_mm: float = 5.0
-    cheek_mm: float = 6.0
-    far_cheek_mm: float = 8.0
+    foot_radius_mm: float = 33.0  #: of the rubber ball
+    rod_radius_mm: float = 5.0  #: of the base's rods: a common tube, with 3.35 mm of wall around its M4 thread
+    cheek_mm: float = 6.0  #: thickness of the base's near cheek
+    far_cheek_mm: float = 8.0  #: thickness of the base's far cheek: the bearing's seat and a lip of 1 mm
 
     @property
     def thigh_face_mm(self) -> float:

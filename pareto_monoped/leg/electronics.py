@@ -12,10 +12,9 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
+from pareto_monoped.leg.actuator_fit import MotorDriver
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.motor_drivers import MotorDriver
-from pareto_monoped.leg.outlines import rounded
-from pareto_monoped.leg.sandwich import Place, holes_at
+from pareto_monoped.leg.sandwich import Place, holes_at, rounded
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 DRIVER_PLATE_MM = 2.0
@@ -39,18 +38,15 @@ _CLEAR_OF_HOLES = 4.0  # from the board's holes to what stands on it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardPlace:
-    """Where cables pass a driver's board, in the frame of the base.
+    """Where cables pass a driver's board, in the frame of the base."""
 
-    Attributes:
-        plate_mm, inner_mm: height z of the plate's outer face, and of the board's face towards it.
-        low_mm, high_mm: height y of the board's lower and upper edge.
-        tie_x_mm, tie_y_mm: middle of a pair of holes for a tie, on either side.
-    """
-
+    #: plate_mm, inner_mm: height z of the plate's outer face, and of the board's face towards it
     plate_mm: float
     inner_mm: float
+    #: low_mm, high_mm: height y of the board's lower and upper edge
     low_mm: float
     high_mm: float
+    #: tie_x_mm, tie_y_mm: middle of a pair of holes for a tie, on either side
     tie_x_mm: float
     tie_y_mm: float
 

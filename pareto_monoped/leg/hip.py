@@ -10,9 +10,17 @@ from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 from pareto_monoped.leg.actuator_fit import ActuatorFit
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.drive_support import BACK, BOSS_RADIUS, FLANGE, FRONT, SEAT_RADIUS, support_parts
+from pareto_monoped.leg.sprocket import (
+    BACK,
+    BOSS_RADIUS,
+    FLANGE,
+    FRONT,
+    HEAD_PLAY,
+    SEAT_RADIUS,
+    sprocket_prisms,
+    support_parts,
+)
 from pareto_monoped.leg.sprocket import BORE_RADIUS as NECK_RADIUS
-from pareto_monoped.leg.sprocket import HEAD_PLAY, sprocket_prisms
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the couplings, mm.

@@ -19,8 +19,8 @@ from pareto_monoped.geometry.screws import (
     tapped,
 )
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
-from pareto_monoped.leg.bearing import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.journal import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.sprocket import relief_holes, sprocket_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS
 

@@ -6,16 +6,17 @@ from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, clearance
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Shape, rectangle
-from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.knee import AXLE_DOWEL, axle_dowels, axle_holes, axle_parts
-from pareto_monoped.leg.outlines import rounded
 from pareto_monoped.leg.sandwich import (
     BRIDGE,
     WINDOW_CORNER,
     Place,
+    Pulley,
+    belt,
     bolts_at,
     holes_at,
+    rounded,
     sleeve_bolt,
     sleeve_hole,
     windows_between,

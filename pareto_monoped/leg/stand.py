@@ -17,8 +17,7 @@ from pareto_monoped.geometry.shapes import Shape
 from pareto_monoped.leg.base import ROD_THREAD
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.electronics import DRIVER_PLATE_MM
-from pareto_monoped.leg.outlines import rounded_hull
-from pareto_monoped.leg.sandwich import holes_at
+from pareto_monoped.leg.sandwich import holes_at, rounded_hull
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 ARM_MM = 5.0
@@ -27,21 +26,16 @@ ARM_MM = 5.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Carriage:
-    """A carriage of a miniature linear guide.
+    """A carriage of a miniature linear guide."""
 
-    Attributes:
-        name: of carriage and rail.
-        length_mm, width_mm: of the carriage.
-        hole_length_mm, hole_width_mm: of its four threads along and across the rail.
-        thread_mm: depth of these M3 threads.
-    """
-
-    name: str
+    name: str  #: of carriage and rail
+    #: length_mm, width_mm: of the carriage
     length_mm: float
     width_mm: float
+    #: hole_length_mm, hole_width_mm: of its four threads along and across the rail
     hole_length_mm: float
     hole_width_mm: float
-    thread_mm: float
+    thread_mm: float  #: depth of these M3 threads
 
 
 MGN12H = Carriage(

@@ -11,18 +11,19 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, polygon
-from pareto_monoped.leg.belt import Pulley, belt
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.faces import (
+from pareto_monoped.leg.sandwich import Place, Pulley, belt, sleeve_bolt, sleeve_hole
+from pareto_monoped.leg.stops import (
     Face,
+    JointStop,
     bumper_place,
     hip_seats,
+    hip_stop,
     hip_strikers,
     knee_seats,
+    knee_stop,
     knee_strikers,
 )
-from pareto_monoped.leg.sandwich import Place, sleeve_bolt, sleeve_hole
-from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of all faces, mm: along the face, behind it, or along the joint's axis.

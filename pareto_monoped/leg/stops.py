@@ -3,13 +3,19 @@
 A stop is a bumper on one link and a flat striker on the other. The bumper is a round bar of elastomer that lies on a
 flat seat, parallel to the joint's axis, and is squeezed sideways. Everything that needs a stop reads it here: the parts
 of the links, the sweep of every export, the joint limits of both robot models, and the simulation.
+
+The flat faces of the end stops: where each seat and each striker lies on its link.
+
+At the end of a joint's range the seat's face and the striker's are parallel, a bumper's diameter apart, and the line on
+which the bumper is squeezed passes the joint's axis at the lever of ``stops.JointStop``. One face of each pair is laid
+out here; the other follows from it by the angle at which they meet.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Numbers, Path, polygon
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.materials import MATERIALS, Elastomer
 
@@ -26,16 +32,12 @@ A limit of the design, which ``stop_safety`` holds (``strength.stops``).
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bumper:
-    """A solid round bar of elastomer between two flat faces.
+    """A solid round bar of elastomer between two flat faces."""
 
-    Attributes:
-        diameter_mm, length_mm: of the bar.
-        elastomer: its material.
-    """
-
+    #: diameter_mm, length_mm: of the bar
     diameter_mm: float
     length_mm: float
-    elastomer: Elastomer
+    elastomer: Elastomer  #: its material
 
     def force_n(self, compression_mm: Numbers) -> Numbers:
         """Force of a slow compression.
@@ -51,20 +53,14 @@ class Bumper:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointStop:
-    """The end stops of one joint, equal at both ends of its range.
+    """The end stops of one joint, equal at both ends of its range."""
 
-    Attributes:
-        lower_rad, upper_rad: angles at which a striker meets a bumper: the joint's range.
-        lever_mm: distance of the joint's axis from the line along which a striker squeezes a bumper.
-        half_face_mm: half length of the faces of seats and strikers along the bumper's squeezed width.
-        bumper: of either end.
-    """
-
+    #: lower_rad, upper_rad: angles at which a striker meets a bumper: the joint's range
     lower_rad: float
     upper_rad: float
-    lever_mm: float
-    half_face_mm: float
-    bumper: Bumper
+    lever_mm: float  #: distance of the joint's axis from the line along which a striker squeezes a bumper
+    half_face_mm: float  #: half length of the faces of seats and strikers along the bumper's squeezed width
+    bumper: Bumper  #: of either end
 
     @property
     def travel_rad(self) -> float:
@@ -112,3 +108,110 @@ def knee_stop(d: LegDimensions) -> JointStop:
         half_face_mm=_KNEE_HALF_FACE,
         bumper=_KNEE_BUMPER,
     )
+
+
+# Our own layout.
+FACE_OUT = 45.5  # of a stop on the thigh's edge, mm from its axis: 1.4 mm and a foot of 10 mm outside the chain
+_FLEXION_TILT = np.radians(-3.0)  # of the knee's seat for flexion: brings the striker between the shank's plates
+_FLEXION_OUT = 46.5  # of that seat's middle from the thigh's axis, mm
+# In front of the shank's axis, so that the folded leg's chain passes; the face lies in a plane through the knee's axis.
+_EXTENSION_STRIKER = np.radians(57.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Face:
+    """A flat face parallel to the joints' axes, seen along them."""
+
+    #: x_mm, y_mm: the point of the face that meets the middle of a bumper
+    x_mm: Numbers
+    y_mm: Numbers
+    normal_rad: float  #: angle of the direction in which the face looks
+
+    def point(self, along_mm: float, deep_mm: float) -> tuple[Numbers, Numbers]:
+        """A point so far along the face, to the left of its normal, and so deep behind it."""
+        cos, sin = float(np.cos(self.normal_rad)), float(np.sin(self.normal_rad))
+        return self.x_mm - along_mm * sin - deep_mm * cos, self.y_mm + along_mm * cos - deep_mm * sin
+
+    def polygon(self, *points: tuple[float, float]) -> Path:
+        """The polygon through points given as (along, deep), anticlockwise."""
+        return polygon([self.point(*point) for point in points])
+
+    def opposite(self, gap_mm: float) -> "Face":
+        """The parallel face that looks at this one over a gap."""
+        x, y = self.point(0.0, -gap_mm)
+        return Face(x_mm=x, y_mm=y, normal_rad=self.normal_rad + np.pi)
+
+    def turned(self, angle_rad: float) -> "Face":
+        """The face turned anticlockwise about the origin."""
+        cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+        return Face(
+            x_mm=float(cos * self.x_mm - sin * self.y_mm),
+            y_mm=float(sin * self.x_mm + cos * self.y_mm),
+            normal_rad=self.normal_rad + angle_rad,
+        )
+
+    def at(self, y_mm: Numbers) -> "Face":
+        """The face moved so that the origin comes to (0, y_mm)."""
+        return replace(self, y_mm=self.y_mm + y_mm)
+
+    @property
+    def centred(self) -> "Face":
+        """The face with its middle in the origin."""
+        return replace(self, x_mm=0.0, y_mm=0.0)
+
+
+def bumper_place(seat: Face, stop: JointStop) -> tuple[Numbers, Numbers, float]:
+    """Where the axis of the bumper on a seat lies."""
+    return (*seat.point(0.0, -0.5 * stop.bumper.diameter_mm), 0.0)
+
+
+def hip_strikers(d: LegDimensions) -> tuple[Face, Face]:
+    """The thigh's faces for the lower and the upper end of the hip's range, in the thigh's frame."""
+    lever = hip_stop(d).lever_mm
+    return (
+        Face(x_mm=FACE_OUT, y_mm=-lever, normal_rad=0.0),
+        Face(x_mm=-FACE_OUT, y_mm=-lever, normal_rad=np.pi),
+    )
+
+
+def hip_seats(d: LegDimensions) -> tuple[Face, Face]:
+    """The base's faces for the lower and the upper end of the hip's range, in the base's frame.
+
+    The hip turns the thigh clockwise, seen along -z.
+    """
+    stop = hip_stop(d)
+    lower, upper = (striker.opposite(stop.bumper.diameter_mm) for striker in hip_strikers(d))
+    return lower.turned(-stop.lower_rad), upper.turned(-stop.upper_rad)
+
+
+def knee_seats(d: LegDimensions) -> tuple[Face, Face]:
+    """The thigh's faces for the lower and the upper end of the knee's range, about the knee axis.
+
+    The upper end is flexion: its seat lies on the thigh's rear edge above the knee. That of the lower end, extension,
+    lies on a heel of the thigh below the knee.
+    """
+    stop = knee_stop(d)
+    gap = stop.bumper.diameter_mm
+    # The striker's face for extension, in a plane through the axis, when the shank is at the lower end of its range.
+    angle = -0.5 * np.pi + _EXTENSION_STRIKER - stop.lower_rad
+    striker = Face(
+        x_mm=float(stop.lever_mm * np.cos(angle)),
+        y_mm=float(stop.lever_mm * np.sin(angle)),
+        normal_rad=angle + 0.5 * np.pi,
+    )
+    normal = np.pi + _FLEXION_TILT
+    # With the seat's plane at a height h over the axis, its middle is h n - lever t for tangent t to the left of n.
+    height = (_FLEXION_OUT - stop.lever_mm * np.sin(_FLEXION_TILT)) / np.cos(_FLEXION_TILT)
+    flexion = Face(
+        x_mm=float(height * np.cos(normal) + stop.lever_mm * np.sin(normal)),
+        y_mm=float(height * np.sin(normal) - stop.lever_mm * np.cos(normal)),
+        normal_rad=float(normal),
+    )
+    return striker.opposite(gap), flexion
+
+
+def knee_strikers(d: LegDimensions) -> tuple[Face, Face]:
+    """The shank's faces for the lower and the upper end of the knee's range, in the shank's frame."""
+    stop = knee_stop(d)
+    lower, upper = (seat.opposite(stop.bumper.diameter_mm) for seat in knee_seats(d))
+    return lower.turned(stop.lower_rad), upper.turned(stop.upper_rad)

@@ -11,11 +11,10 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M25, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
-from pareto_monoped.leg.bearing import LIP
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.drive_support import BOSS_RADIUS
 from pareto_monoped.leg.hip import hip_joints
+from pareto_monoped.leg.journal import LIP
 from pareto_monoped.leg.knee import cup_holes, knee_bearings
 from pareto_monoped.leg.sandwich import (
     BRIDGE,
@@ -27,6 +26,7 @@ from pareto_monoped.leg.sandwich import (
     windows_between,
     with_rungs,
 )
+from pareto_monoped.leg.sprocket import BOSS_RADIUS
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
 from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm, thigh_outline
 from pareto_monoped.materials import ALLOYS, MATERIALS

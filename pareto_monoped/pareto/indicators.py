@@ -18,15 +18,10 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferencePoint:
-    """The corner from which the hypervolume is measured: designs that are worse in any objective add nothing.
+    """The corner from which the hypervolume is measured: designs that are worse in any objective add nothing."""
 
-    Attributes:
-        objectives: of the search.
-        values: of each objective, in their order and stored units.
-    """
-
-    objectives: Objectives
-    values: tuple[float, ...]
+    objectives: Objectives  #: of the search
+    values: tuple[float, ...]  #: of each objective, in their order and stored units
 
     def as_dict(self) -> dict[str, float]:
         """The values by the names of their measures."""

@@ -14,13 +14,9 @@ FEWEST, MOST = 2, 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Objectives:
-    """Two or three measures, in the order in which tables and charts show them.
+    """Two or three measures, in the order in which tables and charts show them."""
 
-    Attributes:
-        names: of the measures; each is in ``measures.MEASURES`` and has a direction.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  #: of the measures; each is in ``measures.MEASURES`` and has a direction
 
     @property
     def measures(self) -> tuple[Measure, ...]:

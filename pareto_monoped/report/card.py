@@ -8,7 +8,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps
+from pareto_monoped.actuator.ratiomap import JointMaps
+from pareto_monoped.analysis.at_bounds import bound_lines
+from pareto_monoped.definition.algorithms import WeightedSettings
+from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.end_stops import end_stops
@@ -17,30 +20,18 @@ from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector
 from pareto_monoped.report.comparison import group_of
-from pareto_monoped.report.jump_packing import packed as packed_jumps
 from pareto_monoped.report.motors import gearbox_numbers
-from pareto_monoped.report.provenance import command, provenance
+from pareto_monoped.report.packing import packed as packed_jumps
 from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
-from pareto_monoped.report.summary import notes, sentences
-from pareto_monoped.report.trials import (
-    LETTERS,
-    audit_records,
-    front_columns,
-    history_columns,
-    thinned,
-    trial_columns,
-)
+from pareto_monoped.report.summary import command, notes, provenance, sentences
+from pareto_monoped.report.trials import LETTERS, audit_records, front_columns, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.study.algorithm_settings import WeightedSettings
-from pareto_monoped.study.at_bounds import bound_lines
-from pareto_monoped.study.free_variables import Bounds
-from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.robust_rows import Stored
-from pareto_monoped.study.sensitivity_rows import StoredSensitivity
-from pareto_monoped.study.weighted_cost import weighted_cost
-from pareto_monoped.uncertainty.influences import About
+from pareto_monoped.search.weighted import weighted_cost
+from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
+from pareto_monoped.storage.reader import StudyData
+from pareto_monoped.uncertainty.sensitivity import About
 
 if TYPE_CHECKING:
     from pareto_monoped.jump.frames import Recording
@@ -59,15 +50,10 @@ class MapPlace:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Places:
-    """Where the page has what the designs of a study are built from.
+    """Where the page has what the designs of a study are built from."""
 
-    Attributes:
-        maps: name of a motor -> its stage 1 map.
-        kits: label of a kit of motors -> number of the kit.
-    """
-
-    maps: Mapping[str, MapPlace]
-    kits: Mapping[str, int]
+    maps: Mapping[str, MapPlace]  #: name of a motor -> its stage 1 map
+    kits: Mapping[str, int]  #: label of a kit of motors -> number of the kit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

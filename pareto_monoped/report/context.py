@@ -13,7 +13,7 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.config import checked, read_shipped
 from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.report.front_figure import values
-from pareto_monoped.report.packing import unpacked
+from pareto_monoped.report.packing import unpacked_column
 from pareto_monoped.report.schema import Payload, StudyCard
 from pareto_monoped.report.tables import safe
 
@@ -23,27 +23,17 @@ Words = Annotated[str, Field(min_length=1)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jumper:
-    """A jumping robot or animal; what its source does not give is None.
-
-    Attributes:
-        name: what it is called.
-        drive: what moves it.
-        source: where the values were looked up.
-        year: of the publication.
-        mass_kg: of all of it.
-        height_m: gained in one jump from rest.
-        agility_m_per_s: vertical jumping agility, as the measure of that name.
-    """
+    """A jumping robot or animal; what its source does not give is None."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
-    name: Words
-    drive: Words
-    source: Words
-    year: int | None = None
-    mass_kg: Positive | None = None
-    height_m: Positive | None = None
-    agility_m_per_s: Positive | None = None
+    name: Words  #: what it is called
+    drive: Words  #: what moves it
+    source: Words  #: where the values were looked up
+    year: int | None = None  #: of the publication
+    mass_kg: Positive | None = None  #: of all of it
+    height_m: Positive | None = None  #: gained in one jump from rest
+    agility_m_per_s: Positive | None = None  #: vertical jumping agility, as the measure of that name
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +92,7 @@ def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
     """Of the designs on the front, in its order; NaN where it is not known."""
     name, rows = "agility_m_per_s", list(card.front)
     if name in card.trials.packed:
-        return unpacked(card.trials.packed[name])[rows]
+        return unpacked_column(card.trials.packed[name])[rows]
     return values(card.trials.columns.get(name, [None] * len(card.trials.trial)), rows)
 
 

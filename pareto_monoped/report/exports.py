@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.jobs import trial_job
-from pareto_monoped.cad.made import is_made
-from pareto_monoped.cad.write.formats import RECORD
+from pareto_monoped.cad.records import is_made
+from pareto_monoped.cad.write.folder import RECORD
 from pareto_monoped.errors import OutputError
 from pareto_monoped.report.schema import Model3D
-from pareto_monoped.study.reader import StudyData
+from pareto_monoped.storage.reader import StudyData
 
 Floats = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm
-from pareto_monoped.report.rounding import column
+from pareto_monoped.report.packing import column
 from pareto_monoped.report.schema import Gearbox, LegTable, MapPoint, MotorMap
 
 if TYPE_CHECKING:

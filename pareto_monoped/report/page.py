@@ -1,34 +1,182 @@
-"""Payload -> one self-contained HTML file."""
+"""Payload -> one self-contained HTML file.
+
+Studies -> what the page shows: a pure function of study data and what was simulated again for it.
+"""
 
 import base64
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
 from functools import lru_cache
 from importlib import resources
 from math import isfinite
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from pareto_monoped import __version__
+from pareto_monoped.analysis.choices import WORDS
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
-from pareto_monoped.report.card import Source
+from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.measures import MEASURES
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
+from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
-from pareto_monoped.report.designs_table import designs_table
 from pareto_monoped.report.exports import read_models
-from pareto_monoped.report.goals import ask_fields, kind, order
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.motors import leg_table, motor_tables
+from pareto_monoped.report.quantities import quantities_of
 from pareto_monoped.report.resimulation import frames_for, resimulate
-from pareto_monoped.report.schema import Payload
-from pareto_monoped.report.tables import cases_table, comparison_tables, head, provenance_tables, published_link, safe
-from pareto_monoped.study.place import StudyPlace
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robust_rows import read_robustness
+from pareto_monoped.report.robust import names_of
+from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard
+from pareto_monoped.report.tables import (
+    ask_fields,
+    cases_table,
+    comparison_tables,
+    designs_table,
+    head,
+    kind,
+    order,
+    provenance_tables,
+    published_link,
+    safe,
+)
+from pareto_monoped.report.trials import rows_per_study
+from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.seals import UNSEALED
 from pareto_monoped.study.run import default_workers
-from pareto_monoped.study.seals import UNSEALED
-from pareto_monoped.study.sensitivity_rows import read_sensitivity
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.ratiomap import ActuatorMap
+
+PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M = 0.235, 0.828
+"""Mass of a link over its length: straight line through the masses of links that the authors published, for lengths
+from 150 to 350 mm."""
+
+
+def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
+    """What decides a map: the motor and the rules."""
+    return actuator_map.motor, actuator_map.settings.rules
+
+
+def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
+    """The page's content.
+
+    Args:
+        sources: one per database, in the order of the command line.
+        literal: the paper's cases under the ``paper`` calibration, as in ``jump.table1.Spread``.
+    """
+    mapped: list[Any] = []
+    places: list[MapPlace] = []
+    gearboxes: list[Gearbox] = []
+    maps: list[MotorMap] = []
+    for source in sources:
+        for actuator_map in source.data.actuator_maps.values():
+            if _origin(actuator_map) not in mapped:
+                tables = motor_tables(actuator_map, first=len(gearboxes))
+                places.append(MapPlace(number=len(maps), first_gearbox=len(gearboxes)))
+                mapped.append(_origin(actuator_map))
+                maps.append(tables.map)
+                gearboxes.extend(tables.gearboxes)
+    kits: dict[tuple[int, int], Kit] = {}
+    for source in sources:
+        for kit in source.data.kits:
+            hip, knee = (mapped.index(_origin(one)) for one in (kit.hip, kit.knee))
+            if (hip, knee) not in kits:
+                leg = None if hip == knee else leg_table(leg_dimensions(kit))
+                kits[hip, knee] = Kit(motor=kit.label, hip=hip, knee=knee, leg=leg)
+    labels = _labels(sources)
+    used = {variable.name for source in sources for variable in in_use(source.data.trials)}
+    variables = [variable for variable in VARIABLES if variable.name in used]
+    goals = tuple(dict.fromkeys(name for source in sources for name in source.data.study.objectives.names))
+    cards = []
+    for source, label, most_rows in zip(
+        sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
+    ):
+        own = {name: mapped.index(_origin(one)) for name, one in source.data.actuator_maps.items()}
+        ends = {kit.label: (own[kit.hip.motor.name], own[kit.knee.motor.name]) for kit in source.data.kits}
+        numbers = {label: list(kits).index(pair) for label, pair in ends.items()}
+        found = Places(maps={name: places[place] for name, place in own.items()}, kits=numbers)
+        cards.append(study_card(source, label, most_rows, found, variables, goals))
+    return Payload(
+        version=__version__,
+        title=_title(cards),
+        objectives=cards[0].objectives,
+        goals=goals,
+        directions=Objectives(names=goals).directions,
+        measure_directions={m.name: m.direction for m in MEASURES if m.direction is not None},
+        constants=Constants(
+            gravity_m_per_s2=GRAVITY_M_PER_S2,
+            base_start_height_m=BASE_START_HEIGHT_M,
+            published_link_kg=PUBLISHED_LINK_KG,
+            published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
+        ),
+        variables=[asdict(variable) for variable in variables],
+        quantities=quantities_of(names_of([source.data for source in sources], [card.robust for card in cards])),
+        axes=_axes(cards),
+        published=[
+            {
+                "name": c.name,
+                "height_m": c.height_m,
+                "energy_j": c.energy_j,
+                "design": {variable.name: getattr(c.design, variable.name) for variable in variables},
+            }
+            for c in PAPER_CASES.values()
+        ],
+        literal=literal,
+        gearboxes=gearboxes,
+        maps=maps,
+        kits=list(kits.values()),
+        studies=cards,
+        comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
+    )
+
+
+def _axes(cards: Sequence[StudyCard]) -> list[str]:
+    """The measures and variables that trials differ in."""
+    differ = set()
+    for card in cards:
+        for name, values in card.trials.columns.items():
+            if len({value for value in values if value is not None}) > 1:
+                differ.add(name)
+        for packed in (card.trials.packed, card.robust.packed if card.robust is not None else {}):
+            differ.update(n for n, text in packed.items() if len({text[i : i + 4] for i in range(0, len(text), 4)}) > 1)
+    return sorted(differ - {"hip_gearbox", "knee_gearbox", "motor"})
+
+
+def _labels(sources: Sequence[Source]) -> list[str]:
+    """Names of the studies; where several have the same, with what they are for, seed, database or number.
+
+    Each is as long as it must be, so that no two are alike.
+    """
+    names = [source.data.study.name for source in sources]
+    if len({source.data.study.objectives for source in sources}) > 1:
+        names = [f"{name} by {_aim(source)}" for source, name in zip(sources, names, strict=True)]
+    labels: list[str] = []
+    for source, name in zip(sources, names, strict=True):
+        label = name if names.count(name) == 1 else f"{name}, seed {source.data.study.seed}"
+        tries = [label, f"{label}, {source.data.db}", *(f"{label} ({n})" for n in range(2, len(sources) + 2))]
+        labels.append(next(text for text in tries if text not in labels))
+    return labels
+
+
+def _title(cards: Sequence[StudyCard]) -> str:
+    """The study's name, where it is one study, or one by several objectives; else the first one's and a count."""
+    by = {(card.name, tuple(card.objectives)) for card in cards}
+    one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
+    return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"
+
+
+def _aim(source: Source) -> str:
+    """The objectives of a study but the height, in words."""
+    measures = source.data.study.objectives.measures
+    return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")
+
 
 SCRIPTS = (
     "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",

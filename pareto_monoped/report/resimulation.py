@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, columns
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.report.rounding import number
+from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Case
-from pareto_monoped.study.reader import StudyData
+from pareto_monoped.storage.reader import StudyData
 
 if TYPE_CHECKING:
-    from pareto_monoped.actuator.joint_maps import Maps
+    from pareto_monoped.actuator.ratiomap import Maps
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.jump.frames import Recording
 
@@ -36,21 +36,13 @@ def frames_for(jumps: int) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Resimulation:
-    """What one study needs beyond its database.
+    """What one study needs beyond its database."""
 
-    Attributes:
-        jumps: of designs on the front, by trial number.
-        cases: the paper's designs, with ``StudyData.case_kit``.
-        case_jumps: of those that jump, by place among them.
-        frames: of each jump.
-        drift_m: largest difference between a stored height and the height simulated now.
-    """
-
-    jumps: Mapping[int, "Recording"]
-    cases: Sequence[Case]
-    case_jumps: Mapping[int, "Recording"]
-    frames: int
-    drift_m: float
+    jumps: Mapping[int, "Recording"]  #: of designs on the front, by trial number
+    cases: Sequence[Case]  #: the paper's designs, with ``StudyData.case_kit``
+    case_jumps: Mapping[int, "Recording"]  #: of those that jump, by place among them
+    frames: int  #: of each jump
+    drift_m: float  #: largest difference between a stored height and the height simulated now
 
 
 def resimulate(

@@ -4,17 +4,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pareto_monoped.analysis.alternatives import alternatives
+from pareto_monoped.analysis.robustness import robust_front, robust_trials
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import ROBUST_NAMES, is_own, is_robust
-from pareto_monoped.report.packing import packed
-from pareto_monoped.report.rounding import column
+from pareto_monoped.report.packing import column, packed_column
 from pareto_monoped.report.schema import Influences, Number, OtherDesign, Robust
-from pareto_monoped.study.alternatives import alternatives
-from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.robust_front import robust_front, robust_trials
-from pareto_monoped.study.robust_rows import Stored
-from pareto_monoped.study.sensitivity_rows import StoredSensitivity
-from pareto_monoped.uncertainty.influences import About, Influence
+from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
+from pareto_monoped.storage.reader import StudyData
+from pareto_monoped.uncertainty.sensitivity import About, Influence
 
 MOST_ALTERNATIVES = 5
 """Alternatives listed beside a design. Our own choice, as in the examples of ``pick --alternatives``."""
@@ -45,7 +43,7 @@ def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int
         others=trials.others,
         rows=[row_of[int(trial)] for trial in rows["trial"]],
         front=[row_of[int(trial)] for trial in front if trial in row_of],
-        packed={name: packed(rows[name]) for name in ROBUST_NAMES if np.isfinite(rows[name]).any()},
+        packed={name: packed_column(rows[name]) for name in ROBUST_NAMES if np.isfinite(rows[name]).any()},
     )
 
 

@@ -44,45 +44,32 @@ class Gearbox:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapPoint:
-    """One interval of a stage 1 map.
+    """One interval of a stage 1 map."""
 
-    Attributes:
-        ratio_low: lower end.
-        gearbox: number of the chosen gearbox on the page, None if no gearbox has such a ratio.
-        reason: why there is none.
-        family_mass_kg: mass of each family's lightest actuator.
-    """
-
-    ratio_low: float
-    gearbox: int | None
-    reason: str
-    family_mass_kg: Mapping[str, float]
+    ratio_low: float  #: lower end
+    gearbox: int | None  #: number of the chosen gearbox on the page, None if no gearbox has such a ratio
+    reason: str  #: why there is none
+    family_mass_kg: Mapping[str, float]  #: mass of each family's lightest actuator
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LegTable:
-    """The leg that fits a motor: masses of its links by length, and the dimensions of its drawing.
+    """The leg that fits a motor: masses of its links by length, and the dimensions of its drawing."""
 
-    Attributes:
-        length_m: link lengths.
-        thigh_kg, shank_kg: mass of each link at these lengths, the thigh with its drive, the shank without the foot.
-        housing_radius_m: of an actuator's case.
-        output_radius_m: of an actuator's output flange.
-        base_top_m, base_top_radius_m: the round upper end of the base's cheek: height above the hip axis, radius.
-        thigh_half_width_m, thigh_hip_radius_m, thigh_knee_radius_m: the thigh's bar and its round ends.
-        shank_knee_radius_m, shank_foot_radius_m: the shank's round ends.
-    """
-
-    length_m: Column
+    length_m: Column  #: link lengths
+    #: thigh_kg, shank_kg: mass of each link at these lengths, the thigh with its drive, the shank without the foot
     thigh_kg: Column
     shank_kg: Column
-    housing_radius_m: float
-    output_radius_m: float
+    housing_radius_m: float  #: of an actuator's case
+    output_radius_m: float  #: of an actuator's output flange
+    #: base_top_m, base_top_radius_m: the round upper end of the base's cheek: height above the hip axis, radius
     base_top_m: float
     base_top_radius_m: float
+    #: thigh_half_width_m, thigh_hip_radius_m, thigh_knee_radius_m: the thigh's bar and its round ends
     thigh_half_width_m: float
     thigh_hip_radius_m: float
     thigh_knee_radius_m: float
+    #: shank_knee_radius_m, shank_foot_radius_m: the shank's round ends
     shank_knee_radius_m: float
     shank_foot_radius_m: float
 
@@ -99,18 +86,13 @@ class MotorMap:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kit:
-    """The motors of a robot.
+    """The motors of a robot."""
 
-    Attributes:
-        motor: name of the motor of both joints, or names of both motors with the joints.
-        hip, knee: indices of their stage 1 maps.
-        leg: that fits both motors; None where hip and knee have the same, whose map has it.
-    """
-
-    motor: str
+    motor: str  #: name of the motor of both joints, or names of both motors with the joints
+    #: hip, knee: indices of their stage 1 maps
     hip: int
     knee: int
-    leg: LegTable | None
+    leg: LegTable | None  #: that fits both motors; None where hip and knee have the same, whose map has it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,23 +107,14 @@ class JumpColumn:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jumps:
-    """Jumps in a few frames each, packed as in ``report.jump_packing``.
+    """Jumps in a few frames each, packed as in ``report.jump_packing``."""
 
-    Attributes:
-        keys: number of the trial or of the case that each belongs to.
-        lengths: bytes of each.
-        step_s: time of one simulated step.
-        frames: moments of each jump; a jump of fewer steps has fewer.
-        columns: in the order in which they are packed.
-        data: all jumps one after the other, in base64.
-    """
-
-    keys: Sequence[int]
-    lengths: Sequence[int]
-    step_s: float
-    frames: int
-    columns: Sequence[JumpColumn]
-    data: str
+    keys: Sequence[int]  #: number of the trial or of the case that each belongs to
+    lengths: Sequence[int]  #: bytes of each
+    step_s: float  #: time of one simulated step
+    frames: int  #: moments of each jump; a jump of fewer steps has fewer
+    columns: Sequence[JumpColumn]  #: in the order in which they are packed
+    data: str  #: all jumps one after the other, in base64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,58 +132,37 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherDesign:
-    """A design that costs about as much as another and differs from it, such as "shank-long; 0.8 percent more energy".
+    """A design that costs about as much as another and differs from it: "shank-long; 0.8 percent more energy"."""
 
-    Attributes:
-        row: of ``Trials``.
-        price: the greatest loss in any objective, as a share of the other design's value.
-        text: how it differs, and its price.
-        audited: whether it has an audit.
-    """
-
-    row: int
-    price: float
-    text: str
-    audited: bool
+    row: int  #: of ``Trials``
+    price: float  #: the greatest loss in any objective, as a share of the other design's value
+    text: str  #: how it differs, and its price
+    audited: bool  #: whether it has an audit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Robust:
-    """Designs of a study under uncertainty, those that rarely fail.
+    """Designs of a study under uncertainty, those that rarely fail."""
 
-    Attributes:
-        ranges: what the ranges are called.
-        samples: jumps per design.
-        fragile: how many other designs fail too often.
-        others: how many were simulated under other ranges, samples or seed, and are left out.
-        rows: of ``Trials``, in the order of their numbers.
-        front: rows of the robust front, by the first objective.
-        packed: columns such as "height_m.p05" and "failed_share" of ``rows``, as text that a browser reads
-            (``packing.packed``).
-    """
-
-    ranges: str
-    samples: int
-    fragile: int
-    others: int
-    rows: Sequence[int]
-    front: Sequence[int]
+    ranges: str  #: what the ranges are called
+    samples: int  #: jumps per design
+    fragile: int  #: how many other designs fail too often
+    others: int  #: how many were simulated under other ranges, samples or seed, and are left out
+    rows: Sequence[int]  #: of ``Trials``, in the order of their numbers
+    front: Sequence[int]  #: rows of the robust front, by the first objective
+    #: Columns such as "height_m.p05" and "failed_share" of ``rows``, as text that a browser reads (``packing.packed``)
     packed: Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Influences:
-    """What moves a design's measures.
+    """What moves a design's measures."""
 
-    Attributes:
-        jumps: simulated for it.
-        factors: label, range in words, and whether it is a manufacturing tolerance, of each factor.
-        measures: measure -> per factor its change in the stored unit from end to end of the range, the total Sobol'
-            index, and half of the index' 95 percent interval.
-    """
-
-    jumps: int
+    jumps: int  #: simulated for it
+    #: Label, range in words, and whether it is a manufacturing tolerance, of each factor
     factors: Sequence[tuple[str, str, bool]]
+    #: Measure -> per factor its change in the stored unit from end to end of the range, the total Sobol' index, and
+    #: half of the index' 95 percent interval
     measures: Mapping[str, Sequence[tuple[Number, Number, Number]]]
 
 
@@ -226,21 +178,13 @@ class Picked:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trials:
-    """Trials of a study, one per row, in the order of their numbers.
+    """Trials of a study, one per row, in the order of their numbers."""
 
-    Attributes:
-        trial: numbers.
-        state: one letter per row: f feasible, i infeasible, x failed.
-        columns: by name; None where there is no value.
-        packed: more columns by name, as text that a browser reads (``packing.packed``).
-        total: trials in the database, which may be more than there are rows.
-    """
-
-    trial: Sequence[int]
-    state: str
-    columns: Mapping[str, Column]
-    packed: Mapping[str, str]
-    total: int
+    trial: Sequence[int]  #: numbers
+    state: str  #: one letter per row: f feasible, i infeasible, x failed
+    columns: Mapping[str, Column]  #: by name; None where there is no value
+    packed: Mapping[str, str]  #: more columns by name, as text that a browser reads (``packing.packed``)
+    total: int  #: trials in the database, which may be more than there are rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -257,50 +201,26 @@ class Model3D:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyCard:
-    """One study on the page.
+    """One study on the page."""
 
-    Attributes:
-        label: short and unique among the page's studies.
-        motor, calibration: as shown; several motors with commas between them.
-        case_motor: the motors that ``cases`` were simulated with, as shown.
-        motor_names: index of each kit of motors on the page -> hip's and knee's motor as the command line takes them.
-        calibration_name: as the command line takes it.
-        kit: index of the kit of ``case_motor``. Trials of a study with several kits have that of theirs as the column
-            ``motor``.
-        objectives: of the study, which decide what is on its front.
-        group: equal for studies that are runs of one study with several seeds.
-        bounds: variable -> [lower, upper], equal for a fixed one.
-        at_bounds: which bounds limit the front, and in which part of it; one sentence each.
-        front, ill_conditioned: rows of ``trials``.
-        more: columns of the front alone, in its order: masses of the bodies.
-        audits: trial number -> measures of its audit.
-        jumps: of the designs on the front, by trial number.
-        case_jumps: of ``cases``, by place among them.
-        stops_rad: ends of the joints' ranges as each kit of motors has them: index of the kit -> [least, most] of hip
-            and of knee, None where a joint has no stop.
-        models: by trial number.
-        case_gearboxes: numbers of the gearboxes of ``cases``, by joint; -1 where there is none.
-        robust: designs under uncertainty; None where none is stored.
-        sensitivity: trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``.
-        weighted: results of a weighted search: weight of the first objective, and row.
-        floor_mass_kg: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m).
-        notes: what readers have to know before they use the page.
-    """
-
-    label: str
+    label: str  #: short and unique among the page's studies
     name: str
     description: str
     database: str
+    #: motor, calibration: as shown; several motors with commas between them
     motor: str
-    case_motor: str
+    case_motor: str  #: the motors that ``cases`` were simulated with, as shown
+    #: Index of each kit of motors on the page -> hip's and knee's motor as the command line takes them
     motor_names: Mapping[str, Sequence[str]]
     calibration: str
-    calibration_name: str
+    calibration_name: str  #: as the command line takes it
+    #: Index of the kit of ``case_motor``. Trials of a study with several kits have that of theirs as the column
+    #: ``motor``.
     kit: int
     algorithm: str
     seed: int
-    objectives: Sequence[str]
-    group: str
+    objectives: Sequence[str]  #: of the study, which decide what is on its front
+    group: str  #: equal for studies that are runs of one study with several seeds
     state: str
     budget: int
     seconds: float
@@ -309,98 +229,85 @@ class StudyCard:
     hypervolume: float
     hypervolume_unit: str
     reference: str
-    bounds: Mapping[str, Sequence[float]]
-    at_bounds: Sequence[str]
+    bounds: Mapping[str, Sequence[float]]  #: variable -> [lower, upper], equal for a fixed one
+    at_bounds: Sequence[str]  #: which bounds limit the front, and in which part of it; one sentence each
     summary: Sequence[str]
-    notes: Sequence[str]
+    notes: Sequence[str]  #: what readers have to know before they use the page
     trials: Trials
+    #: front, ill_conditioned: rows of ``trials``
     front: Sequence[int]
     ill_conditioned: Sequence[int]
     picks: Sequence[Picked]
-    more: Mapping[str, Column]
-    audits: Mapping[str, Mapping[str, Any]]
-    jumps: Jumps
-    case_jumps: Jumps
+    more: Mapping[str, Column]  #: columns of the front alone, in its order: masses of the bodies
+    audits: Mapping[str, Mapping[str, Any]]  #: trial number -> measures of its audit
+    jumps: Jumps  #: of the designs on the front, by trial number
+    case_jumps: Jumps  #: of ``cases``, by place among them
+    #: Ends of the joints' ranges as each kit of motors has them: index of the kit -> [least, most] of hip and of knee,
+    #: None where a joint has no stop
     stops_rad: Mapping[str, Sequence[Sequence[Number]]]
-    models: Mapping[str, Model3D]
+    models: Mapping[str, Model3D]  #: by trial number
     cases: Sequence[Case]
+    #: Numbers of the gearboxes of ``cases``, by joint; -1 where there is none
     case_gearboxes: Mapping[str, Sequence[int]]
     history: Mapping[str, Column]
-    weighted: Sequence[Sequence[float]]
-    floor_mass_kg: Number
+    weighted: Sequence[Sequence[float]]  #: results of a weighted search: weight of the first objective, and row
+    floor_mass_kg: Number  #: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m)
     foot_mass_kg: float
     foot_radius_m: float
     provenance: Sequence[Sequence[str]]
     reproduce: str
-    robust: Robust | None = None
+    robust: Robust | None = None  #: designs under uncertainty; None where none is stored
+    #: Trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``
     sensitivity: Mapping[str, Mapping[str, Influences]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """Several studies side by side, under the first one's objectives.
+    """Several studies side by side, under the first one's objectives."""
 
-    Attributes:
-        reference: the point that all hypervolumes here are measured from, in words.
-        hypervolume_unit: of these hypervolumes.
-        other: the objective that is compared at heights.
-        heights_m: where; empty for objectives without a height.
-        rows: one per study: label, hypervolume, best value of ``other`` at each of ``heights_m`` (``at_height``, None
-            where the front does not reach it), and more.
-        surfaces: of each group with several seeds, for two objectives: values of the first (``first``), and the best,
-            median and worst of the second there; the median is empty for two seeds.
-        growth: least, median and greatest hypervolume over evaluations, and what the median is called (``middle``).
-        choices: for two fronts by the two energies, the designs that both offer at some heights, and what choosing by
-            the mechanical one costs at the battery.
-    """
-
-    reference: str
-    hypervolume_unit: str
-    other: str
-    heights_m: Sequence[float]
+    reference: str  #: the point that all hypervolumes here are measured from, in words
+    hypervolume_unit: str  #: of these hypervolumes
+    other: str  #: the objective that is compared at heights
+    heights_m: Sequence[float]  #: where; empty for objectives without a height
+    #: One per study: label, hypervolume, best value of ``other`` at each of ``heights_m`` (``at_height``, None where
+    #: the front does not reach it), and more
     rows: Sequence[Mapping[str, Any]]
+    #: Of each group with several seeds, for two objectives: values of the first (``first``), and the best, median and
+    #: worst of the second there; the median is empty for two seeds
     surfaces: Sequence[Mapping[str, Any]]
+    #: Least, median and greatest hypervolume over evaluations, and what the median is called (``middle``)
     growth: Sequence[Mapping[str, Any]]
+    #: For two fronts by the two energies, the designs that both offer at some heights, and what choosing by the
+    #: mechanical one costs at the battery
     choices: Sequence[Mapping[str, Any]] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constants:
-    """Physical constants and published numbers that the page's scripts compute with.
+    """Physical constants and published numbers that the page's scripts compute with."""
 
-    Attributes:
-        gravity_m_per_s2, base_start_height_m: for work against gravity, m g (H - start height).
-        published_link_kg, published_link_kg_per_m: straight line of link mass over link length.
-    """
-
+    #: gravity_m_per_s2, base_start_height_m: for work against gravity, m g (H - start height)
     gravity_m_per_s2: float
     base_start_height_m: float
+    #: published_link_kg, published_link_kg_per_m: straight line of link mass over link length
     published_link_kg: float
     published_link_kg_per_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Payload:
-    """Everything on the page.
-
-    Attributes:
-        objectives: the first study's, which are the axes of the front chart.
-        goals: the objectives of all studies, without repetition; the page has them of every trial.
-        directions: "maximise" or "minimise" of each goal.
-        measure_directions: the same of every measure that has one.
-        axes: measures and variables that trials differ in, which can be axes, colours and sizes.
-    """
+    """Everything on the page."""
 
     version: str
     title: str
-    objectives: Sequence[str]
-    goals: Sequence[str]
-    directions: Mapping[str, str]
-    measure_directions: Mapping[str, str]
+    objectives: Sequence[str]  #: the first study's, which are the axes of the front chart
+    goals: Sequence[str]  #: the objectives of all studies, without repetition; the page has them of every trial
+    directions: Mapping[str, str]  #: "maximise" or "minimise" of each goal
+    measure_directions: Mapping[str, str]  #: the same of every measure that has one
     constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]
-    axes: Sequence[str]
+    axes: Sequence[str]  #: measures and variables that trials differ in, which can be axes, colours and sizes
     published: Sequence[Mapping[str, Any]]
     literal: Sequence[Mapping[str, Any]]
     gearboxes: Sequence[Gearbox]

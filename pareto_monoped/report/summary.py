@@ -1,17 +1,20 @@
-"""The sentences at the head of the page."""
+"""The sentences at the head of the page.
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+Where a study's numbers come from: versions, settings and the command that runs it again.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from pareto_monoped.analysis.remarks import warnings
+from pareto_monoped.definition.study import NO_STRENGTH
 from pareto_monoped.design import HEADLINE_HEIGHT_M, PAPER_CASES
-from pareto_monoped.pareto.at_height import best_at_height
+from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.schema import Case
-from pareto_monoped.study.definition import NO_STRENGTH
-from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.remarks import warnings
+from pareto_monoped.storage.reader import StudyData
 
 if TYPE_CHECKING:
     from pareto_monoped.report.resimulation import Resimulation
@@ -112,3 +115,43 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
     if not data.study.strength:
         lines.append(f"{NO_STRENGTH[0].upper()}{NO_STRENGTH[1:]}.")
     return lines
+
+
+_ABOVE = ("name", "description", "seed", "motor", "hip_motor", "knee_motor", "calibration")
+"""Settings that stand in the first rows of the table or elsewhere on the page."""
+
+
+def provenance(data: StudyData) -> list[list[str]]:
+    """Rows of name and value: the study, the versions and machine it ran on, and every setting."""
+    meta, study = data.meta, data.study
+    rows = [
+        ("study", study.name),
+        ("database", data.db),
+        ("created", meta.created),
+        ("state", "finished" if meta.finished else "unfinished"),
+        ("ended because of", meta.stop_reason or "nothing yet"),
+        ("seed", study.seed),
+        ("motor", study.motor_text),
+        ("calibration", meta.calibration),
+        ("settings hash (SHA-256)", meta.hash),
+        *((f"version of {name}", version) for name, version in meta.versions.items()),
+        *((name, value) for name, value in meta.environment.items()),
+        *((key, value) for key, value in _flat(study.as_dict()) if key not in _ABOVE),
+    ]
+    return [[str(key), str(value)] for key, value in rows]
+
+
+def _flat(values: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    """Nested settings as rows of ``table.key`` and value."""
+    rows: list[tuple[str, str]] = []
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            rows += _flat(value, f"{prefix}{key}.")
+        elif value is not None:
+            rows.append((f"{prefix}{key}", f"{value:g}" if isinstance(value, float) else str(value)))
+    return rows
+
+
+def command(data: StudyData) -> str:
+    """The command that runs the study again from its study file."""
+    return f"pareto-monoped run STUDY.toml --seed {data.study.seed} --evaluations {data.meta.budget}"

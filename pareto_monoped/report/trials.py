@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import Variable
 from pareto_monoped.measures import GOAL_NAMES, is_own
-from pareto_monoped.report.packing import packed
+from pareto_monoped.report.packing import column, packed_column
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL
-from pareto_monoped.report.rounding import column
 from pareto_monoped.report.schema import Column, Trials
 
 MOST_ROWS = 20_000
@@ -63,7 +62,7 @@ def trial_columns(
         trial=trials["trial"].tolist(),
         state="".join(LETTERS.get(str(state), "x") for state in trials["state"]),
         columns=columns,
-        packed={name: packed(trials[name]) for name in others if trials[name].notna().any()},
+        packed={name: packed_column(trials[name]) for name in others if trials[name].notna().any()},
         total=total,
     )
 

@@ -8,31 +8,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.joint_maps import Maps, joint_maps
+from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.design import Design
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
-from pareto_monoped.robot.frames import BODIES, Floats, in_body
-from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
+from pareto_monoped.robot.units import BODIES, UNITS, ActuatorSized, Floats, LinkSized, in_body
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Unit:
-    """A group of parts of one robot that a body carries as a whole, made from a row of ``units.UNITS``.
+    """A group of parts of one robot that a body carries as a whole, made from a row of ``units.UNITS``."""
 
-    Attributes:
-        name: as in the table of units.
-        body: the body that carries it, one of ``BODIES``.
-        parts: in the unit's own frame.
-        turn: rotation from the unit's frame to the body's part frame (x forward, y up, z along the joint axis).
-        z_mm: where the unit's origin lies on the body's proximal joint axis, in the body's part frame.
-    """
-
-    name: str
-    body: str
-    parts: tuple[Part, ...]
-    turn: Floats
-    z_mm: float
+    name: str  #: as in the table of units
+    body: str  #: the body that carries it, one of ``BODIES``
+    parts: tuple[Part, ...]  #: in the unit's own frame
+    turn: Floats  #: rotation from the unit's frame to the body's part frame (x forward, y up, z along the joint axis)
+    z_mm: float  #: where the unit's origin lies on the body's proximal joint axis, in the body's part frame
 
     def __repr__(self) -> str:
         """One line: the body that carries it and the number of parts."""
@@ -45,20 +36,14 @@ class Unit:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Robot:
-    """One robot with every part that has a mass.
+    """One robot with every part that has a mass."""
 
-    Attributes:
-        design: what was asked for; the gearboxes' real ratios are ``hip.ratio`` and ``knee.ratio``.
-        hip, knee: the actuators.
-        leg: dimensions of links and base.
-        units: from the base down to the foot.
-    """
-
-    design: Design
+    design: Design  #: what was asked for; the gearboxes' real ratios are ``hip.ratio`` and ``knee.ratio``
+    #: hip, knee: the actuators
     hip: Actuator
     knee: Actuator
-    leg: LegDimensions
-    units: tuple[Unit, ...]
+    leg: LegDimensions  #: dimensions of links and base
+    units: tuple[Unit, ...]  #: from the base down to the foot
 
     def __repr__(self) -> str:
         """One line: motors, real ratios, link lengths and mass."""

@@ -10,34 +10,29 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import ConfigDict, Field
 
-from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
+from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
-from pareto_monoped.robot.frames import BODIES, JOINTS, Floats
-from pareto_monoped.robot.rotation import drive_turning
-from pareto_monoped.robot.tables import actuator_table, actuator_units, weighed
-from pareto_monoped.robot.units import UNITS, ActuatorSized
+from pareto_monoped.robot.tables import actuator_table, actuator_units, drive_turning, weighed
+from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized, Floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MassOptions:
-    """Masses that a calibration may set in place of those of the parts; None keeps those of the parts.
-
-    Attributes:
-        base_structure_mass_kg: mass of the base frame, without the hip actuator.
-        foot_mass_kg, foot_radius_m: of the foot.
-        link_mass_scale: factor on mass and inertia of both links, without the foot.
-        rotor_inertia_kg_m2: of one motor about its axis, with all that turns at its speed.
-    """
+    """Masses that a calibration may set in place of those of the parts; None keeps those of the parts."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
+    #: Mass of the base frame, without the hip actuator
     base_structure_mass_kg: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+    #: foot_mass_kg, foot_radius_m: of the foot
     foot_mass_kg: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
     foot_radius_m: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
+    #: Factor on mass and inertia of both links, without the foot
     link_mass_scale: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 1.0
+    #: Of one motor about its axis, with all that turns at its speed
     rotor_inertia_kg_m2: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
 
 
@@ -59,53 +54,41 @@ class RobotArrays:
 
     Body frames: ``base`` at the hip axis, ``thigh`` at the hip axis, ``shank`` at the knee axis; x forward, y to the
     left (the joint axes), z up; at zero joint angles both links hang straight down along -z.
-
-    Attributes:
-        thigh_length_m, shank_length_m: hip axis to knee axis, knee axis to foot centre, shape (n,).
-        body_mass_kg: shape (n, 3).
-        body_com_m: centres of mass in the body frames, shape (n, 3, 3).
-        body_inertia_kg_m2: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3).
-        foot_radius_m: shape (n,).
-        start_height_m: of the base above the floor at rest, shape (n,).
-        ratio: real ratios of the gearboxes (not the searched ones), shape (n, 2).
-        armature_kg_m2: reflected inertia of all that turns with the motor, at the joint, shape (n, 2).
-        rotor_inertia_kg_m2: of what turns at the motor's speed, about the motor's axis, shape (n, 2).
-        knee_reflected_kg_m2, knee_coupling_kg_m2: C and B of everything that turns against the thigh: the knee
-            actuator, its drive sprocket and the chain, see ``rotation``, shape (n,).
-        rotor_excess_kg_m2: what the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,).
-        sprocket_radius_m: pitch radius of the chain's sprockets, shape (n,).
-        peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2).
-        no_load_speed_rad_per_s: at the joint, shape (n, 2).
-        efficiency, efficiency_total: of the gear meshes, and of the whole gearbox, shape (n, 2).
-        torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
-            resistance is line to line; shape (n, 2).
-        reason: why the robot cannot be built, empty if it can, n strings.
-        stops: the end stops, which all robots with the same actuator maps share.
     """
 
+    #: thigh_length_m, shank_length_m: hip axis to knee axis, knee axis to foot centre, shape (n,)
     thigh_length_m: NDArray[np.float64]
     shank_length_m: NDArray[np.float64]
-    body_mass_kg: NDArray[np.float64]
-    body_com_m: NDArray[np.float64]
-    body_inertia_kg_m2: NDArray[np.float64]
-    foot_radius_m: NDArray[np.float64]
-    start_height_m: NDArray[np.float64]
-    ratio: NDArray[np.float64]
+    body_mass_kg: NDArray[np.float64]  #: shape (n, 3)
+    body_com_m: NDArray[np.float64]  #: centres of mass in the body frames, shape (n, 3, 3)
+    body_inertia_kg_m2: NDArray[np.float64]  #: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3)
+    foot_radius_m: NDArray[np.float64]  #: shape (n,)
+    start_height_m: NDArray[np.float64]  #: of the base above the floor at rest, shape (n,)
+    ratio: NDArray[np.float64]  #: real ratios of the gearboxes (not the searched ones), shape (n, 2)
+    #: Reflected inertia of all that turns with the motor, at the joint, shape (n, 2)
     armature_kg_m2: NDArray[np.float64]
+    #: Of what turns at the motor's speed, about the motor's axis, shape (n, 2)
     rotor_inertia_kg_m2: NDArray[np.float64]
+    #: knee_reflected_kg_m2, knee_coupling_kg_m2: C and B of everything that turns against the thigh: the knee actuator,
+    #: its drive sprocket and the chain, see ``rotation``, shape (n,)
     knee_reflected_kg_m2: NDArray[np.float64]
     knee_coupling_kg_m2: NDArray[np.float64]
+    #: What the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,)
     rotor_excess_kg_m2: NDArray[np.float64]
-    sprocket_radius_m: NDArray[np.float64]
+    sprocket_radius_m: NDArray[np.float64]  #: pitch radius of the chain's sprockets, shape (n,)
+    #: peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2)
     peak_torque_n_m: NDArray[np.float64]
     continuous_torque_n_m: NDArray[np.float64]
-    no_load_speed_rad_per_s: NDArray[np.float64]
+    no_load_speed_rad_per_s: NDArray[np.float64]  #: at the joint, shape (n, 2)
+    #: efficiency, efficiency_total: of the gear meshes, and of the whole gearbox, shape (n, 2)
     efficiency: NDArray[np.float64]
     efficiency_total: NDArray[np.float64]
+    #: torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
+    #: resistance is line to line; shape (n, 2)
     torque_constant_n_m_per_a: NDArray[np.float64]
     winding_resistance_ohm: NDArray[np.float64]
-    reason: tuple[str, ...]
-    stops: JointStops
+    reason: tuple[str, ...]  #: why the robot cannot be built, empty if it can, n strings
+    stops: JointStops  #: the end stops, which all robots with the same actuator maps share
 
     def __len__(self) -> int:
         return len(self.thigh_length_m)

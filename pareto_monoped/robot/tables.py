@@ -1,49 +1,216 @@
-"""Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length."""
+"""Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length.
 
-from collections.abc import Iterable, Mapping
+Kinetic energy of the parts that turn against the body that carries them.
+
+A part with the moment of inertia J about the joint axis that turns at c times the joint's speed, relative to the body
+that carries it, has the absolute speed w_body + c w_joint. Summed over all such parts, the kinetic energy of turning is
+
+    1/2 (S w_body^2 + 2 B w_body w_joint + C w_joint^2),    S = sum J,  B = sum J c,  C = sum J c^2.
+
+S is part of the body's own inertia. C is the reflected inertia, which MuJoCo calls armature. B couples the joint to the
+rotation of the body. The base does not rotate, so that the coupling matters for the knee actuator only, which the thigh
+carries.
+
+Mass properties that change smoothly with one length, as Chebyshev series.
+
+Weighing a population part by part takes thousands of small array operations. But a link is one smooth function of its
+length. Interpolated in Chebyshev points, this function is exact to the last digits, and evaluating it takes a few
+operations for any number of lengths (Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 8).
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebval
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.actuator import Actuator, turning_terms
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.geometry.parts import MassProperties, Part, total
-from pareto_monoped.geometry.tabulated import Tabulated, tabulate
+from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.robot.frames import Floats
-from pareto_monoped.robot.rotation import actuator_coupling_kg_m2, rotor_excess_kg_m2, rotor_inertia_kg_m2
+from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
+
+_LENGTHS_M = (0.3, 0.5)  # two lengths fix a straight line; any two do
+
+
+def actuator_coupling_kg_m2(actuator: Actuator) -> float:
+    """B of rotor, planets and carrier of an actuator, against its housing."""
+    terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
+    return sum(inertia * speed for part in terms for inertia, speed in part)
+
+
+def rotor_inertia_kg_m2(actuator: Actuator) -> float:
+    """Moment of inertia of everything that turns at the motor's speed: rotor, coupling, sun."""
+    terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
+    return sum(inertia for part in terms for inertia, speed in part if speed == actuator.ratio)
+
+
+def rotor_excess_kg_m2(actuator: Actuator) -> float:
+    """Inertia of the motor's rotor by its data sheet, less that of the envelope that weighs it among the parts."""
+    drawn = sum(
+        float(part.mass_properties().inertia_kg_m2[2, 2]) for part in actuator.parts if part.role is Role.MOTOR_ROTOR
+    )
+    return actuator.motor.rotor_inertia_kg_m2 - drawn
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveTurning:
+    """Drive sprocket with its coupling, and the chain, which run against the thigh at the knee's speed."""
+
+    coupling_kg_m2: tuple[float, float]  #: B, as a line over the thigh's length in metres: constant and slope
+    reflected_kg_m2: tuple[float, float]  #: C, likewise
+
+
+@lru_cache(maxsize=64)
+def drive_turning(leg: LegDimensions) -> DriveTurning:
+    """The turning parts of the knee's drive in a leg.
+
+    The chain runs around two equal sprockets of pitch radius r at the speed r w. A closed loop of linear density rho
+    that encloses the area A has the angular momentum 2 rho A r w about every axis, and no linear momentum. The
+    turnbuckles take the place of some chain in both strands, at the distance r from the axis.
+    """
+    radius_m = 1e-3 * leg.chain.pitch_radius_mm
+    coupling, reflected = [], []
+    for length_m in _LENGTHS_M:
+        parts = thigh_parts(length_m, leg)
+        turning = sum(float(p.mass_properties().inertia_kg_m2[2, 2]) for p in parts if p.group is Group.KNEE_DRIVE)
+        running = sum(float(p.mass_kg()) for p in parts if p.role in (Role.CHAIN, Role.TURNBUCKLE)) * radius_m**2
+        # The links around the knee have the mean of sin over a half turn, 2 / pi, of their momentum m r w across the
+        # thigh, at the thigh's length from the hip.
+        links_kg = leg.chain.kg_per_m * 0.5e-3 * leg.chain.teeth * leg.chain.pitch_mm
+        around_knee = 2.0 / math.pi * links_kg * radius_m * length_m
+        coupling.append(turning + running + around_knee)
+        reflected.append(turning + running)
+    return DriveTurning(coupling_kg_m2=_line(coupling), reflected_kg_m2=_line(reflected))
+
+
+def _line(values: list[float]) -> tuple[float, float]:
+    """Constant and slope of the line through two values at ``_LENGTHS_M``."""
+    (low, high), (at_low, at_high) = _LENGTHS_M, values
+    slope = (at_high - at_low) / (high - low)
+    return at_low - slope * low, slope
+
+
+Floats = NDArray[np.float64]
+Weigh = Callable[[Floats], Sequence[MassProperties]]
+"""Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
+
+_EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show
+_MOST_NODES = 128
+# Upper triangle of the second moments, which are symmetric.
+_ROWS, _COLUMNS = np.triu_indices(3)
+_WIDTH = 1 + 3 + len(_ROWS)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tabulated:
+    """The mass properties of m units over a range of lengths."""
+
+    #: low_m, high_m: ends of the range
+    low_m: float
+    high_m: float
+    coefficients: Floats  #: of the Chebyshev series, shape (k, 10 m): mass, first and second moments of each unit
+
+    def covers(self, lengths_m: Floats) -> NDArray[np.bool_]:
+        """Which lengths are in the range, shape (n,)."""
+        return np.asarray((self.low_m <= lengths_m) & (lengths_m <= self.high_m))
+
+    def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
+        """The m units for lengths in the range, shape (n,); a row does not depend on the others.
+
+        It is evaluated by Clenshaw's recurrence, in the same order of operations for each length.
+        """
+        place = (2.0 * lengths_m - (self.low_m + self.high_m)) / (self.high_m - self.low_m)
+        values: Floats = np.asarray(chebval(place, self.coefficients), dtype=np.float64)
+        return tuple(_unfolded(values[i : i + _WIDTH]) for i in range(0, len(values), _WIDTH))
+
+
+def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
+    """Tabulate units over a range of lengths, with as many nodes as the precision needs.
+
+    Args:
+        weigh: the units, part by part.
+        low_m: shortest length.
+        high_m: longest length.
+
+    Raises:
+        ValueError: the units do not change smoothly with the length.
+    """
+    between = np.linspace(low_m, high_m, 51)
+    wanted = _folded(weigh(between))
+    scale = _sizes(wanted)
+    nodes = 8
+    while nodes <= _MOST_NODES:
+        table = Tabulated(low_m=low_m, high_m=high_m, coefficients=_series(weigh, low_m, high_m, nodes))
+        if np.all(np.abs(_folded(table(between)) - wanted) <= _EXACT * scale):
+            return table
+        nodes += 4
+    raise ValueError(
+        f"mass properties over {low_m} to {high_m} m: not smooth in the length to {_EXACT:g} with {_MOST_NODES} nodes; "
+        "let no count or choice depend on the length"
+    )
+
+
+def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
+    """Coefficients of the interpolant in the Chebyshev points of the first kind.
+
+    Summed term by term, because the order of the sum in a matrix product may differ from run to run.
+    """
+    angles = np.pi * (np.arange(nodes) + 0.5) / nodes
+    values = _folded(weigh(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles)))
+    waves = np.cos(np.outer(np.arange(nodes), angles))
+    result = 2.0 / nodes * reduce(np.add, [np.outer(waves[:, k], values[:, k]) for k in range(nodes)])
+    result[0] *= 0.5
+    return np.asarray(result, dtype=np.float64)
+
+
+def _folded(units: Sequence[MassProperties]) -> Floats:
+    """The numbers of m units and n lengths, shape (10 m, n)."""
+    rows: list[Floats] = []
+    for unit in units:
+        rows += [unit.mass_kg, *np.moveaxis(unit.first_kg_m, -1, 0), *unit.second_kg_m2[..., _ROWS, _COLUMNS].T]
+    return np.stack(np.broadcast_arrays(*rows))
+
+
+def _sizes(values: Floats) -> Floats:
+    """The largest mass, first moment and second moment of each unit, for each of its rows, shape (10 m, 1)."""
+    largest = np.abs(values).max(axis=1)
+    kinds = [largest[i + j : i + k].max() for i in range(0, len(values), _WIDTH) for j, k in ((0, 1), (1, 4), (4, 10))]
+    return np.repeat(kinds, np.tile([1, 3, len(_ROWS)], len(values) // _WIDTH))[:, None]
+
+
+def _unfolded(values: Floats) -> MassProperties:
+    second = np.empty((*values.shape[1:], 3, 3))
+    second[..., _ROWS, _COLUMNS] = second[..., _COLUMNS, _ROWS] = values[4:].T
+    return MassProperties(mass_kg=values[0], first_kg_m=values[1:4].T, second_kg_m2=second)
+
 
 _TABULATED_M = (0.25, 0.55)  # the paper's lengths, 0.3 to 0.5 m, and some more
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorTable:
-    """The k actuators of a map as arrays of shape (k,).
+    """The k actuators of a map as arrays of shape (k,)."""
 
-    Attributes:
-        row: row of each interval's actuator, shape (intervals,); any row where the interval has none.
-        ratio: real ratio of the gearbox.
-        armature_kg_m2: reflected inertia at the joint.
-        coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``.
-        peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``.
-        efficiency_total: of the whole gearbox, see ``actuator.service.losses.Losses``.
-    """
-
-    row: NDArray[np.intp]
-    ratio: Floats
-    armature_kg_m2: Floats
+    row: NDArray[np.intp]  #: row of each interval's actuator, shape (intervals,); any row where the interval has none
+    ratio: Floats  #: real ratio of the gearbox
+    armature_kg_m2: Floats  #: reflected inertia at the joint
+    #: coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``
     coupling_kg_m2: Floats
     rotor_inertia_kg_m2: Floats
     rotor_excess_kg_m2: Floats
+    #: peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``
     peak_torque_n_m: Floats
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
     efficiency: Floats
-    efficiency_total: Floats
+    efficiency_total: Floats  #: of the whole gearbox, see ``actuator.service.losses.Losses``
 
 
 @lru_cache(maxsize=16)

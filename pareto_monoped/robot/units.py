@@ -1,10 +1,15 @@
 """The table of units: what a robot is made of, each group of parts described once.
 
 ``build`` makes the parts of one robot from this table, ``tables`` weighs the same parts for whole populations.
+
+Bodies, joints and the frames that parts and bodies are described in.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.geometry.parts import MassProperties, Part
@@ -14,7 +19,32 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.journal import journal_parts
 from pareto_monoped.leg.shank import foot_part, shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
-from pareto_monoped.robot.frames import OVER, UPRIGHT, Floats, in_body
+
+Floats = NDArray[np.float64]
+
+BODIES = ("base", "thigh", "shank")
+JOINTS = ("hip", "knee")
+
+PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""From part frames (z along the joint axis, y up along the link) to body frames (y along the joint axis, z up)."""
+UPRIGHT: Floats = np.eye(3)
+"""Turn of a unit that stands in its body's part frame as it is drawn."""
+OVER: Floats = np.diag([1.0, -1.0, -1.0])
+"""Half a turn about x: the output of the knee actuator points to -z, at the thigh."""
+for _matrix in (PART_TO_BODY, UPRIGHT, OVER):
+    _matrix.flags.writeable = False
+
+
+def in_body(properties: MassProperties, turn: Floats, z_mm: float) -> MassProperties:
+    """Mass properties from a unit's frame to the body frame.
+
+    Args:
+        properties: of the unit, about the origin of its frame.
+        turn: rotation from the unit's frame to the body's part frame, shape (3, 3).
+        z_mm: where the unit's origin lies on the z axis of the body's part frame.
+    """
+    move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * z_mm])
+    return properties.placed(PART_TO_BODY @ turn, move)
 
 
 def _middle_plane(leg: LegDimensions) -> float:
@@ -24,21 +54,15 @@ def _middle_plane(leg: LegDimensions) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class UnitKind:
-    """A row of the table: which body carries the unit, and where.
+    """A row of the table: which body carries the unit, and where."""
 
-    Attributes:
-        name: unique.
-        body: the body that carries it, one of ``BODIES``.
-        turn: rotation from the unit's frame to the body's part frame.
-        z_mm: where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg.
-        weighed_last: added to the mass of its body after all other units. The last bit of a sum depends on its order,
-            and so do the results of stored studies.
-    """
-
-    name: str
-    body: str
-    turn: Floats
+    name: str  #: unique
+    body: str  #: the body that carries it, one of ``BODIES``
+    turn: Floats  #: rotation from the unit's frame to the body's part frame
+    #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg
     z_mm: Callable[[LegDimensions], float] = _middle_plane
+    #: Added to the mass of its body after all other units. The last bit of a sum depends on its order, and so do the
+    #: results of stored studies.
     weighed_last: bool = False
 
     def in_body(self, properties: MassProperties, leg: LegDimensions) -> MassProperties:
@@ -48,27 +72,19 @@ class UnitKind:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ActuatorSized(UnitKind):
-    """A unit whose parts depend on an actuator.
+    """A unit whose parts depend on an actuator."""
 
-    Attributes:
-        joint: the joint that this actuator drives, one of ``JOINTS``.
-        parts: the parts of the unit, in its own frame, for that actuator.
-    """
-
-    joint: str
+    joint: str  #: the joint that this actuator drives, one of ``JOINTS``
+    #: The parts of the unit, in its own frame, for that actuator
     parts: Callable[[Actuator, LegDimensions], tuple[Part, ...]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinkSized(UnitKind):
-    """A unit whose parts depend on a link length.
+    """A unit whose parts depend on a link length."""
 
-    Attributes:
-        length: the length, a name of ``design.NAMES``.
-        parts: the parts of the unit, in its own frame, for that length in metres (a float or shape (n,)).
-    """
-
-    length: str
+    length: str  #: the length, a name of ``design.NAMES``
+    #: The parts of the unit, in its own frame, for that length in metres (a float or shape (n,))
     parts: Callable[[Numbers, LegDimensions], tuple[Part, ...]]
 
 

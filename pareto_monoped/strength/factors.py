@@ -1,4 +1,9 @@
-"""Safety factors of all joints of many robots at once, from capacities that are tabulated per gearbox and per leg."""
+"""Safety factors of all joints of many robots at once, from capacities that are tabulated per gearbox and per leg.
+
+The table of joints: every row of the strength check, in the order of ``strength.csv``.
+
+The factors of one design, joint by joint, as an export lists them; computed by the functions for populations.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,22 +13,41 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps, Maps, joint_maps
-from pareto_monoped.actuator.ratiomap import ActuatorMap
-from pareto_monoped.design import NAMES, complete
+from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps, Maps, joint_maps
+from pareto_monoped.design import NAMES, Design, complete
 from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.strength import chain, drive, gears, knee, links, mounts, plates, stops, threads
+from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps
 from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.strength.joint import (
+    LOAD_NAMES,
     SIDES,
     ActuatorJoint,
     LegJoint,
+    Loads,
     Side,
     Structure,
     Together,
     over,
 )
-from pareto_monoped.strength.loads import LOAD_NAMES, Loads
-from pareto_monoped.strength.table import TABLE
+
+TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
+    *gears.JOINTS,
+    *chain.JOINTS,
+    *chain.TURNBUCKLE_JOINTS,
+    *stops.STOP_JOINTS,
+    *drive.JOINTS,
+    *drive.WEB_JOINTS,
+    *knee.CHAIN_SUPPORT_JOINTS,
+    *mounts.JOINTS,
+    *threads.JOINTS,
+    *stops.JOINTS,
+    *knee.JOINTS,
+    *links.JOINTS,
+    *plates.JOINTS,
+)
+"""All rows. A module with joints of its own adds its tuple here."""
+
 
 Floats = NDArray[np.float64]
 
@@ -37,19 +61,14 @@ Of = Side | Literal["leg"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Capacities:
-    """What the joints of robots with the same motors carry.
+    """What the joints of robots with the same motors carry."""
 
-    Attributes:
-        row: side -> interval of its map -> row of its actuator, shape (intervals,), see
-            ``robot.tables.ActuatorTable.row``.
-        values: of the joints of each side, and of those of the leg: all their capacities side by side, shape
-            (actuators, k), or (1, k) for the leg.
-        columns: of each row of ``TABLE``: where its capacities stand in ``values``.
-    """
-
+    #: Side -> interval of its map -> row of its actuator, shape (intervals,), see ``robot.tables.ActuatorTable.row``
     row: Mapping[Side, NDArray[np.intp]]
+    #: Of the joints of each side, and of those of the leg: all their capacities side by side, shape (actuators, k), or
+    #: (1, k) for the leg
     values: Mapping[Of, Floats]
-    columns: tuple[slice, ...]
+    columns: tuple[slice, ...]  #: of each row of ``TABLE``: where its capacities stand in ``values``
 
     def plain(self, of: Of) -> NDArray[np.intp]:
         """Columns of ``values`` with the capacities of ``_PLAIN``."""
@@ -165,3 +184,88 @@ def safeties(factors: Floats) -> dict[str, Floats]:
     """Measure of each group: the least factor over required factor of its rows, shape (n,); it holds from 1 up."""
     shares = factors / _REQUIRED
     return {measure: shares[:, members].min(axis=1, initial=MOST_FACTOR) for measure, members in _MEMBERS.items()}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointFactor:
+    """A joint of one design under the loads of its jump."""
+
+    joint: ActuatorJoint | LegJoint  #: the row of the table
+    factor: float  #: its safety factor
+    loads: Mapping[str, float]  #: the loads that it comes from, by their names
+
+    @property
+    def share(self) -> float:
+        """Factor over required factor; the joint holds from 1 up."""
+        return self.factor / self.joint.required
+
+
+def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor, ...]:
+    """The factors of one design in the order of the table; none if its jump failed, because loads are unknown then.
+
+    Rows that only inform are left out where the rules know no such limit.
+
+    Args:
+        design: whose gearboxes are looked up.
+        maps: the gearboxes of both joints, or of hip and knee.
+        loads: of its jump, one row.
+    """
+    factors = strength_factors(design.as_array(), maps, loads)[0]
+    known = ~np.isnan(factors)
+    if not all(known[k] or joint.informs for k, joint in enumerate(TABLE)):
+        return ()
+    return tuple(
+        JointFactor(
+            joint=joint, factor=float(factor), loads={name: float(getattr(loads, name)[0]) for name in joint.loads}
+        )
+        for joint, factor, is_known in zip(TABLE, factors, known, strict=True)
+        if is_known
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearLife:
+    """How long gears last that are struck in every jump as in the one simulated."""
+
+    jumps: float  #: for which the weaker gearbox has the safety of its duty; 0 if for none, at most ``MOST_JUMPS``
+    duty_jumps: float  #: what the gears are made for
+
+    @property
+    def text(self) -> str:
+        """The number in words."""
+        digits = max(0, int(np.log10(max(self.jumps, 1.0))) - 1)  # two that count
+        return f"{MOST_JUMPS:.0e} or more" if self.jumps >= MOST_JUMPS else f"{round(self.jumps, -digits):.0f}"
+
+    @property
+    def advice(self) -> str:
+        """One line where the gears do not last as long as they should; '' otherwise."""
+        if self.jumps >= self.duty_jumps:
+            return ""
+        return (
+            f"struck like this in every jump, the gears keep the safety of their duty for {self.text} of "
+            f"{self.duty_jumps:.0f} jumps; choose heavier gearboxes, release the knee before its stop "
+            "(knee_release_rad), or constrain gear_strike_safety to at least 1"
+        )
+
+
+def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
+    """The life of a design's gears under strikes; None if its jump failed, and under rules that know no fatigue.
+
+    Args:
+        design: whose gearboxes are looked up.
+        maps: the gearboxes of both joints, or of hip and knee.
+        loads: of its jump, one row.
+    """
+    both = joint_maps(maps)
+    leg, settings = leg_dimensions(both), both.hip.settings
+    torques = {side: float(getattr(loads, f"peak_gear_torque_{side}_n_m")[0]) for side in SIDES}
+    if settings.rules == "paper" or np.isnan(list(torques.values())).any():
+        return None
+    jumps = min(
+        strike_life_jumps(
+            Structure(actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings),
+            torque,
+        )
+        for side, torque in torques.items()
+    )
+    return GearLife(jumps=jumps, duty_jumps=settings.parts.duty.jumps)

@@ -14,7 +14,7 @@ from pareto_monoped.actuator.gearset import joined
 from pareto_monoped.actuator.layout import FAMILIES
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.strike import strike_safeties, strike_shares
-from pareto_monoped.actuator.strength import lewis_form_factor
+from pareto_monoped.actuator.rating.width import lewis_form_factor
 from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure, Together
 
 _CLOSE, _MOST_STEPS = 1e-12, 100  # the fixed point below gains about a digit per step

@@ -1,14 +1,70 @@
-"""One row of the table of joints: what may fail, under which loads, by which formula, and what is required."""
+"""One row of the table of joints: what may fail, under which loads, by which formula, and what is required.
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+What the parts of a robot have to carry: the loads of its jump, and the lengths that turn forces into moments.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.strength.groups import INFORMING, Group
-from pareto_monoped.strength.loads import LOAD_NAMES
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loads:
+    """Loads of n jumps, each of shape (n,); NaN where a jump failed or a stored study did not measure the load.
+
+    All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``.
+    """
+
+    #: peak_torque_hip_n_m, peak_torque_knee_n_m: of the motors, at the joints, before losses
+    peak_torque_hip_n_m: Floats
+    peak_torque_knee_n_m: Floats
+    #: peak_gear_torque_hip_n_m, peak_gear_torque_knee_n_m: through the gearboxes, at their outputs; the end stops and
+    #: the foot's impact are in it. A housing reacts to no more than that.
+    peak_gear_torque_hip_n_m: Floats
+    peak_gear_torque_knee_n_m: Floats
+    peak_chain_tension_n: Floats  #: pull of the chain
+    #: peak_stop_torque_hip_n_m, peak_stop_torque_knee_n_m: of the joints' end stops
+    peak_stop_torque_hip_n_m: Floats
+    peak_stop_torque_knee_n_m: Floats
+    #: stop_compression_hip, stop_compression_knee: of the bumpers, as shares of their travel
+    stop_compression_hip: Floats
+    stop_compression_knee: Floats
+    stop_energy_j: Floats  #: into all end stops
+    peak_foot_force_n: Floats  #: of the floor on the foot
+    peak_knee_force_n: Floats  #: between thigh and shank, by bearings, chain and end stop together
+    #: thigh_length_m, shank_length_m: of the links
+    thigh_length_m: Floats
+    shank_length_m: Floats
+
+    def __len__(self) -> int:
+        return len(self.thigh_length_m)
+
+
+LOAD_NAMES: tuple[str, ...] = tuple(field.name for field in fields(Loads))
+"""Names that a row of the table may read."""
+
+
+def loads_of(columns: Mapping[str, Any]) -> Loads:
+    """Loads from the columns of stored trials or of evaluations.
+
+    Args:
+        columns: name -> values of shape (n,), such as a data frame of trials; others than ``LOAD_NAMES`` are ignored,
+            and measures that a study of an earlier version lacks are unknown.
+    """
+    n = len(columns["thigh_length_m"])
+    unknown = np.full(n, np.nan)
+    return Loads(**{name: np.asarray(columns.get(name, unknown), dtype=np.float64) for name in LOAD_NAMES})
+
 
 Side = Literal["hip", "knee"]
 SIDES: tuple[Side, ...] = ("hip", "knee")
@@ -17,28 +73,18 @@ SIDES: tuple[Side, ...] = ("hip", "knee")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Structure:
-    """What a capacity may depend on.
+    """What a capacity may depend on."""
 
-    Attributes:
-        actuator: of the row's side; for a row of the leg that of the hip, which must not matter.
-        leg: the leg that all actuators of the maps share.
-        settings: of stage 1: rules, materials, safety factors of the rating.
-    """
-
-    actuator: Actuator
-    leg: LegDimensions
-    settings: ActuatorSettings
+    actuator: Actuator  #: of the row's side; for a row of the leg that of the hip, which must not matter
+    leg: LegDimensions  #: the leg that all actuators of the maps share
+    settings: ActuatorSettings  #: of stage 1: rules, materials, safety factors of the rating
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Together:
-    """A capacity that is computed for many structures at once, which saves time.
+    """A capacity that is computed for many structures at once, which saves time."""
 
-    Attributes:
-        of: the capacities of some structures of one actuator map.
-    """
-
-    of: Callable[[Sequence[Structure]], Sequence[float]]
+    of: Callable[[Sequence[Structure]], Sequence[float]]  #: the capacities of some structures of one actuator map
 
     def __call__(self, s: Structure) -> float:
         """The capacity of one structure."""
@@ -52,34 +98,22 @@ def over(capacity: Any, load: Any) -> Any:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """A row.
+    """A row."""
 
-    Attributes:
-        name: unique; in ``strength.csv``, in messages and in the report.
-        group: by which measure it counts.
-        formula: of the factor, in a line.
-        source: of the formula.
-        required: least factor allowed.
-        required_source: why that much.
-        loads: fields of ``Loads`` that ``factor`` gets.
-        capacity: what the joint carries, one number or several. Rows may share it: it is computed once then.
-        factor: the safety factor from the numbers of ``capacity``, then the ``loads``; all of shape (n,), elementwise,
-            warnings off (0 N make an infinite factor).
-        parts: names of the parts that it is about, for the parts list.
-        cure: what a designer can do, such as "a lower knee_ratio".
-    """
-
-    name: str
-    group: Group
-    formula: str
-    source: str
-    required: float
-    required_source: str
-    loads: tuple[str, ...]
+    name: str  #: unique; in ``strength.csv``, in messages and in the report
+    group: Group  #: by which measure it counts
+    formula: str  #: of the factor, in a line
+    source: str  #: of the formula
+    required: float  #: least factor allowed
+    required_source: str  #: why that much
+    loads: tuple[str, ...]  #: fields of ``Loads`` that ``factor`` gets
+    #: What the joint carries, one number or several. Rows may share it: it is computed once then.
     capacity: Callable[[Structure], float | tuple[float, ...]]
+    #: The safety factor from the numbers of ``capacity``, then the ``loads``; all of shape (n,), elementwise, warnings
+    #: off (0 N make an infinite factor)
     factor: Callable[..., Any] = over
-    parts: tuple[str, ...]
-    cure: str
+    parts: tuple[str, ...]  #: names of the parts that it is about, for the parts list
+    cure: str  #: what a designer can do, such as "a lower knee_ratio"
 
     @property
     def informs(self) -> bool:
@@ -94,13 +128,9 @@ class Joint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActuatorJoint(Joint):
-    """A row whose capacity depends on the actuator of one side.
+    """A row whose capacity depends on the actuator of one side."""
 
-    Attributes:
-        side: which.
-    """
-
-    side: Side
+    side: Side  #: which
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

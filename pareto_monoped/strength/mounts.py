@@ -10,17 +10,16 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel
-from pareto_monoped.geometry.iso286 import interference_mm
+from pareto_monoped.geometry.making import interference_mm
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.materials import ALLOYS, MATERIALS
+from pareto_monoped.strength.connections import SHAPE_SAFETY, PressFit
 from pareto_monoped.strength.drive import dowel_force_n, yield_mpa
 from pareto_monoped.strength.joint import LegJoint, Side, Structure
-from pareto_monoped.strength.press_fit import PressFit
-from pareto_monoped.strength.shaft_hub import SHAPE_SAFETY
 from pareto_monoped.strength.threads import tightened
 
 _CARRIER, _HOUSING, _PLATE = "aw_7075_t6", "aw_6082_t6", "aw_6082_t6"

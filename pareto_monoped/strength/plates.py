@@ -16,8 +16,8 @@ from pareto_monoped.leg.shank import FORK_WINDOW_END, FORK_WINDOW_TOP, bottom_ax
 from pareto_monoped.leg.shank import bridges_of as shank_bridges
 from pareto_monoped.leg.thigh import inner_hip_holes, outer_hip_holes
 from pareto_monoped.materials import ALLOYS, MATERIALS
+from pareto_monoped.strength.connections import MISES
 from pareto_monoped.strength.joint import LegJoint, Structure, over
-from pareto_monoped.strength.shaft_hub import MISES
 
 PLATE = ALLOYS["aw_6082_t6"]
 """Of all plates of the links."""

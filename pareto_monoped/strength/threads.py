@@ -20,10 +20,9 @@ from pareto_monoped.leg.journal import journal_parts
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.materials import ALLOYS
-from pareto_monoped.strength.bolted import head_force_n, thread_force_n
+from pareto_monoped.strength.connections import MISES, head_force_n, thread_force_n
 from pareto_monoped.strength.drive import MOTOR_FACE_MPA, fastening, shank_and_thread_mm
 from pareto_monoped.strength.joint import SIDES, ActuatorJoint, LegJoint, Structure
-from pareto_monoped.strength.shaft_hub import MISES
 
 _NEAR_MM = 1e-6
 _ANY_LENGTH_M, _ANY_ACTUATOR_M = 0.4, 0.05  # of links and of the knee actuator whose screws are asked for

@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.joint_maps import JointMaps
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.study.place import StudyPlace
-from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import Simulator
-from pareto_monoped.study.store import Store
 
 if TYPE_CHECKING:
     from pareto_monoped.jump.audit import Jumps

@@ -1,12 +1,14 @@
 """Objectives and constraints of the user's own: plain functions of a table of jumps, evaluated with every generation.
 
 A database stores a function's name and its values, never the function: who continues a study brings it again.
+
+What a caller brings along that no database holds: functions, an algorithm, a calibration.
 """
 
 import difflib
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, cast
 
 import numpy as np
@@ -15,9 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES, OWN, is_own
-from pareto_monoped.study.protocol import Floats
+from pareto_monoped.search.algorithm import Floats
 
 OwnFunction = Callable[[Mapping[str, NDArray[Any]]], Any]
 """A function of a table of jumps, to values of shape (n,)."""
@@ -45,14 +48,10 @@ class Jumps(dict[str, NDArray[Any]]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnEvaluations(Evaluations):
-    """Results of n designs, and what own functions make of them.
+    """Results of n designs, and what own functions make of them."""
 
-    Attributes:
-        jumps: the results.
-        own: values of the functions by the names of their measures, each of shape (n,); NaN where the jump failed.
-    """
-
-    jumps: Evaluations
+    jumps: Evaluations  #: the results
+    #: Values of the functions by the names of their measures, each of shape (n,); NaN where the jump failed
     own: Mapping[str, Floats]
 
     def of(self, name: str) -> Floats:
@@ -245,3 +244,17 @@ def _listed(names: Sequence[str]) -> str:
 
 def _one_line(error: Exception) -> str:
     return re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Own:
+    """What is the user's own."""
+
+    functions: Functions = field(default_factory=dict)  #: objectives and constraints
+    algorithm: Any = None  #: with ``ask`` and ``tell``, or what makes one; see ``own_algorithm``
+    #: Of a new study, whose values its database then has; None: the one that the study names
+    calibration: Calibration | None = None
+
+
+NOTHING = Own()
+"""What the command line brings along."""

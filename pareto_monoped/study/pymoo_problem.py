@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pareto_monoped.study.counts import count_of
-from pareto_monoped.study.definition import Study
+from pareto_monoped.definition.given import count_of
+from pareto_monoped.definition.study import Study
+from pareto_monoped.search.algorithm import Floats
 from pareto_monoped.study.outside import JumpFunction
 from pareto_monoped.study.own_functions import OwnFunction
-from pareto_monoped.study.protocol import Floats
 from pareto_monoped.study.run import default_workers
 
 

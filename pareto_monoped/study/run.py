@@ -1,4 +1,7 @@
-"""Run a study into its database, or continue it: checks before, one session, the audit after."""
+"""Run a study into its database, or continue it: checks before, one session, the audit after.
+
+Iterations of a weighted search that are each weight's share of the budget: given once, when a database is made.
+"""
 
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -8,25 +11,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.compute.threads import cores
+from pareto_monoped.definition import provenance
+from pareto_monoped.definition.algorithms import WeightedSettings, share_of
+from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import LostTrialsError, StudyError
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study import provenance
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.arrival import is_vacant
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.storage.arrival import is_vacant
+from pareto_monoped.storage.front_reader import foreign_note
+from pareto_monoped.storage.lock import Lock, locked
+from pareto_monoped.storage.meta import StudyMeta
+from pareto_monoped.storage.place import BY_NAME, StudyPlace
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.server.address import Server, schema_for
+from pareto_monoped.storage.store import Store, create_database
 from pareto_monoped.study.audits import audit_front
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.foreign import foreign_note
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.lock import Lock, locked
-from pareto_monoped.study.meta import StudyMeta
-from pareto_monoped.study.own import NOTHING, Own
-from pareto_monoped.study.own_functions import refuse_other_functions, require_functions, with_functions
-from pareto_monoped.study.place import BY_NAME, StudyPlace
-from pareto_monoped.study.reader import StudyData, read_study
-from pareto_monoped.study.remarks import remarks
-from pareto_monoped.study.server.address import Server, schema_for
+from pareto_monoped.study.own_functions import NOTHING, Own, refuse_other_functions, require_functions, with_functions
 from pareto_monoped.study.session import Progress, Session
-from pareto_monoped.study.shared_iterations import shared_anew, shared_as_stored
 from pareto_monoped.study.simulator import (
     Simulator,
     continued_simulator,
@@ -34,41 +36,48 @@ from pareto_monoped.study.simulator import (
     load_simulator,
     stored_simulator,
 )
-from pareto_monoped.study.store import Store, create_database
 
 if TYPE_CHECKING:
-    from pareto_monoped.study.server.lock import ServerLock
+    from pareto_monoped.storage.server.lock import ServerLock
+
+
+def shared_anew(study: Study, evaluations: int | None) -> Study:
+    """The study of a new database: a budget beyond the file's own is shared out, too.
+
+    A smaller one cuts the search short, so that it can go on later.
+    """
+    settings = study.algorithm
+    if not study.shared_iterations or not isinstance(settings, WeightedSettings):
+        return study
+    budget = max(evaluations or 0, study.evaluations)
+    return replace(study, algorithm=replace(settings, iterations=max(1, share_of(settings, budget))))
+
+
+def shared_as_stored(study: Study, stored: Study) -> Study:
+    """The study of a database that there is: a file that gives no iterations takes those that it was made with."""
+    settings, before = study.algorithm, stored.algorithm
+    if study.shared_iterations and isinstance(settings, WeightedSettings) and isinstance(before, WeightedSettings):
+        return replace(study, algorithm=replace(settings, iterations=before.iterations))
+    return study
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """The result of a run.
+    """The result of a run."""
 
-    Attributes:
-        db: the study's database.
-        evaluations, new_evaluations: number of trials in all, and of this session.
-        front_size: number of designs on the front.
-        ill_conditioned: number of designs that failed their audit.
-        hypervolume: of the front.
-        hypervolume_unit: product of the objectives' units, such as "m J".
-        seconds: duration of this session.
-        stop_reason: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or
-            ``interrupted``.
-        strength: whether designs on the front hold; else strength was not asked for.
-        remarks: see ``study.remarks``.
-    """
-
-    db: StudyPlace
+    db: StudyPlace  #: the study's database
+    #: evaluations, new_evaluations: number of trials in all, and of this session
     evaluations: int
     new_evaluations: int
-    front_size: int
-    ill_conditioned: int
-    hypervolume: float
-    hypervolume_unit: str
-    seconds: float
+    front_size: int  #: number of designs on the front
+    ill_conditioned: int  #: number of designs that failed their audit
+    hypervolume: float  #: of the front
+    hypervolume_unit: str  #: product of the objectives' units, such as "m J"
+    seconds: float  #: duration of this session
+    #: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or ``interrupted``
     stop_reason: str
-    strength: bool
-    remarks: tuple[str, ...] = ()
+    strength: bool  #: whether designs on the front hold; else strength was not asked for
+    data: StudyData  #: the study as it is stored now
 
 
 def _silent(_: Any) -> None:
@@ -312,5 +321,5 @@ def _summary(db: StudyPlace, before: StudyData, after: StudyData, seconds: float
         seconds=seconds,
         stop_reason=after.meta.stop_reason or "",
         strength=after.study.strength,
-        remarks=tuple(remarks(after, front)),
+        data=after,
     )

@@ -11,24 +11,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.definition.study import Study
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.evaluate import Evaluations
-from pareto_monoped.pareto.at_height import AtHeight, best_at_height
-from pareto_monoped.pareto.growing_front import GrowingFront
+from pareto_monoped.pareto.front import AtHeight, GrowingFront, best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.coordinates import plain_coordinates
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.generation import Generation
+from pareto_monoped.search.algorithm import Algorithm, Scores
+from pareto_monoped.search.own_algorithm import OwnAlgorithm, same_designs
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge, missed, scores, values_of
+from pareto_monoped.search.space import AnyCoordinates, MotorCoordinates, plain_coordinates
+from pareto_monoped.storage.columns import Generation
+from pareto_monoped.storage.reader import StudyData
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.motor_choice import AnyCoordinates, MotorCoordinates
-from pareto_monoped.study.own_algorithm import OwnAlgorithm, same_designs
-from pareto_monoped.study.protocol import Algorithm, Scores
-from pareto_monoped.study.reader import StudyData
-from pareto_monoped.study.scoring import judge, missed, scores, values_of
 from pareto_monoped.study.simulator import Evaluate
-from pareto_monoped.study.store import Store
 
 Motors = dict[str, tuple[str, ...]]
 """Coordinate that chooses a motor -> name of each design's."""
@@ -36,21 +34,15 @@ Motors = dict[str, tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far a run is; everything it counts is already stored.
+    """How far a run is; everything it counts is already stored."""
 
-    Attributes:
-        evaluations, budget: number of designs evaluated so far, and to be evaluated in all.
-        per_second: designs evaluated per second in this session.
-        seconds_left: time until the budget is used up, at this rate.
-        hypervolume: of the front so far, in the product of the objectives' units.
-        at_height: what the designs that reach ``HEADLINE_HEIGHT_M`` cost; None for objectives without a height.
-    """
-
+    #: evaluations, budget: number of designs evaluated so far, and to be evaluated in all
     evaluations: int
     budget: int
-    per_second: float
-    seconds_left: float
-    hypervolume: float
+    per_second: float  #: designs evaluated per second in this session
+    seconds_left: float  #: time until the budget is used up, at this rate
+    hypervolume: float  #: of the front so far, in the product of the objectives' units
+    #: What the designs that reach ``HEADLINE_HEIGHT_M`` cost; None for objectives without a height
     at_height: AtHeight | None
 
 

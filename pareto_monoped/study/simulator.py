@@ -8,20 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.motors import Motor, load_motor, motor_source, motor_values
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.motors import load_motor, motor_source, motor_values
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.definition.study import Study
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import CalibrationError, StudyError
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import evaluator_of
-from pareto_monoped.leg.motor_fit import require_leg
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.meta import motor_keys
-from pareto_monoped.study.motor_choice import AnyCoordinates, kit_maps, searched_coordinates
-from pareto_monoped.study.reader import StudyData
-from pareto_monoped.uncertainty.evaluator import RobustEvaluator
+from pareto_monoped.leg.thigh_outline import require_leg
+from pareto_monoped.search.space import AnyCoordinates, kit_maps, searched_coordinates
+from pareto_monoped.storage.meta import motor_keys
+from pareto_monoped.storage.reader import StudyData
+from pareto_monoped.uncertainty.samples import RobustEvaluator
 
 Evaluate = Callable[..., Evaluations]
 """Designs, see ``design.complete``, to their evaluations, in order; the designs are followed by the positions of their
@@ -30,17 +31,13 @@ kits of motors where a study has several."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulator:
-    """What a study simulates with.
+    """What a study simulates with."""
 
-    Attributes:
-        motors, calibration: what decides every jump.
-        evaluator: designs to evaluations, with the motors' actuator maps and the calibration.
-        files: texts of the motors' and the ``calibration`` file where the study names files of the user's, else None.
-    """
-
+    #: motors, calibration: what decides every jump
     motors: tuple[Motor, ...]
     calibration: Calibration
-    evaluator: Evaluator
+    evaluator: Evaluator  #: designs to evaluations, with the motors' actuator maps and the calibration
+    #: Texts of the motors' and the ``calibration`` file where the study names files of the user's, else None
     files: dict[str, str | None]
 
     @property

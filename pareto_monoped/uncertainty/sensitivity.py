@@ -1,12 +1,21 @@
-"""Which of many factors moves the measures of a design most: Sobol' indices, and the change from end to end."""
+"""Which of many factors moves the measures of a design most: Sobol' indices, and the change from end to end.
 
-from collections.abc import Callable
-from dataclasses import dataclass
+The single numbers that vary under uncertainty, one per factor of a sensitivity: name, words, ends and unit.
+
+What a sensitivity says: of each factor, how far it moves each measure, and its share of the measure's variance.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
 
 from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.uncertainty.samples import DIMENSIONS, Name
+from pareto_monoped.uncertainty.settings import Uncertainty
 
 Floats = NDArray[np.float64]
 Simulate = Callable[[Floats], tuple[NDArray[np.bool_], Floats]]
@@ -22,24 +31,15 @@ _RESAMPLES, _INTERVAL = 200, (2.5, 97.5)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Indices:
-    """Influence of d factors on s measures.
+    """Influence of d factors on s measures."""
 
-    Attributes:
-        blocks: base samples that the indices rest on.
-        jumps: simulated in all.
-        failed: share of these jumps that failed.
-        first: first-order indices, shape (s, d): the share of a measure's variance that a factor explains alone.
-        total: total indices, shape (s, d): the share that would go with it, with all of its interactions.
-        error: half the width of the 95 percent interval of ``total``, shape (s, d).
-        effect: change of each measure from the lower to the upper end of a factor, by its mean slope, shape (s, d).
-    """
-
-    blocks: int
-    jumps: int
-    failed: float
-    first: Floats
-    total: Floats
-    error: Floats
+    blocks: int  #: base samples that the indices rest on
+    jumps: int  #: simulated in all
+    failed: float  #: share of these jumps that failed
+    first: Floats  #: first-order indices, shape (s, d): the share of a measure's variance that a factor explains alone
+    total: Floats  #: total indices, shape (s, d): the share that would go with it, with all of its interactions
+    error: Floats  #: half the width of the 95 percent interval of ``total``, shape (s, d)
+    #: Change of each measure from the lower to the upper end of a factor, by its mean slope, shape (s, d)
     effect: Floats
 
 
@@ -118,3 +118,143 @@ def _effects(table: Floats, steps: Floats) -> Floats:
     """
     changes = table[2:] - table[0]
     return np.asarray(np.einsum("dsn,nd->sd", changes, steps) / np.square(steps).sum(axis=0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Factor:
+    """One factor."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    name: str  #: unique among the factors of a sensitivity
+    label: str  #: in words
+    #: lower, upper: its ends, in its stored unit; for a share as a share of the nominal value
+    lower: float
+    upper: float
+    unit: str  #: "1" for a share or a ratio, else of the stored value
+    tolerance: bool = False  #: whether it is a tolerance of what is made, rather than of drive, control or use
+
+    @property
+    def text(self) -> str:
+        """Its range as it is shown, such as "-5 to 5 %" or "0 to 3 ms"."""
+        unit, scale = _SHOWN.get(self.unit, (self.unit, 1.0))
+        return f"{self.lower * scale:.4g} to {self.upper * scale:.4g} {unit}".rstrip()
+
+
+_SHOWN = {"share": ("%", 100.0), "m": ("mm", 1000.0), "s": ("ms", 1000.0), "1": ("", 1.0)}
+_UNITS: dict[Name, str] = {"link_length_m": "m", "delay_s": "s"}
+_LABELS: dict[Name, tuple[str, ...]] = {
+    "masses": ("mass of the base", "mass of the thigh", "mass of the shank"),
+    "peak_torque": ("peak torque, hip", "peak torque, knee"),
+    "friction": ("joint friction",),
+    "damping": ("joint damping",),
+    "stop_stiffness": ("stop stiffness",),
+    "foot_stiffness": ("foot stiffness",),
+    "link_length_m": ("length of the thigh", "length of the shank"),
+    "gains": ("gain K", "gain C", "gain T"),
+    "delay_s": ("delay",),
+    "battery_voltage": ("battery voltage",),
+}
+_MADE: frozenset[Name] = frozenset(
+    ("masses", "friction", "damping", "stop_stiffness", "foot_stiffness", "link_length_m")
+)
+"""Ranges that come from making parts: printing, moulding, machining, greasing. The others are of motors and electronics
+that are bought, and of use."""
+
+
+def factors_of(ranges: Uncertainty) -> tuple[Factor, ...]:
+    """The factors of all ranges, in the order of ``samples.DIMENSIONS``."""
+    found = []
+    for name, count in DIMENSIONS:
+        ends = ranges.ranges[name]
+        for k, label in enumerate(_LABELS[name]):
+            found.append(
+                Factor(
+                    name=name if count == 1 else f"{name}.{k}",
+                    label=label,
+                    lower=ends.lower,
+                    upper=ends.upper,
+                    unit=_UNITS.get(name, "share"),
+                    tolerance=name in _MADE,
+                )
+            )
+    return tuple(found)
+
+
+def between(factor: Factor, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The values of a factor at points of the unit interval, shape (n,)."""
+    return factor.lower + (factor.upper - factor.lower) * points
+
+
+About = Literal["variables", "assumptions"]
+"""Kinds of factors: the design's variables, or what is uncertain in a robot that is built."""
+Number = Annotated[float, Field(allow_inf_nan=False)]
+_STRICT = ConfigDict(extra="forbid")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Influence:
+    """One factor on one measure."""
+
+    __pydantic_config__ = _STRICT
+
+    change: Number  #: of the measure in its stored unit, from the lower to the upper end of the factor
+    first: Number  #: first-order Sobol' index
+    total: Number  #: total index: the share of the measure's variance that would go with the factor
+    #: Half the width of the 95 percent interval of ``total``
+    error: Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactorInfluence:
+    """One factor, and its influence on each measure."""
+
+    __pydantic_config__ = _STRICT
+
+    factor: Factor
+    measures: dict[str, Influence]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensitivity:
+    """The sensitivity of one design."""
+
+    __pydantic_config__ = _STRICT
+
+    about: About  #: which kind of factors
+    blocks: Annotated[int, Field(ge=1)]  #: base samples that the indices rest on
+    jumps: Annotated[int, Field(ge=1)]  #: simulated in all
+    failed: Annotated[float, Field(ge=0.0, le=1.0)]  #: share of them that did not reach an apex
+    factors: tuple[FactorInfluence, ...]  #: those that vary
+
+    def ranked(self, name: str) -> list[FactorInfluence]:
+        """The factors by their total index of a measure, the greatest first."""
+        return sorted(self.factors, key=lambda one: -one.measures[name].total)
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON values."""
+        return asdict(self) | {"factors": [asdict(one) for one in self.factors]}
+
+
+def sensitivity_of(about: About, factors: Sequence[Factor], found: Indices, names: Sequence[str]) -> Sensitivity:
+    """The record of what was found of d factors and s measures, called ``names``."""
+
+    def influences(column: int) -> Iterator[tuple[str, Influence]]:
+        for row, name in enumerate(names):
+            yield (
+                name,
+                Influence(
+                    change=float(found.effect[row, column]),
+                    first=float(found.first[row, column]),
+                    total=float(found.total[row, column]),
+                    error=float(found.error[row, column]),
+                ),
+            )
+
+    return Sensitivity(
+        about=about,
+        blocks=found.blocks,
+        jumps=found.jumps,
+        failed=found.failed,
+        factors=tuple(FactorInfluence(factor=factor, measures=dict(influences(k))) for k, factor in enumerate(factors)),
+    )

@@ -1,12 +1,107 @@
-"""What a study says of uncertainty: its own ranges, and how many samples each design has while it searches."""
+"""What a study says of uncertainty: its own ranges, and how many samples each design has while it searches.
+
+Ranges of everything that is uncertain in a built robot, from TOML.
+"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any
 
-from pareto_monoped.config import read_shipped
-from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.uncertainty.ranges import SHIPPED, WHAT, Uncertainty, uncertainty_of
+from pydantic import ConfigDict, Field
+
+from pareto_monoped.config import checked, read_shipped, read_toml
+from pareto_monoped.errors import InputError, StudyError, complaint
+
+_STRICT = ConfigDict(extra="forbid")
+SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
+"""The shipped file, and what such a file is called in messages."""
+_LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
+"""Beyond these nothing is left of a part, or its mass no longer fits its length. Our own choice."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Range:
+    """A quantity that is uniform between two ends."""
+
+    __pydantic_config__ = _STRICT
+
+    #: lower, upper: the ends; equal ends switch the uncertainty off
+    lower: Annotated[float, Field(allow_inf_nan=False)]
+    upper: Annotated[float, Field(allow_inf_nan=False)]
+    source: Annotated[str, Field(min_length=1)]  #: where they come from
+
+    def __post_init__(self) -> None:
+        """Refuse a range of which the ends are swapped."""
+        if self.lower > self.upper:
+            raise ValueError(f"lower {self.lower:g} must not exceed upper {self.upper:g}; swap them")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Uncertainty:
+    """All ranges; ``data/uncertainty.toml`` says what each is about. Those without unit are shares."""
+
+    __pydantic_config__ = _STRICT
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
+    masses: Range
+    peak_torque: Range
+    friction: Range
+    damping: Range
+    stop_stiffness: Range
+    foot_stiffness: Range
+    link_length_m: Range
+    gains: Range
+    delay_s: Range
+    battery_voltage: Range
+
+    def __post_init__(self) -> None:
+        """Refuse what no robot can have."""
+        for name, range_ in self.ranges.items():
+            least, most = _LEAST_SHARE, float("inf")
+            if name == "link_length_m":
+                least, most = -_MOST_LENGTH_M, _MOST_LENGTH_M
+            elif name == "delay_s":
+                least = 0.0
+            if range_.lower < least or range_.upper > most:
+                allowed = f"at least {least:g}" + (f" and at most {most:g}" if most < float("inf") else "")
+                raise ValueError(
+                    f"{name}: lower {range_.lower:g} and upper {range_.upper:g} must be {allowed}; correct them"
+                )
+
+    @property
+    def ranges(self) -> dict[str, Range]:
+        """The ranges by name, in the order of the file."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "name"}
+
+    def as_dict(self) -> dict[str, Any]:
+        """As in a file; ``uncertainty_of`` reads it back."""
+        return asdict(self)
+
+
+def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> Uncertainty:
+    """Ranges from plain values.
+
+    Raises:
+        InputError: (or ``error``) a missing or wrong value, or an unknown key.
+    """
+    return checked(Uncertainty, values, source=source, error=error)
+
+
+def load_uncertainty(path: Path | None = None) -> Uncertainty:
+    """The shipped ranges, or those of a file: what it leaves out is as shipped.
+
+    Raises:
+        InputError: no readable file, an unknown key, or a wrong value.
+    """
+    shipped = read_shipped(SHIPPED, what=WHAT)
+    if path is None:
+        return uncertainty_of(shipped, source=WHAT)
+    own = read_toml(path, what=WHAT)
+    if "name" not in own:
+        raise InputError(f"{WHAT} {str(path)!r}: name is missing; add it, so that results can name these ranges")
+    return uncertainty_of(shipped | own, source=f"{WHAT} {str(path)!r}")
+
 
 DEFAULT_SEED = 1
 """Seed of the samples: the same for all designs and studies, so that their numbers can be compared."""
@@ -23,17 +118,11 @@ MOST_FAILED = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling:
-    """The ranges of a study, and the samples that it searches with.
+    """The ranges of a study, and the samples that it searches with."""
 
-    Attributes:
-        ranges: what is uncertain, and by how much.
-        samples: jumps per design, besides the one without variation; a power of two.
-        seed: of the samples, which all designs and all seeds of the search have in common.
-    """
-
-    ranges: Uncertainty
-    samples: int = SEARCH_SAMPLES
-    seed: int = DEFAULT_SEED
+    ranges: Uncertainty  #: what is uncertain, and by how much
+    samples: int = SEARCH_SAMPLES  #: jumps per design, besides the one without variation; a power of two
+    seed: int = DEFAULT_SEED  #: of the samples, which all designs and all seeds of the search have in common
 
     def as_dict(self) -> dict[str, Any]:
         """As in a study file, with all ranges; ``sampling_of`` reads it back."""

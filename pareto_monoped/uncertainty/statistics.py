@@ -19,40 +19,28 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """A measure over the samples that jumped, in its stored unit.
-
-    Attributes:
-        mean: of the samples.
-        deviation: their standard deviation.
-        p05, p95: the 5th and the 95th percentile.
-    """
+    """A measure over the samples that jumped, in its stored unit."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
-    mean: Number
-    deviation: Number
+    mean: Number  #: of the samples
+    deviation: Number  #: their standard deviation
+    #: p05, p95: the 5th and the 95th percentile
     p05: Number
     p95: Number
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Robustness:
-    """One design under uncertainty.
-
-    Attributes:
-        samples: number of jumps.
-        failed: share of them that do not reach an apex.
-        overloaded: share of them that jump and exceed the load that some joint or part carries with its required
-            safety factor.
-        measures: the measures by name; those without a value in every successful jump are left out.
-    """
+    """One design under uncertainty."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
-    samples: Annotated[int, Field(ge=1)]
-    failed: Share
+    samples: Annotated[int, Field(ge=1)]  #: number of jumps
+    failed: Share  #: share of them that do not reach an apex
+    #: Share of them that jump and exceed the load that some joint or part carries with its required safety factor
     overloaded: Share
-    measures: dict[str, Spread]
+    measures: dict[str, Spread]  #: the measures by name; those without a value in every successful jump are left out
 
     def as_dict(self) -> dict[str, Any]:
         """As JSON values."""

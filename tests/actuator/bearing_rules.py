@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from pareto_monoped.actuator.bearings import rated_bearing
-from pareto_monoped.actuator.roller_bearings import roller_bearing
+from pareto_monoped.actuator.needles import roller_bearing
 
 # ISO 281, table 7: f_c of radial roller bearings by the needle's over the pitch diameter.
 F_C = {0.10: 84.2, 0.12: 86.4, 0.14: 87.7, 0.16: 88.5, 0.18: 88.8, 0.20: 88.7, 0.22: 88.2, 0.24: 87.5, 0.26: 86.4}

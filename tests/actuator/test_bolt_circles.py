@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pareto_monoped.actuator.motors import FramedMotor, HolePattern, load_motor, motor_names
+from pareto_monoped.actuator.motor import FramedMotor, HolePattern
+from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import map_for, map_of
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.leg.bearing import SHOULDER_RADIUS
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.leg.journal import journal_parts
+from pareto_monoped.leg.journal import SHOULDER_RADIUS, journal_parts
 
 
 def esspg(found):

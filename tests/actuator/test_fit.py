@@ -7,7 +7,8 @@ import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.actuator.motors import FramedMotor, FramelessMotor, Motor, load_motor, motor_names
+from pareto_monoped.actuator.motor import FramedMotor, FramelessMotor, Motor
+from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.design import RULE_SETS
 from pareto_monoped.errors import DesignError

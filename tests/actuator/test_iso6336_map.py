@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
-from pareto_monoped.actuator.candidates import candidates
 from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.judge import candidates
 from pareto_monoped.actuator.layout import layout, radial_room_mm
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.ratiomap import STAND_IN_WITHIN

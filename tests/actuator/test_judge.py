@@ -7,12 +7,10 @@ import pytest
 
 from pareto_monoped.actuator import judge
 from pareto_monoped.actuator.actuator import actuator_mass_kg
-from pareto_monoped.actuator.candidates import candidates
-from pareto_monoped.actuator.face import face_width_mm
-from pareto_monoped.actuator.judge import Judge
+from pareto_monoped.actuator.judge import Judge, candidates
 from pareto_monoped.actuator.layout import layout, radial_room_mm
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.rating.width import LOAD_RULES
+from pareto_monoped.actuator.rating.width import LOAD_RULES, face_width_mm
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.search import build_map
 from pareto_monoped.actuator.settings import ActuatorSettings

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.actuator.motor_checks import contradiction
-from pareto_monoped.actuator.motors import HolePattern, load_motor, motor_names
+from pareto_monoped.actuator.motor import HolePattern
+from pareto_monoped.actuator.motors import contradiction, load_motor, motor_names
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.errors import MotorError
 from pareto_monoped.geometry.roles import Role

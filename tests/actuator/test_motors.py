@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.actuator.motors import PEAK_TO_CONTINUOUS, load_motor, motor_names, motor_values, stored_motor
+from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS
+from pareto_monoped.actuator.motors import load_motor, motor_names, motor_values, stored_motor
 from pareto_monoped.errors import DatabaseError, MotorError
 
 GOOD = """

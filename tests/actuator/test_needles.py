@@ -7,8 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.actuator.needles import dynamic_rating_n, needle_count, needle_rows, static_rating_n
-from pareto_monoped.actuator.roller_bearings import read_roller_bearings, roller_bearing
+from pareto_monoped.actuator.needles import (
+    dynamic_rating_n,
+    needle_count,
+    needle_rows,
+    read_roller_bearings,
+    roller_bearing,
+    static_rating_n,
+)
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
 

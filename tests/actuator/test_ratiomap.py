@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.actuator.candidates import interval_tenths
+from pareto_monoped.actuator.judge import interval_tenths
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import DesignError
 

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.actuator.bearings import catalogue
+from pareto_monoped.actuator.bearings import catalogue, read_retaining_rings, retaining_ring
 from pareto_monoped.actuator.motors import motor_names
-from pareto_monoped.actuator.retaining_rings import read_retaining_rings, retaining_ring
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import InputError
-from pareto_monoped.geometry.iso286 import limits
+from pareto_monoped.geometry.making import limits
 from pareto_monoped.geometry.shapes import Circle
 
 # Size: thickness s, groove diameter d2 with its lower and upper deviation, groove width m, from DIN 471 and DIN 472.

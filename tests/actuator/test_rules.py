@@ -7,9 +7,9 @@ from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import layout
 from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.rating.width import lewis_width_mm
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.strength import face_width_mm
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear, fillet_room_rad
 
 MOTOR = load_motor("VT8020")
@@ -18,7 +18,7 @@ MOTOR = load_motor("VT8020")
 def broken(family, sun, planet, module, planets, settings=None):
     settings = settings or ActuatorSettings(rules="paper")
     gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
-    width = face_width_mm(gears, MOTOR, settings)
+    width = lewis_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, family, gears, width, settings)
     names, flags = violations(
         CandidateSets(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family=family, settings=settings)
@@ -88,7 +88,7 @@ def test_arrays_and_single_sets_agree():
     sun, planet = np.array([18, 30, 19, 23]), np.array([36, 30, 38, 23])
     module, planets = np.array([0.5, 0.5, 0.5, 0.5]), np.array([3, 5, 3, 4])
     gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
-    width = face_width_mm(gears, MOTOR, settings)
+    width = lewis_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, "ISSPG", gears, width, settings)
     names, flags = violations(
         CandidateSets(gears=gears, face_width_mm=width, at=at, motor=MOTOR, family="ISSPG", settings=settings)

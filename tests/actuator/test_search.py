@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg, build_actuator
-from pareto_monoped.actuator.candidates import candidates, interval_tenths
 from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.judge import candidates, interval_tenths
 from pareto_monoped.actuator.layout import FAMILIES, layout
 from pareto_monoped.actuator.motors import load_motor, motor_names
+from pareto_monoped.actuator.rating.width import lewis_width_mm
 from pareto_monoped.actuator.rules import CandidateSets, violations
 from pareto_monoped.actuator.search import build_map
 from pareto_monoped.actuator.settings import ISO_54_SERIES_1_MM, ActuatorSettings
-from pareto_monoped.actuator.strength import face_width_mm
 from tests.actuator.loop import best_in
 
 # Paper, section IV: gear sets of the nominal design and of cases A, B and C.
@@ -125,7 +125,7 @@ def test_every_result_obeys_every_rule_and_weighs_the_sum_of_its_parts(name, set
                 if candidate is None:
                     continue
                 gears = candidate.gears
-                width = face_width_mm(gears, motor, settings)
+                width = lewis_width_mm(gears, motor, settings)
                 sets = CandidateSets(
                     gears=gears,
                     face_width_mm=width,
@@ -154,7 +154,7 @@ def test_no_lighter_allowed_set_in_a_random_sample(vt8020, vt_map, settings, fam
         module_mm=rng.choice(settings.modules_mm, 20000),
         planets=rng.integers(2, 8, 20000),
     )
-    width = face_width_mm(gears, vt8020, settings)
+    width = lewis_width_mm(gears, vt8020, settings)
     at = layout(vt8020, family, gears, width, settings)
     sets = CandidateSets(gears=gears, face_width_mm=width, at=at, motor=vt8020, family=family, settings=settings)
     fine = ~violations(sets)[1].any(axis=0)

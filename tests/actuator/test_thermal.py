@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.thermal import ThermalData, resistance_growth
+from pareto_monoped.actuator.windings import ThermalData, resistance_growth
 
 U8 = ThermalData(
     winding_heat_capacity_j_per_k=16.3,

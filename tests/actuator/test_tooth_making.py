@@ -8,7 +8,7 @@ import pytest
 from pareto_monoped.actuator.needles import needle_rows, raceway_factor
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.drawing.round_sheet import round_part, round_tables
+from pareto_monoped.cad.drawing.part_sheet import round_part, round_tables
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.materials import GEAR_GRADES
 

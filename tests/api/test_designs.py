@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import pareto_monoped as pm
-from pareto_monoped.api.designs import given_designs
+from pareto_monoped.api.given import given_designs
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DesignError
 

@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.cables import ENCODER_CABLE_M, cables, rounded, rounded_length_mm
-from pareto_monoped.cad.product import Listed
+from pareto_monoped.cad.product import Listed, Pose, body_frames
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.write.assembly_pack import _cables
-from pareto_monoped.cad.write.cables import cables_csv
-from pareto_monoped.cad.write.hardware import hardware
+from pareto_monoped.cad.write.hardware import cables_csv, hardware
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.leg.motor_drivers import peak_current_a
+from pareto_monoped.leg.actuator_fit import peak_current_a
 from pareto_monoped.robot.build import build_robot
 
 ROBOTS = [("C", "VT8020", "iso6336"), ("A", "U8", "iso6336"), ("B", "U12", "iso6336"), ("C", "VT8020", "paper")]

@@ -10,7 +10,7 @@ from pareto_monoped.cad import batch, export, jobs
 from pareto_monoped.cad.as_built import as_built, require_fit
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.export import export_design
-from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.records import is_made
 from pareto_monoped.cad.write.folder import safe
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import CheckError, DesignError, DiskError, InputError, OutputError

@@ -7,10 +7,9 @@ import pytest
 from PIL import Image
 
 import pareto_monoped as pm
+from pareto_monoped.cad import film as film_files
 from pareto_monoped.cad import film as module
-from pareto_monoped.cad.film import FRAMES_PER_S, film, hold_frames, moments
-from pareto_monoped.cad.write import film_files
-from pareto_monoped.cad.write.film_files import write_gif, write_video
+from pareto_monoped.cad.film import FRAMES_PER_S, film, hold_frames, moments, write_gif, write_video
 from pareto_monoped.errors import InputError, SimulationError
 
 C = pm.PAPER_CASES["C"].design

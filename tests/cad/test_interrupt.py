@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cad.write.folder import beside, move_in, write
-from pareto_monoped.cad.write.unbroken import noted, unbroken, without_unfinished
+from pareto_monoped.cad.write.folder import beside, move_in, noted, unbroken, without_unfinished, write
 
 EXPORT = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "-o"]
 PATIENCE_S = 300.0
@@ -206,6 +205,6 @@ def test_unfinished_folders_can_be_deleted_from_outside_but_not_while_one_is_mov
         assert not folder.exists()
     with unbroken():
         # The lock is not reentrant: whoever deletes has to wait.
-        from pareto_monoped.cad.write import unbroken as module
+        from pareto_monoped.cad.write import folder as module
 
         assert not module._moving.acquire(blocking=False)

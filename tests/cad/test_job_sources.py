@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pareto_monoped.actuator.joint_maps import joint_maps
 from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.ratiomap import joint_maps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
-from pareto_monoped.cad.write.formats import FORMATS
+from pareto_monoped.cad.write.folder import FORMATS
 from pareto_monoped.cli import main
 from pareto_monoped.design import LOWER, NAMES, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import InputError

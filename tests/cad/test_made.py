@@ -9,7 +9,7 @@ import pytest
 
 from pareto_monoped.cad import batch, export
 from pareto_monoped.cad.jobs import Job, case_job
-from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.records import is_made
 from pareto_monoped.design import PAPER_CASES
 
 FORMATS = ("dxf", "urdf")

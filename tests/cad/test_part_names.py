@@ -4,13 +4,12 @@ import dataclasses
 
 import pytest
 
-from pareto_monoped.cad.assembly import instances
-from pareto_monoped.cad.check import bolts
-from pareto_monoped.cad.check.free_motion import in_working_range
-from pareto_monoped.cad.check.gear_mesh import in_gear_cycle
+from pareto_monoped.cad.check import screws
+from pareto_monoped.cad.check.free_motion import in_gear_cycle, in_working_range
 from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.cad.picture.scenes import assembly_scene
-from pareto_monoped.cad.write.visuals import colliders, visuals
+from pareto_monoped.cad.product import instances
+from pareto_monoped.cad.write.meshes import colliders, visuals
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +70,7 @@ def nameless(overlaps):
 
 
 def test_checks_do_not_depend_on_names(product, renamed):
-    assert bolts.check(renamed) == bolts.check(product)
+    assert screws.check_bolts(renamed) == screws.check_bolts(product)
     assert nameless(in_gear_cycle(renamed)) == nameless(in_gear_cycle(product))
     (here, clearance), (there, other_clearance) = in_working_range(product), in_working_range(renamed)
     assert nameless(here) == nameless(there)

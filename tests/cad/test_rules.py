@@ -9,8 +9,7 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad import batch, export
 from pareto_monoped.cad.jobs import case_job
-from pareto_monoped.cad.made import is_made
-from pareto_monoped.cad.records import record_job
+from pareto_monoped.cad.records import is_made, record_job
 from pareto_monoped.errors import InputError
 
 KNEE_RATIO = 6.15

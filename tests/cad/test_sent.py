@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from pareto_monoped.cad import batch, jobs, sent
-from pareto_monoped.cad.made import is_made
+from pareto_monoped.cad.records import is_made
 from pareto_monoped.errors import CheckError, OutputError
 
 FORMATS = ["dxf", "mjcf"]

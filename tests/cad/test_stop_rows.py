@@ -3,7 +3,7 @@
 import csv
 import io
 
-from pareto_monoped.cad.write.parts_list import parts_list
+from pareto_monoped.cad.write.tables import parts_list
 
 
 def test_the_parts_list_has_the_end_stops(product):

@@ -9,23 +9,20 @@ import numpy as np
 import pytest
 
 from pareto_monoped.cad.as_built import as_built
-from pareto_monoped.cad.check import strength
-from pareto_monoped.cad.check.limits import STRENGTH
+from pareto_monoped.cad.check import run as strength
+from pareto_monoped.cad.check.result import STRENGTH
 from pareto_monoped.cad.export import export_design
 from pareto_monoped.cad.jobs import Job, case_job, trial_job
-from pareto_monoped.cad.made import is_made
-from pareto_monoped.cad.records import record_job
-from pareto_monoped.cad.write.strength_table import strength_table
+from pareto_monoped.cad.records import is_made, record_job
+from pareto_monoped.cad.write.tables import strength_table
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import NAMES, PAPER_CASES, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.robot.build import build_robot
-from pareto_monoped.strength.factors import strength_factors
-from pareto_monoped.strength.loads import LOAD_NAMES, loads_of
-from pareto_monoped.strength.single import JointFactor, joint_factors
-from pareto_monoped.strength.table import TABLE
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.strength.factors import TABLE, JointFactor, joint_factors, strength_factors
+from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
 from pareto_monoped.study.run import run
 
 # A low jump, whose knee lets go before its stop, and one that breaks something.
@@ -154,13 +151,13 @@ def test_gears_that_are_struck_too_hard_in_every_jump_are_told_of_and_not_refuse
 
 def test_the_check_compares_every_factor_with_the_one_required():
     factors = [JointFactor(joint=joint, factor=1.5 * joint.required, loads={}) for joint in TABLE]
-    assert strength.check(factors).passed
+    assert strength.check_strength(factors).passed
     for k, joint in enumerate(TABLE):
         if joint.informs:
-            assert strength.check([*factors[:k], replace(factors[k], factor=0.1), *factors[k + 1 :]]).passed
+            assert strength.check_strength([*factors[:k], replace(factors[k], factor=0.1), *factors[k + 1 :]]).passed
             continue
         short = [*factors[:k], replace(factors[k], factor=0.97 * joint.required), *factors[k + 1 :]]
-        (failure,) = strength.check(short).failures
+        (failure,) = strength.check_strength(short).failures
         assert failure == (
             f"{joint.name}: safety factor = {0.97 * joint.required:.3g}: must be at least {joint.required:g}; "
             f"{joint.cure}"
@@ -179,7 +176,7 @@ def test_a_design_that_does_not_jump_has_no_factors(actuator_map, calibration):
     lame = GENTLE.replace({"thigh_length_m": 0.1, "shank_length_m": 0.1})
     assert design_factors(lame, actuator_map, calibration) == ()
     assert strength_table(()).count("\n") == 1
-    assert strength.check(()).passed
+    assert strength.check_strength(()).passed
 
 
 def test_jobs_ask_as_their_study_did(tmp_path, monkeypatch):
@@ -222,4 +219,4 @@ def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, c
         searched = design_factors(design, data.case_kit, calibration)
         assert [one.factor for one in searched] == pytest.approx(row[~np.isnan(row)].tolist(), rel=1e-9)
         built = design_factors(as_built(design, data.case_kit), data.case_kit, calibration)
-        assert strength.check(built).passed
+        assert strength.check_strength(built).passed

@@ -17,8 +17,8 @@ import threading
 import time
 from pathlib import Path
 
-from pareto_monoped.study.lock import holder
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.lock import holder
+from pareto_monoped.storage.reader import read_study
 
 CORES = 2
 """Threads of a campaign here; the result does not depend on them."""

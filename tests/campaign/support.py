@@ -3,7 +3,7 @@
 from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.campaign.results import results_of
-from pareto_monoped.study.store import Store
+from pareto_monoped.storage.store import Store
 from tests.campaign.test_grid import written
 from tests.study.support import made_database, made_evaluations, made_generation
 

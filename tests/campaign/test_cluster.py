@@ -7,7 +7,7 @@ import pytest
 from pareto_monoped.campaign.coordinator import run_campaign
 from pareto_monoped.compute.cluster import threads_of
 from pareto_monoped.errors import WorkerError
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 from tests.campaign.test_coordinator import SMALL, standings
 from tests.compute.dask_here import DaskHere, until

@@ -10,7 +10,7 @@ from pareto_monoped.campaign import coordinator
 from pareto_monoped.campaign.coordinator import run_campaign, standings_of
 from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 from tests.campaign.test_grid import written
 

@@ -9,8 +9,8 @@ import pytest
 from pareto_monoped.campaign.folder import held, is_ended, places_of, stored_state, strangers
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
-from pareto_monoped.study.lock import locked
-from pareto_monoped.study.store import Store
+from pareto_monoped.storage.lock import locked
+from pareto_monoped.storage.store import Store
 from tests.campaign.test_grid import written
 from tests.study.support import made_database
 

@@ -2,8 +2,7 @@
 
 import pytest
 
-from pareto_monoped.campaign.grid import MOST_STUDIES, load_campaign
-from pareto_monoped.campaign.naming import LONGEST, joined, names_of
+from pareto_monoped.campaign.grid import LONGEST, MOST_STUDIES, joined, load_campaign, names_of
 from pareto_monoped.errors import MotorError, StudyError
 
 HEAD = 'name = "grid"\n[study]\nevaluations = 100\ncase = "C"\n'

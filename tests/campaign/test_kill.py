@@ -6,7 +6,7 @@ import signal
 import pytest
 
 from pareto_monoped.campaign.grid import load_campaign
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run as run_alone
 from tests.campaign.killed import Running, differences, gone, left_behind, storm
 from tests.campaign.test_coordinator import SMALL

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.campaign.statistics import (
+from pareto_monoped.campaign.results import (
     attainment,
     growth,
     levels_of_section,

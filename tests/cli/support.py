@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-STORED = ROOT / "tests" / "study" / "data" / "plain.db"
+STORED = ROOT / "tests" / "storage" / "data" / "plain.db"
 
 
 def own_process(folder, words, *, stdout=None, closed=(), environment=None):

@@ -10,7 +10,7 @@ import pytest
 from pareto_monoped import cli
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.actuator.service.sheet import service_sheet
-from pareto_monoped.cli.service_lines import duty_lines
+from pareto_monoped.cli.actuator_sheets import duty_lines
 
 KEYS = [
     "ratio_low",

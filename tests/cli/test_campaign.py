@@ -16,8 +16,8 @@ from pareto_monoped.campaign.coordinator import standings_of
 from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.cli import cli
-from pareto_monoped.cli.campaign_table import _rows, clock, shortened
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.cli.campaign import _rows, clock, shortened
+from pareto_monoped.storage.reader import read_study
 from tests.campaign.test_coordinator import SMALL
 from tests.campaign.test_grid import written
 

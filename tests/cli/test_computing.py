@@ -8,7 +8,7 @@ from importlib.metadata import version
 import pytest
 
 from pareto_monoped import cli
-from pareto_monoped.cli.computing import Where, executor_at, where
+from pareto_monoped.cli.options import Where, executor_at, where
 from pareto_monoped.compute.crew import Crew
 from pareto_monoped.compute.staff import Limits
 from tests.cli.support import STORED

@@ -17,11 +17,11 @@ import pytest
 from click.testing import CliRunner
 
 from pareto_monoped.cli import cli
-from pareto_monoped.cli.dashboard import _reading, _server
+from pareto_monoped.cli.stored import _reading, _server
 from pareto_monoped.errors import InputError
 
 ROOT = Path(__file__).parents[2]
-STORED = ROOT / "tests" / "study" / "data" / "plain.db"
+STORED = ROOT / "tests" / "storage" / "data" / "plain.db"
 INSTALLED = find_spec("optuna_dashboard") is not None
 
 

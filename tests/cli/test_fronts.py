@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pareto_monoped.analysis.alternatives import alternatives
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.fronts import _print_table
 from pareto_monoped.design import PAPER_NAMES, VARIABLES
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.study.alternatives import alternatives
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.store import Store
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.store import Store
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
 
 SYMBOLS = [variable.symbol for variable in VARIABLES if variable.name in PAPER_NAMES]
@@ -272,7 +272,7 @@ def test_bad_objectives_get_one_line(db, capsys, given, word):
 
 def test_a_measure_that_no_trial_has_is_refused(capsys):
     """Version 0.1.0 did not store what the battery pays."""
-    old = Path(__file__).parents[1] / "study" / "data" / "plain.db"
+    old = Path(__file__).parents[1] / "storage" / "data" / "plain.db"
     assert cli(["front", str(old), "--objectives", "height_m,electrical_energy_j"]) == 2
     assert "no trial" in capsys.readouterr().err
     assert cli(["front", str(old), "--objectives", "height_m,mass_kg"]) == 0

@@ -14,7 +14,7 @@ from pareto_monoped.actuator.motors import load_motor, motor_values
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import DesignError, MotorError
-from pareto_monoped.leg.motor_fit import require_leg
+from pareto_monoped.leg.thigh_outline import require_leg
 from pareto_monoped.robot.build import build_robot
 
 TINY = """
@@ -33,7 +33,7 @@ WORDS = SAYS.format(
 )
 STORED_WORDS = SAYS.format("bearing_room, gearbox_diameter, ring_root, sun_rim, teeth_min")
 """The stored study's rules are those of the paper."""
-STORED = Path(__file__).parent.parent / "study" / "data" / "plain.db"
+STORED = Path(__file__).parent.parent / "storage" / "data" / "plain.db"
 
 
 @pytest.fixture

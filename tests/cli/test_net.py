@@ -12,8 +12,8 @@ import click
 import pytest
 
 from pareto_monoped import cli
-from pareto_monoped.cli import net
-from pareto_monoped.cli.net import told
+from pareto_monoped.cli import process
+from pareto_monoped.cli.process import told
 from pareto_monoped.errors import DatabaseError, DiskError, InputError
 from tests.cli.support import ROOT, STORED, own_process
 
@@ -53,7 +53,7 @@ def test_every_error_is_one_line_with_its_code(error, code, words):
 
 
 def test_a_fault_says_where_it_came_up(monkeypatch, capsys):
-    monkeypatch.setattr("pareto_monoped.study.status.status", lambda db: {})
+    monkeypatch.setattr("pareto_monoped.storage.status.status", lambda db: {})
     assert cli._run(["status", "x.db"]) == 1
     assert capsys.readouterr().err.startswith("error: unexpected KeyError in cli/studies.py, line ")
     monkeypatch.setenv("PARETO_MONOPED_TRACEBACK", "1")
@@ -110,8 +110,8 @@ def test_on_a_terminal_an_error_breaks_between_words(monkeypatch):
     """A line of 350 characters was broken by the terminal itself, within words. A pipe still gets one line."""
     ours, theirs = pty.openpty()
     with os.fdopen(theirs, "w") as stream:
-        monkeypatch.setattr(net.sys, "stderr", stream)
-        net.report(InputError("design: " + "width_mm and " * 20 + "height_mm are missing; give them"))
+        monkeypatch.setattr(process.sys, "stderr", stream)
+        process.report(InputError("design: " + "width_mm and " * 20 + "height_mm are missing; give them"))
         stream.flush()
         shown = os.read(ours, 4096).decode()
     os.close(ours)
@@ -126,5 +126,5 @@ def test_on_a_terminal_an_error_breaks_between_words(monkeypatch):
 
 def test_an_error_without_a_stderr_only_has_its_code(monkeypatch):
     """A process may be started with stderr closed, which Python shows as None."""
-    monkeypatch.setattr(net.sys, "stderr", None)
-    assert net.report(InputError("width_mm: is missing; give it")) == 2
+    monkeypatch.setattr(process.sys, "stderr", None)
+    assert process.report(InputError("width_mm: is missing; give it")) == 2

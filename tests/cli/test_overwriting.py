@@ -7,7 +7,7 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 
-STORED = Path(__file__).parent.parent / "study" / "data" / "plain.db"
+STORED = Path(__file__).parent.parent / "storage" / "data" / "plain.db"
 
 COMMANDS = {
     "front": (("front", "s.db", "--csv"), ".csv"),

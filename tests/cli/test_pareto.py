@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.pareto.pick import Knee, pick
-from pareto_monoped.study.choices import HEIGHTS_M, two_fronts
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.analysis.choices import HEIGHTS_M, two_fronts
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import Knee
+from pareto_monoped.storage.reader import read_study
 
 ROOT = Path(__file__).parents[2]
 

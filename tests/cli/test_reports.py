@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from pareto_monoped.cli.reports import report
+from pareto_monoped.cli.stored import report
 from tests.report.conftest import db, folder  # noqa: F401
 
 

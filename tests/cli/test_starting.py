@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.study import shipped
-from pareto_monoped.study.definition import load_study
+from pareto_monoped.definition import study_file
+from pareto_monoped.definition.study import load_study
 
 STUDIES = Path(__file__).parents[2] / "studies"
 
@@ -53,9 +53,9 @@ def test_a_wheel_has_the_studies_among_its_data(tmp_path, monkeypatch):
     data = tmp_path / "data" / "studies"
     data.mkdir(parents=True)
     (data / "only.toml").write_text('name = "only"\nevaluations = 10\n')
-    monkeypatch.setattr(shipped.resources, "files", lambda _: tmp_path)
-    assert list(shipped.shipped_studies()) == ["only"]
-    assert shipped.shipped_study("only").startswith("name")
+    monkeypatch.setattr(study_file.resources, "files", lambda _: tmp_path)
+    assert list(study_file.shipped_studies()) == ["only"]
+    assert study_file.shipped_study("only").startswith("name")
 
 
 def test_pareto_in_an_empty_folder_begins_with_case_c(tmp_path, monkeypatch, capsys):

@@ -9,7 +9,7 @@ import pytest
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.studies import _described
 from pareto_monoped.measures import measure
-from pareto_monoped.pareto.at_height import AtHeight
+from pareto_monoped.pareto.front import AtHeight
 from pareto_monoped.study.run import RunSummary
 from pareto_monoped.study.session import Progress
 
@@ -185,7 +185,7 @@ FACTS = {
     ],
 )
 def test_status_prints_each_fact_with_its_unit(monkeypatch, capsys, changes, words):
-    monkeypatch.setattr("pareto_monoped.study.status.status", lambda db: FACTS | changes)
+    monkeypatch.setattr("pareto_monoped.storage.status.status", lambda db: FACTS | changes)
     assert cli(["status", "s.db"]) == 0
     lines = [(line[:22].strip(), line[23:]) for line in capsys.readouterr().out.splitlines()]
     assert words in lines
@@ -202,6 +202,7 @@ SUMMARY = RunSummary(
     seconds=3.21,
     stop_reason="budget",
     strength=True,
+    data=None,
 )
 
 
@@ -210,6 +211,7 @@ def test_an_interrupted_run_ends_with_code_130_and_says_how_to_continue(study, m
     summary = replace(SUMMARY, stop_reason="interrupted", ill_conditioned=2)
     given = {}
     name = f"pareto_monoped.study.run.{command[0]}"
+    monkeypatch.setattr("pareto_monoped.analysis.remarks.remarks", lambda data: [])
     monkeypatch.setattr(name, lambda *_, **options: given.update(options) or summary)
     words = [word.format(study=study) for word in command]
     assert cli([*words, "--evaluations", "40", "--workers", "3"]) == 130

@@ -7,9 +7,9 @@ import json
 import pandas as pd
 import pytest
 
-from pareto_monoped import extras
+from pareto_monoped import errors
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from tests.study.support import made_database
 
 
@@ -63,7 +63,7 @@ def test_a_study_is_never_overwritten_and_a_table_only_by_a_table(db, tmp_path, 
 
 
 def test_parquet_without_its_library_says_what_to_install(db, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    monkeypatch.setattr(errors, "find_spec", lambda name: None)
     assert cli(["trials", str(db), "--parquet", str(tmp_path / "t.parquet")]) == 2
     said = capsys.readouterr().err
     assert "pip install 'pareto-monoped[parquet]'" in said

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.analysis import robustness
 from pareto_monoped.compute.chunks import AT_ONCE
-from pareto_monoped.study import robustness
 from tests.compute.dask_here import free_port
 
 ROOT = Path(__file__).parents[2]

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.geometry.bevels import Bevel
-from pareto_monoped.geometry.features import CountersunkHead, Hole, Mouth, ShaftEnd, bored, turned
+from pareto_monoped.geometry.features import Bevel, CountersunkHead, Hole, Mouth, ShaftEnd, bored, turned
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M4, clearance, tapped

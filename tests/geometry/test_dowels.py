@@ -5,7 +5,7 @@ import pytest
 
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
-from pareto_monoped.geometry.iso286 import interference_mm
+from pareto_monoped.geometry.making import interference_mm
 from pareto_monoped.geometry.roles import JointKind, Role
 from pareto_monoped.materials import MATERIALS
 

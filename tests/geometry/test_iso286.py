@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DesignError
-from pareto_monoped.geometry.iso286 import interference_mm, limits
+from pareto_monoped.geometry.making import interference_mm, limits
 
 # Limits in micrometres as they are printed in tables of common fits (Roloff/Matek, tables 2-2 and 2-3; ISO 286-2).
 PRINTED = {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.geometry.tooth_thickness import GENERAL_SERIES, RATED_SERIES, thickness_tolerance_mm
+from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES, thickness_tolerance_mm
 
 
 @pytest.mark.parametrize(

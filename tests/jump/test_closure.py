@@ -7,9 +7,8 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, UPPER, columns, complete
-from pareto_monoped.jump.balance import energy_balance
+from pareto_monoped.jump.balance import balance_errors, energy_balance
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.closure import balance_errors
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.robot.population import robot_arrays
 

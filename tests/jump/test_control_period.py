@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.write.jump_record import jump_record
+from pareto_monoped.cad.write.mjcf import jump_record
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER
 from pareto_monoped.errors import CalibrationError
 from pareto_monoped.jump import calibration, controller

@@ -7,8 +7,8 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, columns
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.frames import FRAME_COLUMNS, frame_steps, recordings
-from pareto_monoped.jump.rows import take
 from pareto_monoped.jump.single import trace_of
+from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import robot_arrays
 from tests.jump.robots import random_designs
 

@@ -10,7 +10,7 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.population import first_records
-from pareto_monoped.jump.rows import take
+from pareto_monoped.jump.variations import take
 from tests.jump import oracle
 from tests.jump.robots import plausible_robots, random_designs
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.jump.calibration import SpringContact, load_calibration
-from pareto_monoped.jump.pose import compression_m, start_pose
+from pareto_monoped.jump.model import compression_m, start_pose
 from tests.jump.robots import plausible_robots
 
 LENGTHS = st.floats(0.3, 0.5)

@@ -17,9 +17,8 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
-from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.model import mjcf, start_pose
 from pareto_monoped.jump.population import first_records
-from pareto_monoped.jump.pose import start_pose
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays

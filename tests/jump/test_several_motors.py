@@ -10,7 +10,7 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.design import LOWER, UPPER
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.rows import joined, take
+from pareto_monoped.jump.variations import joined, take
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.groups import GROUP_MEASURES

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.actuator.motors import load_motor, motor_names, stored_motor
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.compute.chunks import Pace
@@ -21,8 +21,8 @@ from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.screen import screened
 from pareto_monoped.jump.shared import SharedEvaluator, built, evaluator_of, setup_text
-from pareto_monoped.uncertainty.ranges import load_uncertainty
 from pareto_monoped.uncertainty.samples import sobol_samples, variations
+from pareto_monoped.uncertainty.settings import load_uncertainty
 
 REFERENCE = load_calibration("reference")
 DESIGNS = complete(np.random.default_rng(7).uniform(LOWER, UPPER, size=(6, len(LOWER))))

@@ -5,8 +5,8 @@ import re
 
 import pytest
 
-from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import DesignError
 from pareto_monoped.leg.chain_drives import CHAIN_DRIVES

@@ -8,9 +8,9 @@ import pytest
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.roles import Role
+from pareto_monoped.leg.actuator_fit import MOTOR_DRIVERS, motor_driver_for, peak_current_a
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.leg.motor_drivers import MOTOR_DRIVERS, motor_driver_for, peak_current_a
 
 MOTEUS, ODRIVE = MOTOR_DRIVERS
 

@@ -12,7 +12,7 @@ from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.leg.outlines import rounded_hull
+from pareto_monoped.leg.sandwich import rounded_hull
 from pareto_monoped.leg.stand import ARM_MM, MGN12H, arm, carriage_places, carriage_screw, rod_places, rod_screws
 
 LEGS = [leg_dimensions(map_for(name)) for name in motor_names()]

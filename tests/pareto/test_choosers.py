@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.pareto.knees import NEIGHBOURHOOD, tradeoff
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import (
@@ -23,6 +22,7 @@ from pareto_monoped.pareto.selectors import (
     Trial,
     Weights,
 )
+from pareto_monoped.pareto.trade_offs import NEIGHBOURHOOD, tradeoff
 from tests.pareto.fronts import THREE, fronts, losses
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.growing_front import GrowingFront
+from pareto_monoped.pareto.front import GrowingFront, front_mask
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.measures import MEASURES
-from pareto_monoped.pareto.at_height import best_at_height
+from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 THREE = Objectives(names=("mass_kg", "height_m", "efficiency"))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
-from pareto_monoped.pareto.one_more import one_more
+from pareto_monoped.pareto.trade_offs import one_more
 from tests.pareto.fronts import THREE, fronts, losses
 
 

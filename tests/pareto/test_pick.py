@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
-from pareto_monoped.pareto.pick import Knee, MaxEnergy, MinHeight, Trial, Weights, Within, pick
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import Knee, MaxEnergy, MinHeight, Trial, Weights, Within
 
 
 def _front(heights, energies, trials=None):

@@ -14,7 +14,7 @@ import pytest
 
 import pareto_monoped as pm
 from pareto_monoped.cli import cli
-from pareto_monoped.study.definition import study_from_dict
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.study.run import run
 
 ROOT = Path(__file__).parents[2]

@@ -10,13 +10,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import NAMES
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from pareto_monoped.report.resimulation import resimulate
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import StudyData, read_study
+from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.study.run import run
 
 SETTINGS = {"name": "small", "description": "for tests", "case": "C", "evaluations": 200, "seed": 3}

@@ -13,8 +13,7 @@ from PIL import Image
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
-from pareto_monoped.report.page import page, write_report
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page, write_report
 from tests.report.conftest import Tab, cut, grown
 
 pytestmark = pytest.mark.browser
@@ -154,7 +153,8 @@ def test_arrow_keys_move_along_the_front(tab, payload):
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
 def test_a_height_typed_in_gets_the_cheapest_design_that_reaches_it(tab, data, share):
-    from pareto_monoped.pareto.pick import MinHeight, pick
+    from pareto_monoped.pareto.pick import pick
+    from pareto_monoped.pareto.selectors import MinHeight
 
     front = data.front()
     low, high = front["height_m"].min(), front["height_m"].max()
@@ -166,7 +166,8 @@ def test_a_height_typed_in_gets_the_cheapest_design_that_reaches_it(tab, data, s
 
 
 def test_an_energy_typed_in_gets_the_highest_jump_on_it(tab, data):
-    from pareto_monoped.pareto.pick import MaxEnergy, pick
+    from pareto_monoped.pareto.pick import pick
+    from pareto_monoped.pareto.selectors import MaxEnergy
 
     front = data.front()
     # One decimal: the page rounds its values to five digits, which may move one across a finer limit.

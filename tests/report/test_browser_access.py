@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from tests.report.conftest import Tab
 
 pytestmark = pytest.mark.browser

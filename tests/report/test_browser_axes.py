@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.packing import unpacked
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
-from pareto_monoped.study.robust_rows import Stored
+from pareto_monoped.report.packing import unpacked_column
+from pareto_monoped.report.page import build, page
+from pareto_monoped.storage.extra_rows import Stored
 from pareto_monoped.uncertainty.statistics import Robustness, Spread
 
 pytestmark = pytest.mark.browser
@@ -54,7 +53,7 @@ def test_any_measure_can_be_an_axis_a_colour_and_a_size_of_all_trials(tab, data,
     sizes = np.array(found["size"])
     assert sizes[lengths.argmax()] == sizes.max() > 2.5 * sizes[lengths.argmin()]
     dominated = layer(tab, "dominated")
-    stored_energies = set(np.round(unpacked(card.trials.packed["electrical_energy_j"]).astype(float), 2))
+    stored_energies = set(np.round(unpacked_column(card.trials.packed["electrical_energy_j"]).astype(float), 2))
     feasible = stored[stored["state"] == "feasible"]
     assert len(dominated["x"]) == len(feasible) - len(front)
     assert set(np.round(dominated["x"], 2)) <= stored_energies
@@ -79,7 +78,7 @@ def test_a_measure_over_decades_gets_a_logarithmic_axis_by_itself(tab, payload):
     (card,) = payload.studies
     ratios = {}
     for name, text in card.trials.packed.items():
-        values = unpacked(text)[list(card.front)]
+        values = unpacked_column(text)[list(card.front)]
         if np.isfinite(values).all() and values.min() > 0 and np.ptp(values) > 0:
             ratios[name] = float(np.quantile(values, 0.95) / np.quantile(values, 0.05))
     calm = min(ratios, key=ratios.get)

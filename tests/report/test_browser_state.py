@@ -6,8 +6,7 @@ from urllib.parse import quote
 import numpy as np
 import pytest
 
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 
 pytestmark = pytest.mark.browser
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from tests.report.conftest import grown
 
 pytestmark = pytest.mark.browser

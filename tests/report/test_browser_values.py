@@ -10,8 +10,7 @@ import trimesh
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
 from pareto_monoped.report.figures import _states_data
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from tests.report.conftest import Tab, cut, unpacked
 
 pytestmark = pytest.mark.browser

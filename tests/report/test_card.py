@@ -6,7 +6,7 @@ import pytest
 
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.report.card import MapPlace, Places, best_of_weights, study_card
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 
 PLACES = Places(maps={"VT8020": MapPlace(number=0, first_gearbox=0)}, kits={"VT8020": 0})
 

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from pareto_monoped.pareto.indicators import hypervolume, reference_point
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.comparison import _held, _surface, compare, group_of, least_second, seed_groups
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build
 from pareto_monoped.report.resimulation import resimulate
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from tests.report.conftest import cut
 
 numbers = st.floats(0.5, 2.0)

@@ -9,7 +9,7 @@ import pytest
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.report.page import payload_of
 
-STORED = Path(__file__).parents[1] / "study" / "data" / "plain.db"
+STORED = Path(__file__).parents[1] / "storage" / "data" / "plain.db"
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 
-from pareto_monoped.report.designs_table import MOST_ROWS, designs_table, evenly
-from pareto_monoped.report.packing import unpacked
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.packing import unpacked_column
+from pareto_monoped.report.page import build
+from pareto_monoped.report.tables import MOST_ROWS, designs_table, evenly
 
 
 def read(text: str) -> list[pd.DataFrame]:
@@ -81,4 +81,4 @@ def test_each_study_has_its_table_under_its_name(source, source_u12):
 def test_packed_columns_are_read_as_they_were_written(payload, data):
     (card,) = payload.studies
     heat = data.trials["electrical_energy_j"].to_numpy()
-    assert unpacked(card.trials.packed["electrical_energy_j"]) == pytest.approx(heat, rel=2.0**-15, nan_ok=True)
+    assert unpacked_column(card.trials.packed["electrical_energy_j"]) == pytest.approx(heat, rel=2.0**-15, nan_ok=True)

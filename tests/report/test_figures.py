@@ -24,8 +24,8 @@ from pareto_monoped.report.figures import (
     write_map_figure,
 )
 from pareto_monoped.report.front_figure import JOINTS, STYLES, front_figure
-from pareto_monoped.report.jump_packing import unpacked
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.packing import unpacked
+from pareto_monoped.report.page import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from pareto_monoped.design import CONTROL, NAMES, columns
 from pareto_monoped.jump.frames import FRAME_COLUMNS, Recording, frame_steps, recordings
-from pareto_monoped.report.jump_packing import COUNTS, lift_off_s, packed, unpacked
+from pareto_monoped.report.packing import COUNTS, lift_off_s, packed, unpacked
 from pareto_monoped.robot.population import robot_arrays
 
 

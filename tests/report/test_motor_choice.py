@@ -10,11 +10,10 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.figures import write_figures
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from tests.report.conftest import made
 
 MOTORS = ("U8", "VT8020", "MN8014")

@@ -5,7 +5,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.report.motors import gearbox_numbers, leg_table, motor_tables
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 

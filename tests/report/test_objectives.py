@@ -4,17 +4,16 @@ from dataclasses import replace
 
 import pytest
 
+from pareto_monoped.analysis.choices import choices
 from pareto_monoped.measures import measure
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.comparison import least_second
 from pareto_monoped.report.front_figure import front_figure
-from pareto_monoped.report.page import page
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build, page
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.report.summary import sentences
 from pareto_monoped.report.tables import comparison_tables, head
-from pareto_monoped.study.choices import choices
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from tests.report.conftest import made
 
 THREE = ("height_m", "electrical_energy_j", "mass_kg")

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.report.packing import packed
+from pareto_monoped.report.packing import packed_column
 from tests.report.conftest import unpacked
 
 LIMIT = float(np.finfo(np.float32).max) * (1.0 - 2.0**-16)
@@ -12,16 +12,16 @@ TINY = float(np.finfo(np.float32).tiny)
 
 @given(st.lists(st.floats(-LIMIT, LIMIT).filter(lambda x: x == 0.0 or abs(x) > TINY), max_size=20))
 def test_values_come_back_to_sixteen_bits_and_four_letters_each(values):
-    text = packed(values)
+    text = packed_column(values)
     assert len(text) == 4 * len(values)
     assert unpacked(text) == pytest.approx(values, rel=2.0**-16 * 1.01, abs=0.0)
 
 
 def test_what_is_not_a_number_is_none():
-    found = unpacked(packed([1.0, np.nan, np.inf, -np.inf, 1e300, 2.0]))
+    found = unpacked(packed_column([1.0, np.nan, np.inf, -np.inf, 1e300, 2.0]))
     assert [np.isnan(value) for value in found] == [False, True, True, True, True, False]
 
 
 def test_each_value_can_be_read_alone():
     values = [0.1, -2.5, 3e4]
-    assert [unpacked(packed(values)[4 * i : 4 * i + 4])[0] for i in range(3)] == pytest.approx(values, rel=1e-5)
+    assert [unpacked(packed_column(values)[4 * i : 4 * i + 4])[0] for i in range(3)] == pytest.approx(values, rel=1e-5)

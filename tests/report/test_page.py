@@ -9,8 +9,15 @@ import pytest
 from pareto_monoped import report
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
-from pareto_monoped.report.page import SCRIPTS, asset, page, payload_of, write_report
-from pareto_monoped.report.payload import PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M
+from pareto_monoped.report.page import (
+    PUBLISHED_LINK_KG,
+    PUBLISHED_LINK_KG_PER_M,
+    SCRIPTS,
+    asset,
+    page,
+    payload_of,
+    write_report,
+)
 
 
 class Scripts(HTMLParser):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pareto_monoped.design import NAMES, PAPER_CASES, PAPER_NAMES
-from pareto_monoped.pareto.pick import Knee, pick
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import Knee
 from pareto_monoped.report import trials as trials_module
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.jump_packing import unpacked
-from pareto_monoped.report.page import embedded
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.packing import unpacked
+from pareto_monoped.report.page import build, embedded
 from pareto_monoped.robot.build import build_robot
 from tests.report.conftest import cut, grown
 
@@ -118,7 +118,7 @@ def test_studies_with_nothing_to_choose_from_give_a_payload(data, resimulation, 
 
 def test_weighted_runs_give_the_trial_of_least_cost(weighted):
     from pareto_monoped.report.resimulation import resimulate
-    from pareto_monoped.study.reader import read_study
+    from pareto_monoped.storage.reader import read_study
 
     data = read_study(weighted)
     source = Source(data=data, resimulation=resimulate(data, most_jumps=1), models={})

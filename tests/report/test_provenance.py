@@ -1,4 +1,4 @@
-from pareto_monoped.report.provenance import command, provenance
+from pareto_monoped.report.summary import command, provenance
 
 
 def test_every_setting_and_version_is_listed_once(data):

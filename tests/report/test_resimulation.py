@@ -2,15 +2,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.report.jump_packing import packed
-from pareto_monoped.report.resimulation import (
-    JUMPS_BYTES,
-    LEAST_FRAMES,
-    MOST_FRAMES,
-    frames_for,
-    jumps_of,
-    resimulate,
-)
+from pareto_monoped.report.packing import packed
+from pareto_monoped.report.resimulation import JUMPS_BYTES, LEAST_FRAMES, MOST_FRAMES, frames_for, jumps_of, resimulate
 
 
 def test_what_is_simulated_again_agrees_with_the_database(resimulation):

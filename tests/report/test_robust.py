@@ -6,18 +6,15 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from pareto_monoped.analysis.alternatives import alternatives
+from pareto_monoped.analysis.robustness import robust, robust_front, robust_trials
+from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.measures import ROBUST_NAMES
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.page import embedded, page
-from pareto_monoped.report.payload import build
-from pareto_monoped.study.alternatives import alternatives
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robust_front import robust_front, robust_trials
-from pareto_monoped.study.robust_rows import read_robustness
-from pareto_monoped.study.robustness import robust
-from pareto_monoped.study.sensitivity import sensitivity
-from pareto_monoped.study.sensitivity_rows import read_sensitivity
-from pareto_monoped.uncertainty.ranges import load_uncertainty
+from pareto_monoped.report.page import build, embedded, page
+from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.uncertainty.settings import load_uncertainty
 from tests.report.conftest import Tab, grown, made, unpacked
 
 ASSETS = resources.files("pareto_monoped") / "report" / "assets"

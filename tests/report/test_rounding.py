@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.report.rounding import column, number
+from pareto_monoped.report.packing import column, number
 
 
 def test_column_keeps_five_digits_and_leaves_out_what_is_no_number():

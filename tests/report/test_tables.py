@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 
-from pareto_monoped.report.payload import build
+from pareto_monoped.report.page import build
 from pareto_monoped.report.tables import _duration, cases_table, comparison_tables, head, published_link, safe
 
 

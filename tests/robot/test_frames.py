@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.geometry.parts import MassProperties
-from pareto_monoped.robot.frames import OVER, PART_TO_BODY, UPRIGHT, in_body
+from pareto_monoped.robot.units import OVER, PART_TO_BODY, UPRIGHT, in_body
 
 X, Y, Z = np.eye(3)
 

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pareto_monoped.actuator.joint_maps import JointMaps, joint_maps, motor_label
 from pareto_monoped.actuator.motors import motor_names
+from pareto_monoped.actuator.ratiomap import JointMaps, joint_maps, motor_label
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import DesignError
@@ -16,8 +16,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.strength.factors import capacities
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.factors import TABLE, capacities
 
 PAIRS = [("VT8020", "U8"), ("U8", "VT8020"), ("U12", "MN8014"), ("MN8014", "U12")]
 DESIGNS = complete(

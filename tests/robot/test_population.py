@@ -9,9 +9,9 @@ from pareto_monoped.design import NAMES, PAPER_CASES, Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
-from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.population import PARTS_ONLY, MassOptions, robot_arrays
 from pareto_monoped.robot.tables import actuator_table, actuator_units, weighed
+from pareto_monoped.robot.units import BODIES, JOINTS
 
 
 def assert_same_robot(arrays, i, robot):

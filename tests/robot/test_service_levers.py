@@ -3,9 +3,9 @@
 import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator
-from pareto_monoped.actuator.roller_bearings import roller_bearing
+from pareto_monoped.actuator.assumptions import default_service
+from pareto_monoped.actuator.needles import roller_bearing
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.actuator.service.data import default_service
 from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.design import GRAVITY_M_PER_S2, PAPER_CASES
 from pareto_monoped.geometry.roles import Role

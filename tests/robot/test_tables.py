@@ -7,8 +7,8 @@ from pareto_monoped.geometry.parts import total
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.robot import tables
-from pareto_monoped.robot.frames import UPRIGHT, in_body
 from pareto_monoped.robot.tables import actuator_table, link_units, weighed
+from pareto_monoped.robot.units import UPRIGHT, in_body
 
 
 @pytest.fixture(scope="module")

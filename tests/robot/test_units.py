@@ -10,8 +10,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
-from pareto_monoped.robot.frames import BODIES, JOINTS
-from pareto_monoped.robot.units import UNITS, ActuatorSized
+from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized
 
 HIP_RATIO, KNEE_RATIO = 4.5, 7.5  # actuators of different lengths and families
 

@@ -9,7 +9,7 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.factors import TABLE
 from tests.leg.polygons import polygon
 from tests.strength.support import structure
 

@@ -9,9 +9,8 @@ from pareto_monoped.design import LOWER, NAMES, UPPER, complete
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.strength.joint import ActuatorJoint, Structure
-from pareto_monoped.strength.loads import loads_of
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.factors import TABLE
+from pareto_monoped.strength.joint import ActuatorJoint, Structure, loads_of
 
 
 @lru_cache(maxsize=4)

@@ -9,8 +9,8 @@ from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import drive, mounts
+from pareto_monoped.strength.connections import SHAPE_SAFETY
 from pareto_monoped.strength.joint import Structure
-from pareto_monoped.strength.shaft_hub import SHAPE_SAFETY
 
 BASE = np.cos(np.radians(20.0))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.geometry.screws import M3, M4
-from pareto_monoped.strength.bolted import (
+from pareto_monoped.strength.connections import (
     head_force_n,
     least_preload_n,
     plate_compliance_mm_per_n,

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from pareto_monoped.materials import ALLOYS
-from pareto_monoped.strength.bolted import least_preload_n
+from pareto_monoped.strength.connections import least_preload_n
 from tests.strength.drawn import BOTH, DRIVE, ROWS, D, S, region, second_moment_mm4
 
 YIELD = 250.0  # MPa: EN AW-6082 T6

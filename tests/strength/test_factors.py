@@ -7,10 +7,9 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES
-from pareto_monoped.strength.factors import MOST_FACTOR, safeties, strength_factors
+from pareto_monoped.strength.factors import MOST_FACTOR, TABLE, safeties, strength_factors
 from pareto_monoped.strength.groups import GROUP_MEASURES, INFORMING
-from pareto_monoped.strength.loads import LOAD_NAMES, Loads, loads_of
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 from tests.strength.support import factors_one_by_one, jumped
 
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pareto_monoped.actuator.joint_maps import joint_maps
+from pareto_monoped.actuator.ratiomap import joint_maps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.single import simulate
-from pareto_monoped.strength.factors import capacities
+from pareto_monoped.strength.factors import TABLE, GearLife, capacities, gear_life, joint_factors
 from pareto_monoped.strength.gears import (
     MOST_JUMPS,
     lewis_torque_n_m,
@@ -18,9 +18,7 @@ from pareto_monoped.strength.gears import (
     strike_life_jumps,
     strike_torques_n_m,
 )
-from pareto_monoped.strength.loads import loads_of
-from pareto_monoped.strength.single import GearLife, gear_life, joint_factors
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength.joint import loads_of
 from tests.actuator.rating import iso6336
 from tests.strength.support import structure
 

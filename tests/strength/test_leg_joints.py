@@ -13,9 +13,9 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.stops import hip_stop, knee_stop
 from pareto_monoped.leg.thigh import thigh_parts
-from pareto_monoped.strength import chain, knee, stop_seats, turnbuckles
-from pareto_monoped.strength.bolted import least_preload_n
-from pareto_monoped.strength.table import TABLE
+from pareto_monoped.strength import chain, knee, stops
+from pareto_monoped.strength.connections import least_preload_n
+from pareto_monoped.strength.factors import TABLE
 from tests.leg.polygons import polygon
 from tests.strength.support import structure
 
@@ -54,9 +54,9 @@ def test_the_stud_is_an_m5_of_the_standards():
     # Stress area 14.2 mm2 (ISO 898-1, table).
     assert capacity("turnbuckle_stud") == pytest.approx(14.18 * STEEL, rel=2e-3)
     # VDI 2230-1: M5 bears 0.85 (150 / 5 + 45) = 63.75 MPa for 2e6 cycles, twenty times fewer 20^(1/3) = 2.714 as much.
-    assert turnbuckles.stud_fatigue_n(5.0, 2e6) == pytest.approx(2.0 * 63.75 * 14.18, rel=2e-3)
-    assert turnbuckles.stud_fatigue_n(5.0, 1e8) == turnbuckles.stud_fatigue_n(5.0, 2e6)
-    assert turnbuckles.stud_fatigue_n(5.0, 10.0) == turnbuckles.stud_fatigue_n(5.0, 1e4)
+    assert chain.stud_fatigue_n(5.0, 2e6) == pytest.approx(2.0 * 63.75 * 14.18, rel=2e-3)
+    assert chain.stud_fatigue_n(5.0, 1e8) == chain.stud_fatigue_n(5.0, 2e6)
+    assert chain.stud_fatigue_n(5.0, 10.0) == chain.stud_fatigue_n(5.0, 1e4)
     assert MAP.settings.parts.duty.jumps == 1e5
     assert capacity("turnbuckle_fatigue") == pytest.approx(2.0 * 63.75 * 2.7144 * 14.18, rel=2e-3)
 
@@ -91,7 +91,7 @@ def test_the_fork_yields_where_its_drawn_parts_are_weakest():
     others = (2.0 * cheek * (width - d), 2.0 * cheek * d, 2.0 * 0.25 * np.pi * d**2 / np.sqrt(3.0))
     # The slot is drawn 0.2 mm wider than the link.
     assert capacity("turnbuckle_fork") == pytest.approx(min(bending, *(STEEL * area for area in others)), rel=0.03)
-    assert turnbuckles.fork_n(4.0, 1.6, 4.09, 8.8, 3.5, 490.0) == pytest.approx(
+    assert chain.fork_n(4.0, 1.6, 4.09, 8.8, 3.5, 490.0) == pytest.approx(
         min(490 * 3.2 * 3.91, 490 * 3.2 * 4.09, 490 * 2 * 13.138 / 3**0.5, 490 * 8 * 3.5**2 / 6 * 8 / 10.4), rel=1e-3
     )
 
@@ -106,7 +106,7 @@ def test_each_part_of_a_fork_can_be_the_weakest(weak):
         "pin": ({"pin_mm": 0.5}, 2 * 0.25 * np.pi * 0.25 * 100.0 / 3**0.5),
         "root": ({"root_mm": 0.5}, 8.0 / 56.8 * 180.0 * 0.25 / 6.0 * 100.0),
     }[weak]
-    assert turnbuckles.fork_n(**(strong | change[0])) == pytest.approx(change[1])
+    assert chain.fork_n(**(strong | change[0])) == pytest.approx(change[1])
 
 
 def test_the_axle_s_dowels_turn_both_plates_of_the_shank():
@@ -164,7 +164,7 @@ def test_seats_and_strikers_on_the_thigh_s_edges(side, name, stop):
 
 def test_the_heel_s_arm_reaches_from_the_bumper_to_the_knee_s_round_end():
     """Between the squeezed line and the nearest metal of the plate's edge, which the drawn outline gives."""
-    arm = stop_seats.heel_arm_mm(D)
+    arm = stops.heel_arm_mm(D)
     seat = THIGH["knee_seat_extension"].places_mm[0]
     bumper = THIGH["knee_bumper_extension"].places_mm[0]
     plate = polygon(THIGH["thigh_plate_outer"].prisms[0].outline)
@@ -199,7 +199,7 @@ def test_the_base_s_rods_under_the_hip_s_stop():
     modulus = np.trapezoid(np.pi * r**3, r) / outer
     near = -rod.z0_mm
     one = YIELD * modulus / near
-    assert stop_seats.rod_n(outer, inner, near, YIELD) == pytest.approx(one, rel=1e-6)
+    assert stops.rod_n(outer, inner, near, YIELD) == pytest.approx(one, rel=1e-6)
     # The two rods as hinges: each half of the force, and the couple's force across the line that joins them.
     seat, bumper = BASE["hip_seat_front"], BASE["hip_bumper_front"]
     stop = hip_stop(D)

@@ -9,8 +9,8 @@ from pareto_monoped.geometry.roles import Role
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
+from pareto_monoped.strength.factors import TABLE
 from pareto_monoped.strength.links import rung_stress_mpa, side_stress_mpa
-from pareto_monoped.strength.table import TABLE
 from tests.leg.polygons import polygon
 from tests.strength.support import structure
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.materials import MATERIALS
-from pareto_monoped.strength.press_fit import PressFit
+from pareto_monoped.strength.connections import PressFit
 
 
 def lame(fit, interference_mm):

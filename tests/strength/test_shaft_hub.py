@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.strength.shaft_hub import (
+from pareto_monoped.strength.connections import (
     BOND_MPA,
     bearing_force_n,
     bond_torque_n_m,

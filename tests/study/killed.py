@@ -14,9 +14,9 @@ import sys
 import time
 from pathlib import Path
 
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.definition.study import load_study
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 from pareto_monoped.study.simulator import load_simulator
 

@@ -1,8 +1,7 @@
 """When two databases hold the same study."""
 
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robust_rows import read_robustness
-from pareto_monoped.study.sensitivity_rows import read_sensitivity
+from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.reader import read_study
 
 
 def assert_same_study(one, other):

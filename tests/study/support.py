@@ -6,17 +6,17 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
+from pareto_monoped.definition import provenance
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.errors import StudyError
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.study import provenance
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.generation import Generation
-from pareto_monoped.study.meta import StudyMeta
-from pareto_monoped.study.protocol import Scores
-from pareto_monoped.study.scoring import judge
-from pareto_monoped.study.store import Store, create_database
+from pareto_monoped.search.algorithm import Scores
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge
+from pareto_monoped.storage.columns import Generation
+from pareto_monoped.storage.meta import StudyMeta
+from pareto_monoped.storage.store import Store, create_database
 
 MINIMAL = {"name": "s", "evaluations": 10}
 """What a study file must have at least."""

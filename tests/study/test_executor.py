@@ -4,14 +4,14 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 
 import pytest
 
+from pareto_monoped.analysis.robustness import robust
+from pareto_monoped.analysis.sensitivity import sensitivity
+from pareto_monoped.analysis.verify import verify
 from pareto_monoped.jump import audit, screen, shared
 from pareto_monoped.jump.peers import cluster, processes
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robustness import robust
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
-from pareto_monoped.study.sensitivity import sensitivity
-from pareto_monoped.study.verify import verify
-from pareto_monoped.uncertainty.ranges import load_uncertainty
+from pareto_monoped.uncertainty.settings import load_uncertainty
 from tests.compute.dask_here import DaskHere
 from tests.study.same import assert_same_study
 from tests.study.support import study_of

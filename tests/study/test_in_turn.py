@@ -7,18 +7,17 @@ from functools import partial
 import numpy as np
 
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.analysis import robustness
+from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.design import PAPER_CASES, PAPER_MOTOR
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.shared import SharedEvaluator
-from pareto_monoped.study import robustness
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.robustness import robust
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
-from pareto_monoped.uncertainty import evaluator
-from pareto_monoped.uncertainty.evaluator import RobustEvaluator
-from pareto_monoped.uncertainty.ranges import load_uncertainty
-from pareto_monoped.uncertainty.settings import Sampling
+from pareto_monoped.uncertainty import samples
+from pareto_monoped.uncertainty.samples import RobustEvaluator
+from pareto_monoped.uncertainty.settings import Sampling, load_uncertainty
 from tests.study.support import study_of
 
 LEAST = dict.fromkeys(("gear_safety", "link_safety", "chain_safety", "stop_safety", "joint_safety"), 1.0)
@@ -61,7 +60,7 @@ def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
 
 
 def test_robust_objectives_keep_the_workers_busy_over_their_chunks(monkeypatch):
-    monkeypatch.setattr(evaluator, "_JUMPS", 256)
+    monkeypatch.setattr(samples, "_JUMPS", 256)
     designs = np.array([PAPER_CASES[name].design.as_array() for name in ("A", "B", "C")])
     gearboxes, calibration = map_for(PAPER_MOTOR), load_calibration()
     names, sampling = (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 
 ROOT = Path(__file__).parents[2]
 WEIGHTED = 'name = "weighted_cmaes"\nheight_weights = [0.3, 0.7]\niterations = 15'

@@ -12,17 +12,17 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.analysis.verify import verify
+from pareto_monoped.definition.study import load_study, study_from_dict
 from pareto_monoped.design import NAMES, RATIOS
 from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.study.algorithms import make_algorithm
-from pareto_monoped.study.definition import load_study, study_from_dict
-from pareto_monoped.study.motor_choice import kit_maps, searched_coordinates
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.response_surface import features_of
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.response_surface import features_of
+from pareto_monoped.search.space import kit_maps, searched_coordinates
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
-from pareto_monoped.study.verify import verify
 from tests.study.support import assert_refused, change, made_study, search_among_motors, study_of
 
 HIP, KNEE = ("U8", "VT8020"), ("VT8020", "MN8014", "U8")

@@ -7,10 +7,10 @@ import sys
 import numpy as np
 import pytest
 
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 
 FREE = ("knee_release_rad", "rest_length_m", "start_height_m")
 STUDY = """

@@ -7,14 +7,13 @@ import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
+from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import InputError, StudyError
-from pareto_monoped.study.definition import Study
-from pareto_monoped.study.optuna_objective import OptunaObjective
-from pareto_monoped.study.outside import JumpFunction
+from pareto_monoped.search.scoring import FAILED_VIOLATION
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.study.outside import JumpFunction, OptunaObjective
 from pareto_monoped.study.pymoo_problem import MonopedProblem
-from pareto_monoped.study.reader import read_study
 from pareto_monoped.study.run import run
-from pareto_monoped.study.scoring import FAILED_VIOLATION
 
 
 @pytest.fixture(scope="module")

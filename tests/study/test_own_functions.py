@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 
 import pareto_monoped as pm
+from pareto_monoped.analysis.verify import verify
 from pareto_monoped.cli import _run as cli
+from pareto_monoped.definition.goals import Limit
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.goals import Limit
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.own_functions import Jumps, called, functions_of
-from pareto_monoped.study.reader import read_study
-from pareto_monoped.study.verify import verify
 
 STUDY = {
     "name": "own",

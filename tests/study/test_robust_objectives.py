@@ -7,14 +7,14 @@ import sqlite3
 import numpy as np
 import pytest
 
+from pareto_monoped.analysis.verify import verify
 from pareto_monoped.cli import _run as cli
+from pareto_monoped.definition.study import load_study
 from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.front_reader import read_front
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.front_reader import read_front
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
-from pareto_monoped.study.verify import verify
 
 FILE = """
 name = "robust"
@@ -94,9 +94,9 @@ def test_the_trials_are_checked_and_simulated_again(db):
 
 
 def test_other_numbers_than_the_simulated_ones_are_found(db, monkeypatch):
-    from pareto_monoped.uncertainty import evaluator
+    from pareto_monoped.uncertainty import samples
 
-    monkeypatch.setattr(evaluator.RobustEvaluator, "drawn", evaluator.sobol_samples(load_study_ranges(db), 16, 2))
+    monkeypatch.setattr(samples.RobustEvaluator, "drawn", samples.sobol_samples(load_study_ranges(db), 16, 2))
     assert any("height_m.p05" in line for line in verify(db, simulate=24).findings)
 
 
@@ -160,7 +160,7 @@ def test_the_study_s_ranges_are_those_of_robust(db, capsys):
     assert cli(["robust", str(db), "--trial", str(trial), "--json", "--workers", "1"]) == 0
     shown = json.loads(capsys.readouterr().out)
     assert (shown["uncertainty"], shown["samples"], shown["seed"]) == ("own", 256, 1)
-    from pareto_monoped.study.robust_rows import read_robustness
+    from pareto_monoped.storage.extra_rows import read_robustness
 
     stored = read_robustness(db)[trial].settings
     assert stored["uncertainty"]["masses"] == {"lower": -0.02, "upper": 0.02, "source": "scales"}

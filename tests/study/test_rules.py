@@ -4,11 +4,11 @@ import pytest
 
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.definition import provenance
+from pareto_monoped.definition.study import load_study
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study import provenance
-from pareto_monoped.study.definition import load_study
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
 from tests.study.support import made_study

@@ -12,6 +12,10 @@ import numpy as np
 import optuna
 import pytest
 
+from pareto_monoped.definition.goals import constraints_of
+from pareto_monoped.definition.study import study_from_dict
+from pareto_monoped.definition.study_file import Stop
+from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.screen import CLEAR
@@ -19,15 +23,11 @@ from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.study.free_variables import Bounds
-from pareto_monoped.study.goals import constraints_of
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.status import status
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
-from pareto_monoped.study.status import status
-from pareto_monoped.study.store import Store
-from pareto_monoped.study.study_file import Stop
 from tests.study.support import UNSEALED, change
 
 ROOT = Path(__file__).parents[2]
@@ -174,7 +174,7 @@ def test_goes_on_without_the_users_own_files(tmp_path):
     folder = resources.files("pareto_monoped") / "data" / "calibrations"
     (tmp_path / "mine.toml").write_text((folder / "reference.toml").read_text().replace('"reference"', '"mine"'))
     (tmp_path / "s.toml").write_text('name = "s"\nevaluations = 20\naudit = false\ncalibration = "mine.toml"\n')
-    from pareto_monoped.study.definition import load_study
+    from pareto_monoped.definition.study import load_study
 
     run(load_study(tmp_path / "s.toml"), tmp_path / "s.db")
     (tmp_path / "mine.toml").unlink()

@@ -7,7 +7,7 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.errors import CalibrationError, DatabaseError, MotorError
 from pareto_monoped.jump.calibration import calibration_names
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.simulator import continued_simulator, load_simulator, stored_simulator
 from tests.study.support import made_database, made_study
 

@@ -6,14 +6,13 @@ import pytest
 from click.testing import CliRunner
 
 from pareto_monoped.cli import cli
+from pareto_monoped.definition.study import NO_STRENGTH, load_study, study_from_dict
 from pareto_monoped.errors import StudyError
 from pareto_monoped.report.summary import notes
-from pareto_monoped.strength.factors import strength_factors
+from pareto_monoped.storage.reader import read_study
+from pareto_monoped.strength.factors import TABLE, strength_factors
 from pareto_monoped.strength.groups import GROUP_MEASURES, REQUIRED_MEASURES
-from pareto_monoped.strength.loads import loads_of
-from pareto_monoped.strength.table import TABLE
-from pareto_monoped.study.definition import NO_STRENGTH, load_study, study_from_dict
-from pareto_monoped.study.reader import read_study
+from pareto_monoped.strength.joint import loads_of
 from pareto_monoped.study.run import resume, run
 from tests.study.support import assert_refused, made_database, made_study
 from tests.study.support import study_of as made

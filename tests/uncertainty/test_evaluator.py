@@ -9,9 +9,8 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.uncertainty import evaluator as module
-from pareto_monoped.uncertainty.evaluator import RobustEvaluator
-from pareto_monoped.uncertainty.samples import sobol_samples, variations
+from pareto_monoped.uncertainty import samples as module
+from pareto_monoped.uncertainty.samples import RobustEvaluator, sobol_samples, variations
 from pareto_monoped.uncertainty.settings import sampling_of
 from pareto_monoped.uncertainty.statistics import robustness
 

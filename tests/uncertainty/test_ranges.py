@@ -3,7 +3,7 @@
 import pytest
 
 from pareto_monoped.errors import InputError
-from pareto_monoped.uncertainty.ranges import load_uncertainty, uncertainty_of
+from pareto_monoped.uncertainty.settings import load_uncertainty, uncertainty_of
 
 
 def test_the_shipped_ranges_have_sources_and_are_those_that_the_documents_name():

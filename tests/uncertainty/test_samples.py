@@ -7,8 +7,8 @@ import pytest
 
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.uncertainty.ranges import Range, load_uncertainty
 from pareto_monoped.uncertainty.samples import DIMENSIONS, sobol_samples, variations
+from pareto_monoped.uncertainty.settings import Range, load_uncertainty
 
 UNCERTAINTY = load_uncertainty()
 CALIBRATION = load_calibration("reference")

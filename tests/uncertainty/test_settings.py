@@ -4,10 +4,9 @@ import json
 
 import pytest
 
+from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.errors import StudyError
-from pareto_monoped.study.definition import study_from_dict
-from pareto_monoped.uncertainty.ranges import load_uncertainty
-from pareto_monoped.uncertainty.settings import SEARCH_SAMPLES, Sampling, sampling_of
+from pareto_monoped.uncertainty.settings import SEARCH_SAMPLES, Sampling, load_uncertainty, sampling_of
 from tests.study.support import assert_refused, study_of
 
 SCALES = {"lower": -0.02, "upper": 0.03, "source": "scales"}

@@ -5,14 +5,24 @@ from functools import partial, reduce
 
 import numpy as np
 
-from pareto_monoped.actuator.gearset import GearSet, contact_ratios
+from pareto_monoped.actuator.gearset import GearSet, contact_ratios, load_sharing
 from pareto_monoped.actuator.layout import Family, ring_radius_mm
-from pareto_monoped.actuator.motors import Motor
+from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating import load
-from pareto_monoped.actuator.rating.flank import (
+from pareto_monoped.actuator.rating.capacity import (
+    FLANK_CURVES,
+    ROOT_CURVES,
+    equivalent_cycles,
     flank_factors,
     flank_limit_mpa,
     flank_load_n_per_mm,
+    highest_share,
+    mean_stress_factor,
+    passes_per_rad,
+    reversal_ratio,
+    root_limit_mpa,
+    root_load_n_per_mm,
+    static_root_limit_mpa,
     work_hardening_factor,
 )
 from pareto_monoped.actuator.rating.geometry import (
@@ -23,28 +33,13 @@ from pareto_monoped.actuator.rating.geometry import (
     single_contact_factors,
     tooth_form,
 )
-from pareto_monoped.actuator.rating.life import (
-    FLANK_CURVES,
-    ROOT_CURVES,
-    equivalent_cycles,
-    highest_share,
-    passes_per_rad,
-    reversal_ratio,
-)
-from pareto_monoped.actuator.rating.root import (
-    mean_stress_factor,
-    root_limit_mpa,
-    root_load_n_per_mm,
-    static_root_limit_mpa,
-)
 from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
-from pareto_monoped.actuator.service.planets import planet_width_mm
+from pareto_monoped.actuator.service.loads import planet_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sharing import load_sharing
 from pareto_monoped.actuator.webs import webs_of
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
+from pareto_monoped.geometry.making import RATED_SERIES, thickness_tolerance_mm
 from pareto_monoped.geometry.shapes import Numbers
-from pareto_monoped.geometry.tooth_thickness import RATED_SERIES, thickness_tolerance_mm
 from pareto_monoped.materials import GearGrade
 
 

@@ -7,14 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.geometry.gears import (
-    ADDENDUM,
-    DEDENDUM,
-    FILLET,
-    PRESSURE_ANGLE_RAD,
-    ExternalGear,
-    InternalGear,
-)
+from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, FILLET, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 
 _TANGENT = np.tan(PRESSURE_ANGLE_RAD)
@@ -73,17 +66,11 @@ def single_contact_factors(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToothForm:
-    """The root of a tooth loaded at the outer point of single pair contact.
+    """The root of a tooth loaded at the outer point of single pair contact."""
 
-    Attributes:
-        form_factor: Y_F.
-        stress_correction: Y_S.
-        notch: notch parameter q_s = s_Fn / (2 rho_F).
-    """
-
-    form_factor: Numbers
-    stress_correction: Numbers
-    notch: Numbers
+    form_factor: Numbers  #: Y_F
+    stress_correction: Numbers  #: Y_S
+    notch: Numbers  #: notch parameter q_s = s_Fn / (2 rho_F)
 
 
 def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Numbers:

@@ -5,11 +5,7 @@ Loads per face width are in N/mm, deviations in micrometres, stiffnesses in N/(m
 
 import numpy as np
 
-from pareto_monoped.actuator.rating.geometry import (
-    TOOTH_DEPTH,
-    contact_ratio_factor,
-    root_contact_ratio_factor,
-)
+from pareto_monoped.actuator.rating.geometry import TOOTH_DEPTH, contact_ratio_factor, root_contact_ratio_factor
 from pareto_monoped.geometry.gears import DEDENDUM, ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import ElasticMaterial, GearGrade

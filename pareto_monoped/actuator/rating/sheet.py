@@ -7,15 +7,18 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.actuator.rating.flank import contact_stress_mpa, elasticity_factor
-from pareto_monoped.actuator.rating.geometry import contact_ratio_factor, zone_factor
-from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, highest_share
-from pareto_monoped.actuator.rating.root import (
+from pareto_monoped.actuator.rating.capacity import (
+    FLANK_CURVES,
+    ROOT_CURVES,
     bending_stress_mpa,
+    contact_stress_mpa,
+    elasticity_factor,
+    highest_share,
     notch_sensitivity_factor,
     roughness_factor,
     static_notch_factor,
 )
+from pareto_monoped.actuator.rating.geometry import contact_ratio_factor, zone_factor
 from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, acting, safeties_of
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Numbers
@@ -23,63 +26,55 @@ from pareto_monoped.geometry.shapes import Numbers
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearRating:
-    """One gear in one mesh; stresses at the motor's peak torque with all load factors.
+    """One gear in one mesh; stresses at the motor's peak torque with all load factors."""
 
-    Attributes:
-        gear: ``sun``, ``planet`` or ``ring``.
-        steel: name of its grade.
-        treatment, quality, hardness_hv: of that grade.
-        tip_diameter_mm, root_diameter_mm: d_a, d_f.
-        tip_thickness_mm: s_a of the drawn teeth.
-        contact_number_mpa, bending_number_mpa: sigma_H,lim and sigma_F,lim.
-        contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H.
-        bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F.
-        overload_flank_safety, overload_root_safety: against static failure under the overload.
-        static_flank_life_factor, static_root_life_factor: Z_NT and Y_NT of a few load cycles.
-        static_notch_factor: Y_delta rel T for static stress.
-        single_contact_factor: Z_B or Z_D.
-        finish_factor, work_hardening_factor: Z_L Z_v Z_R and Z_W.
-        notch_sensitivity_factor, roughness_factor, mean_stress_factor: Y_delta rel T, Y_R rel T, Y_M.
-        form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B.
-        flank_cycles, root_cycles: load cycles that do the damage of the whole duty, at the peak torque or at the
-            highest level of the duty, if that is higher.
-        flank_life_factor, root_life_factor: Z_NT, Y_NT.
-    """
-
-    gear: str
-    steel: str
+    gear: str  #: ``sun``, ``planet`` or ``ring``
+    steel: str  #: name of its grade
+    #: treatment, quality, hardness_hv: of that grade
     treatment: str
     quality: str
     hardness_hv: float
+    #: tip_diameter_mm, root_diameter_mm: d_a, d_f
     tip_diameter_mm: float
     root_diameter_mm: float
-    tip_thickness_mm: float
+    tip_thickness_mm: float  #: s_a of the drawn teeth
+    #: contact_number_mpa, bending_number_mpa: sigma_H,lim and sigma_F,lim
     contact_number_mpa: float
     bending_number_mpa: float
+    #: contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H
     contact_stress_mpa: float
     contact_limit_mpa: float
     flank_safety: float
+    #: bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F
     bending_stress_mpa: float
     bending_limit_mpa: float
     root_safety: float
+    #: overload_flank_safety, overload_root_safety: against static failure under the overload
     overload_flank_safety: float
     overload_root_safety: float
-    single_contact_factor: float
+    single_contact_factor: float  #: Z_B or Z_D
+    #: finish_factor, work_hardening_factor: Z_L Z_v Z_R and Z_W
     finish_factor: float
     work_hardening_factor: float
+    #: notch_sensitivity_factor, roughness_factor, mean_stress_factor: Y_delta rel T, Y_R rel T, Y_M
     notch_sensitivity_factor: float
     roughness_factor: float
     mean_stress_factor: float
+    #: form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B
     form_factor: float
     stress_correction: float
     rim_factor: float
+    #: flank_cycles, root_cycles: load cycles that do the damage of the whole duty, at the peak torque or at the highest
+    #: level of the duty, if that is higher
     flank_cycles: float
     root_cycles: float
+    #: flank_life_factor, root_life_factor: Z_NT, Y_NT
     flank_life_factor: float
     root_life_factor: float
+    #: static_flank_life_factor, static_root_life_factor: Z_NT and Y_NT of a few load cycles
     static_flank_life_factor: float
     static_root_life_factor: float
-    static_notch_factor: float
+    static_notch_factor: float  #: Y_delta rel T for static stress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,61 +82,51 @@ class MeshRating:
     """Sun with planet, or planet with ring.
 
     Attributes:
-        tangential_force_n: F_t at the motor's peak torque, if the planets shared it evenly.
-        pitch_speed_m_per_s: against the carrier, at the motor's no-load speed.
-        contact_ratio: epsilon_alpha.
-        gear_ratio, pinion_diameter_mm: u, d1.
-        zone_factor, elasticity_factor, contact_ratio_factor: Z_H, Z_E in sqrt(MPa), Z_epsilon.
-        mesh_stiffness_n_per_mm_um, misalignment_um, pitch_deviation_um: c_gamma,alpha; F_beta,y; f_pb less y_alpha.
-        application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V.
-        face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta.
-        transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha.
         overload_face_load_factor, ...: the same four under the overload, without K_A and K_V.
-        pinion, wheel: the gears.
     """
 
-    tangential_force_n: float
-    pitch_speed_m_per_s: float
-    contact_ratio: float
+    tangential_force_n: float  #: F_t at the motor's peak torque, if the planets shared it evenly
+    pitch_speed_m_per_s: float  #: against the carrier, at the motor's no-load speed
+    contact_ratio: float  #: epsilon_alpha
+    #: gear_ratio, pinion_diameter_mm: u, d1
     gear_ratio: float
     pinion_diameter_mm: float
+    #: zone_factor, elasticity_factor, contact_ratio_factor: Z_H, Z_E in sqrt(MPa), Z_epsilon
     zone_factor: float
     elasticity_factor: float
     contact_ratio_factor: float
+    #: mesh_stiffness_n_per_mm_um, misalignment_um, pitch_deviation_um: c_gamma,alpha; F_beta,y; f_pb less y_alpha
     mesh_stiffness_n_per_mm_um: float
     misalignment_um: float
     pitch_deviation_um: float
+    #: application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V
     application_factor: float
     sharing_factor: float
     dynamic_factor: float
+    #: face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta
     face_load_factor: float
     root_face_load_factor: float
+    #: transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha
     transverse_load_factor: float
     root_transverse_load_factor: float
     overload_face_load_factor: float
     overload_root_face_load_factor: float
     overload_transverse_load_factor: float
     overload_root_transverse_load_factor: float
+    #: pinion, wheel: the gears
     pinion: GearRating
     wheel: GearRating
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rating:
-    """Rating of a gear set at its face width.
+    """Rating of a gear set at its face width."""
 
-    Attributes:
-        face_width_mm: b.
-        planet_gap_mm: between the tips of neighbouring planets.
-        highest_share: largest torque of the duty over the motor's peak torque, at least 1, to which limits refer.
-        overload_share: torque of the overload over the motor's peak torque.
-        sun_mesh, ring_mesh: the meshes.
-    """
-
-    face_width_mm: float
-    planet_gap_mm: float
-    highest_share: float
-    overload_share: float
+    face_width_mm: float  #: b
+    planet_gap_mm: float  #: between the tips of neighbouring planets
+    highest_share: float  #: largest torque of the duty over the motor's peak torque, at least 1, to which limits refer
+    overload_share: float  #: torque of the overload over the motor's peak torque
+    #: sun_mesh, ring_mesh: the meshes
     sun_mesh: MeshRating
     ring_mesh: MeshRating
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating import load
+from pareto_monoped.actuator.rating.capacity import highest_share
 from pareto_monoped.actuator.rating.geometry import ToothForm
-from pareto_monoped.actuator.rating.life import highest_share
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import WebSection
 from pareto_monoped.geometry.shapes import Numbers
@@ -31,41 +31,29 @@ class Safeties(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Member:
-    """One gear in one mesh, with everything that its rating needs besides the load.
+    """One gear in one mesh, with everything that its rating needs besides the load."""
 
-    Attributes:
-        gear: ``sun``, ``planet`` or ``ring``.
-        steel: its grade.
-        contact_factors: Z_H Z_E Z_epsilon, and Z_B or Z_D.
-        single_contact: Z_B or Z_D alone.
-        form: of its tooth.
-        rim_factor: Y_B.
-        flank_cycles, root_cycles: equivalent load cycles at ``life.highest_share``.
-        flank_life, root_life: Z_NT and Y_NT at these.
-        bending_factor: Y_M.
-        work_hardening: Z_W.
-        flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG.
-        overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure.
-        carries: load per face width at a safety of 1, each with its own load factors.
-    """
-
-    gear: str
-    steel: GearGrade
-    contact_factors: Numbers
-    single_contact: Numbers
-    form: ToothForm
-    rim_factor: Numbers
+    gear: str  #: ``sun``, ``planet`` or ``ring``
+    steel: GearGrade  #: its grade
+    contact_factors: Numbers  #: Z_H Z_E Z_epsilon, and Z_B or Z_D
+    single_contact: Numbers  #: Z_B or Z_D alone
+    form: ToothForm  #: of its tooth
+    rim_factor: Numbers  #: Y_B
+    #: flank_cycles, root_cycles: equivalent load cycles at ``life.highest_share``
     flank_cycles: Numbers
     root_cycles: Numbers
+    #: flank_life, root_life: Z_NT and Y_NT at these
     flank_life: Numbers
     root_life: Numbers
-    bending_factor: Numbers
-    work_hardening: float
+    bending_factor: Numbers  #: Y_M
+    work_hardening: float  #: Z_W
+    #: flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG
     flank_limit_mpa: Numbers
     root_limit_mpa: Numbers
+    #: overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure
     overload_flank_limit_mpa: float
     overload_root_limit_mpa: Numbers
-    carries: Safeties
+    carries: Safeties  #: load per face width at a safety of 1, each with its own load factors
 
 
 class MeshLoad(NamedTuple):
@@ -96,33 +84,23 @@ class MeshLoad(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh:
-    """Sun with planet, or planet with ring; the pinion is the smaller gear.
+    """Sun with planet, or planet with ring; the pinion is the smaller gear."""
 
-    Attributes:
-        internal: whether the wheel is the ring.
-        pinion, wheel: both gears.
-        pinion_teeth, wheel_teeth, diameter_mm, contact_ratio: z1, z2, d1, epsilon_alpha.
-        working_angle_rad: alpha_wt.
-        force_n: tangential force at the motor's peak torque, shared evenly by the planets.
-        sharing: K_gamma.
-        speed_m_per_s: of the pitch point against the carrier, at the motor's no-load speed.
-        pair_stiffness: c'.
-        pitch_deviation_um: f_pb less running in.
-    """
-
-    internal: bool
+    internal: bool  #: whether the wheel is the ring
+    #: pinion, wheel: both gears
     pinion: Member
     wheel: Member
+    #: pinion_teeth, wheel_teeth, diameter_mm, contact_ratio: z1, z2, d1, epsilon_alpha
     pinion_teeth: Numbers
     wheel_teeth: Numbers
     diameter_mm: Numbers
     contact_ratio: Numbers
-    working_angle_rad: Numbers
-    force_n: Numbers
-    sharing: Numbers
-    speed_m_per_s: Numbers
-    pair_stiffness: Numbers
-    pitch_deviation_um: Numbers
+    working_angle_rad: Numbers  #: alpha_wt
+    force_n: Numbers  #: tangential force at the motor's peak torque, shared evenly by the planets
+    sharing: Numbers  #: K_gamma
+    speed_m_per_s: Numbers  #: of the pitch point against the carrier, at the motor's no-load speed
+    pair_stiffness: Numbers  #: c'
+    pitch_deviation_um: Numbers  #: f_pb less running in
 
     @property
     def ratio(self) -> Numbers:
@@ -137,25 +115,18 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stage:
-    """Both meshes of one gear set, or of arrays of them, with the limits of the face width.
+    """Both meshes of one gear set, or of arrays of them, with the limits of the face width."""
 
-    Attributes:
-        gears: the gear sets.
-        sun_mesh, ring_mesh: the meshes.
-        settings: of stage 1.
-        webs: cross-sections of the carrier's webs.
-        width_low_mm, width_high_mm: least and largest face width allowed.
-        carried: ``Mesh.least_carried`` of both meshes.
-    """
-
-    gears: GearSet
+    gears: GearSet  #: the gear sets
+    #: sun_mesh, ring_mesh: the meshes
     sun_mesh: Mesh
     ring_mesh: Mesh
-    settings: ActuatorSettings
-    webs: WebSection
+    settings: ActuatorSettings  #: of stage 1
+    webs: WebSection  #: cross-sections of the carrier's webs
+    #: width_low_mm, width_high_mm: least and largest face width allowed
     width_low_mm: Numbers
     width_high_mm: Numbers
-    carried: tuple[Safeties, Safeties]
+    carried: tuple[Safeties, Safeties]  #: ``Mesh.least_carried`` of both meshes
 
     def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "Stage":
         """Some of the gear sets, by a mask or indices; enough for ``safeties``.

@@ -9,8 +9,14 @@ time, so that it is one load cycle per jump.
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.rating.life import FLANK_CURVES, ROOT_CURVES, highest_share, passes_per_rad, reversal_ratio
-from pareto_monoped.actuator.rating.root import mean_stress_factor
+from pareto_monoped.actuator.rating.capacity import (
+    FLANK_CURVES,
+    ROOT_CURVES,
+    highest_share,
+    mean_stress_factor,
+    passes_per_rad,
+    reversal_ratio,
+)
 from pareto_monoped.actuator.rating.stage import Member, MeshLoad, Stage
 from pareto_monoped.geometry.shapes import Numbers
 

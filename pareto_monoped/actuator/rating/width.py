@@ -1,4 +1,9 @@
-"""The least face width at which a stage keeps all its safety factors, for thousands of gear sets at once."""
+"""The least face width at which a stage keeps all its safety factors, for thousands of gear sets at once.
+
+Face width from the strength of the sun's teeth: Lewis with Barth's velocity factor.
+
+The face width of a gear set under either set of rules.
+"""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -7,7 +12,12 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.layout import Family
+from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.stage import Safeties, Stage, required
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.shapes import Numbers
 
 _SCAN = 12
@@ -48,15 +58,13 @@ class WidthBounds:
     set of width b whose safety factor is short by a share therefore needs at least so much more width: that share for
     a root, its square for a flank. Between the limits of the face width, safety grows with width until the
     misalignment, which grows too, eats the gain.
-
-    Attributes:
-        floor_mm: a width that ``least_width_mm`` does not go below; where ``hopeless``, the one that it returns.
-        enough: sets for which the largest width is enough; so is every width between the least one and that.
-        hopeless: sets for which it is not enough, although safety still grows there, so that no width is.
     """
 
+    #: A width that ``least_width_mm`` does not go below; where ``hopeless``, the one that it returns
     floor_mm: NDArray[np.float64]
+    #: Sets for which the largest width is enough; so is every width between the least one and that
     enough: NDArray[np.bool_]
+    #: Sets for which it is not enough, although safety still grows there, so that no width is
     hopeless: NDArray[np.bool_]
 
     def where(self, mask: NDArray[np.bool_]) -> "WidthBounds":
@@ -176,3 +184,52 @@ def _scanned(
         better = found > most[left]
         best[left[better]], most[left[better]] = tried[better], found[better]
     return good, bad, best
+
+
+# Lewis form factor Y of 20 degree full-depth teeth over the number of teeth: Shigley, table 14-2.
+_LEWIS = np.array(
+    [
+        (12, 0.245), (13, 0.261), (14, 0.277), (15, 0.290), (16, 0.296), (17, 0.303), (18, 0.309), (19, 0.314),
+        (20, 0.322), (21, 0.328), (22, 0.331), (24, 0.337), (26, 0.346), (28, 0.353), (30, 0.359), (34, 0.371),
+        (38, 0.384), (43, 0.397), (50, 0.409), (60, 0.422), (75, 0.435), (100, 0.447), (150, 0.460), (300, 0.472),
+    ]
+)  # fmt: skip
+
+LEAST_WIDTH_MODULES = 6.0
+"""Face width is at least this many modules (Niemann/Winter: 6 to 10 for narrow gears), where strength asks for less."""
+
+
+def lewis_form_factor(teeth: Numbers) -> NDArray[np.float64]:
+    """Y, interpolated linearly; constant beyond the table's ends."""
+    return np.asarray(np.interp(teeth, _LEWIS[:, 0], _LEWIS[:, 1]))
+
+
+def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
+    """Barth's factor for milled or hobbed teeth, (6.1 + v) / 6.1 (Shigley, eq. 14-6b)."""
+    return (6.1 + speed_m_per_s) / 6.1
+
+
+def lewis_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
+    """Least face width at which the sun's teeth carry the motor's peak torque.
+
+    Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all ratios are 4 or
+    more, so no planet has fewer teeth. The speed is that of the pitch point against the carrier, which decides how hard
+    teeth strike each other. It is taken at the motor's no-load speed, an upper bound.
+    """
+    radius_m = 0.5e-3 * gears.module_mm * gears.sun_teeth
+    force_n = settings.parts.gears.service_factor * motor.peak_torque_n_m / (radius_m * gears.planets)
+    speed = motor.no_load_speed_rad_per_s * (1.0 - 1.0 / gears.ratio) * radius_m
+    stress_mpa = settings.materials.gear_steel.allowable_stress_mpa / settings.parts.gears.factor_of_safety
+    weakest = np.minimum(gears.sun_teeth, gears.planet_teeth)
+    strong = velocity_factor(speed) * force_n / (stress_mpa * gears.module_mm * lewis_form_factor(weakest))
+    return np.maximum(strong, LEAST_WIDTH_MODULES * gears.module_mm)
+
+
+def face_width_mm(gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings) -> Numbers:
+    """Least face width that carries the motor's torque, of one gear set or of arrays of them.
+
+    Under ``paper`` by ``strength``, under ``iso6336`` by ``rating``; there, if no width is enough, the best one.
+    """
+    if settings.rules == "paper":
+        return lewis_width_mm(gears, motor, settings)
+    return np.asarray(least_width_mm(build_stage(gears, motor, family, settings), settings.constraints_off))[()]

@@ -13,17 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.assumptions import ServiceData, life_turns, output_turns_per_hour
 from pareto_monoped.actuator.bearings import RatedBearing, rated_bearing
+from pareto_monoped.actuator.gearset import load_sharing
 from pareto_monoped.actuator.layout import Layout
-from pareto_monoped.actuator.needles import LIFE_EXPONENT, needle_rows
-from pareto_monoped.actuator.roller_bearings import RollerBearing, as_bearing, roller_bearing
-from pareto_monoped.actuator.service.ball_row import row_load
-from pareto_monoped.actuator.service.data import ServiceData
-from pareto_monoped.actuator.service.duty import life_turns, output_turns_per_hour
-from pareto_monoped.actuator.service.output import knee_forces_n, line_tilt_rad, main_bearing_depth_mm
-from pareto_monoped.actuator.service.planets import planet_force_n, planet_turns
+from pareto_monoped.actuator.needles import LIFE_EXPONENT, RollerBearing, as_bearing, needle_rows, roller_bearing
+from pareto_monoped.actuator.service.loads import (
+    knee_forces_n,
+    line_tilt_rad,
+    main_bearing_depth_mm,
+    planet_force_n,
+    planet_turns,
+    row_load,
+)
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.sharing import load_sharing
 from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.roles import Group, Role
@@ -34,31 +37,18 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BearingService:
-    """One bearing under the duty.
+    """One bearing under the duty."""
 
-    Attributes:
-        place: which bearing, and for the main bearing at which joint.
-        bearing: of the catalogue, or the needles of one planet.
-        force_n: radial force at the actuator's peak torque.
-        equivalent_n: dynamic equivalent load there.
-        tilt_rad: by which the rings turn against each other.
-        life_h: L10 under the duty.
-        static_safety: at the peak torque.
-        overload_safety: static safety under the overload.
-        turns_per_output: its speed over the output's.
-        friction_coefficient: at the radius of its bore.
-    """
-
-    place: Place
-    bearing: RatedBearing | RollerBearing
-    force_n: float
-    equivalent_n: float
-    tilt_rad: float
-    life_h: float
-    static_safety: float
-    overload_safety: float
-    turns_per_output: float
-    friction_coefficient: float
+    place: Place  #: which bearing, and for the main bearing at which joint
+    bearing: RatedBearing | RollerBearing  #: of the catalogue, or the needles of one planet
+    force_n: float  #: radial force at the actuator's peak torque
+    equivalent_n: float  #: dynamic equivalent load there
+    tilt_rad: float  #: by which the rings turn against each other
+    life_h: float  #: L10 under the duty
+    static_safety: float  #: at the peak torque
+    overload_safety: float  #: static safety under the overload
+    turns_per_output: float  #: its speed over the output's
+    friction_coefficient: float  #: at the radius of its bore
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,10 +11,10 @@ from pareto_monoped.actuator.needles import needle_rows
 from pareto_monoped.actuator.rating.load import mesh_stiffness, pair_stiffness
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
+from pareto_monoped.geometry.making import thickness_tolerance_mm
 from pareto_monoped.geometry.parts import Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle
-from pareto_monoped.geometry.tooth_thickness import thickness_tolerance_mm
 from pareto_monoped.materials import ElasticMaterial
 
 _PALMGREN, _NEEDLE_SHARE = 3.84e-5, 4.08
@@ -24,21 +24,13 @@ _ARCMIN = 60.0 * 180.0 / np.pi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stiffness:
-    """How far the output turns per torque, by part, in rad / (N m).
+    """How far the output turns per torque, by part, in rad / (N m)."""
 
-    Attributes:
-        mesh: teeth of sun, planets and ring.
-        pins: bending of the planets' pins.
-        needles: contact of the planets' needles; 0 with bushes.
-        shaft: torsion of the sun's shaft up to the coupling.
-        carrier: torsion of the carrier up to the output face.
-    """
-
-    mesh: float
-    pins: float
-    needles: float
-    shaft: float
-    carrier: float
+    mesh: float  #: teeth of sun, planets and ring
+    pins: float  #: bending of the planets' pins
+    needles: float  #: contact of the planets' needles; 0 with bushes
+    shaft: float  #: torsion of the sun's shaft up to the coupling
+    carrier: float  #: torsion of the carrier up to the output face
 
     @property
     def stiffness_n_m_per_rad(self) -> float:

@@ -5,6 +5,8 @@ and drawn as it was before.
 
 Joints turn about parallel axes. Two parts can therefore only meet if their extents along the axis overlap and so do
 their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range.
+
+Sun, planets and ring mesh without overlap while the sun turns by one tooth; then all repeats.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,11 +16,18 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.assembly import Instance, Matrix, Pose, body_frames, instances, turn_y
-from pareto_monoped.cad.check.contact import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, overlap_of
-from pareto_monoped.cad.check.limits import DEPTH_MM, END_STOP, FREE_MOTION, SHANK_CLEARANCE
-from pareto_monoped.cad.check.result import Check, Finding, worst_of
-from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.check.overlap import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, near, overlap_of
+from pareto_monoped.cad.check.result import (
+    DEPTH_MM,
+    END_STOP,
+    FREE_MOTION,
+    GEAR_MESH,
+    SHANK_CLEARANCE,
+    Check,
+    Finding,
+    worst_of,
+)
+from pareto_monoped.cad.product import Instance, Matrix, Pose, Product, body_frames, instances, turn_y
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 
@@ -32,7 +41,7 @@ _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 Bodies = dict[str, list[tuple[Instance, m3.Manifold]]]
 
 
-def check(product: Product) -> tuple[Check, Check, Check]:
+def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
     """Look for parts that meet, at the angles where stops meet, and at the clearance between shank and base."""
     by_body = _by_body(product)
     turns = _turns(product, by_body)
@@ -47,22 +56,15 @@ def check(product: Product) -> tuple[Check, Check, Check]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Turn:
-    """A joint as it is looked at: the parts on both sides of it, in a frame with its origin on the axis, which is y.
+    """A joint as it is looked at: the parts on both sides of it, in a frame with its origin on the axis, which is y."""
 
-    Attributes:
-        name: of the joint.
-        stop: its end stops.
-        pairs: a part of the body that stands still and one of the body that turns, at angle zero; those that turning
-            can bring together.
-        soft: names of the bumpers.
-        strikers: names of the strikers.
-    """
-
-    name: str
-    stop: JointStop
+    name: str  #: of the joint
+    stop: JointStop  #: its end stops
+    #: A part of the body that stands still and one of the body that turns, at angle zero; those that turning can bring
+    #: together
     pairs: tuple[tuple[PlacedMesh, PlacedMesh], ...]
-    soft: frozenset[str]
-    strikers: frozenset[str]
+    soft: frozenset[str]  #: names of the bumpers
+    strikers: frozenset[str]  #: names of the strikers
 
     def meet_in_stop(self, one: PlacedMesh, other: PlacedMesh) -> bool:
         """Whether one part is a bumper and the other a striker."""
@@ -237,3 +239,32 @@ def _may_meet(one: PlacedMesh, other: PlacedMesh, reach: Mapping[str, tuple[floa
         return False
     (least, greatest), (other_least, other_greatest) = reach[one.name], reach[other.name]
     return least < other_greatest - DEPTH_MM and other_least < greatest - DEPTH_MM
+
+
+STEPS = 8
+"""Positions within one tooth."""
+
+
+def check_gear_mesh(product: Product) -> Check:
+    """Look at the gears of both actuators."""
+    return deepest(GEAR_MESH, f"sun, planets and ring in {STEPS} steps of one tooth", in_gear_cycle(product))
+
+
+def in_gear_cycle(product: Product) -> list[Overlap]:
+    """Overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
+    found: list[Overlap] = []
+    for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
+        if name == "knee_actuator" and actuator is product.robot.hip:
+            break
+        bodies = {instance.name: unique.mesh.body for instance, unique in product.placed() if instance.unit == name}
+        step = 2.0 * np.pi / (float(actuator.gears.sun_teeth) * actuator.ratio * STEPS)
+        for k in range(STEPS):
+            pose = Pose(hip_rad=k * step, knee_rad=k * step)
+            meshing = [
+                PlacedMesh.of(i.name, bodies[i.name], i.moves)
+                for i in instances(product.robot, pose, only=name)
+                if i.part.role is Role.GEAR
+            ]
+            for one, other in near(meshing):
+                found += overlap_of(one, other, f"in step {k} of the gears' cycle")
+    return found

@@ -18,9 +18,8 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.assembly import Instance, Pose, instances
-from pareto_monoped.cad.check.limits import LOOSE
-from pareto_monoped.cad.check.result import Check, count_of
+from pareto_monoped.cad.check.result import LOOSE, Check, count_of
+from pareto_monoped.cad.product import Instance, Pose, instances
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear

@@ -1,26 +1,44 @@
-"""All checks that an export must pass, in the order in which it reports them."""
+"""All checks that an export must pass, in the order in which it reports them.
+
+Every joint has its required safety factor under the loads of the jump; rows that only inform are left out.
+
+Every part's solid passes the CAD kernel's own check of topology and geometry.
+"""
 
 from collections.abc import Mapping, Sequence
 
-from pareto_monoped.cad.check import (
-    bolts,
-    centre_of_mass,
-    free_motion,
-    gear_mesh,
-    inertia,
-    mass,
-    overlap,
-    retention,
-    seats,
-    strength,
-    validity,
-    watertight,
-)
-from pareto_monoped.cad.check.result import Check
-from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check import free_motion, mass, overlap, retention, screws, watertight
+from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check.result import STRENGTH, VALID, Check, Finding, count_of, worst_of
 from pareto_monoped.cad.product import Product
 from pareto_monoped.robot.population import RobotArrays
-from pareto_monoped.strength.single import JointFactor
+from pareto_monoped.strength.factors import JointFactor
+
+
+def check_strength(factors: Sequence[JointFactor]) -> Check:
+    """Compare every factor with the one required.
+
+    Args:
+        factors: of all joints; none if the design does not jump, so that there are no loads.
+    """
+    factors = [one for one in factors if not one.joint.informs]
+    looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
+    return worst_of(STRENGTH, looked_at, [Finding(value=one.share, text=_sentence(one)) for one in factors])
+
+
+def _sentence(one: JointFactor) -> str:
+    joint = one.joint
+    return f"{joint.name}: safety factor = {one.factor:.3g}: must be at least {joint.required:g}; {joint.cure}"
+
+
+def check_validity(product: Product) -> Check:
+    """Look at the solid of every unique part."""
+    bad = [
+        f"{kind.name}: its solid is not valid"
+        for kind, solid in zip(product.unique, product.solids.result(), strict=True)
+        if not solid.valid
+    ]
+    return count_of(VALID, f"{len(product.unique)} parts", bad)
 
 
 def run_checks(
@@ -43,22 +61,22 @@ def run_checks(
     # First what does not need the solids, which the kernel's process is building meanwhile.
     without_solids = (
         overlap.check(product),
-        gear_mesh.check(product),
-        *free_motion.check(product),
-        *bolts.check(product),
-        seats.check(product),
+        free_motion.check_gear_mesh(product),
+        *free_motion.check_free_motion(product),
+        *screws.check_bolts(product),
+        screws.check_seats(product),
         retention.check(product.robot),
     )
     meshes = watertight.check(product, part_files, other_files)
     parts = weigh_parts(product)
     bodies = weigh_bodies(product, parts)
     return (
-        validity.check(product),
+        check_validity(product),
         *meshes,
         mass.check_parts(product, parts),
         *mass.check_bodies(bodies, arrays),
-        *centre_of_mass.check(bodies, arrays),
-        *inertia.check(bodies, arrays),
+        *mass.check_centre_of_mass(bodies, arrays),
+        *mass.check_inertia(bodies, arrays),
         *without_solids,
-        *(() if factors is None else (strength.check(factors),)),
+        *(() if factors is None else (check_strength(factors),)),
     )

@@ -1,6 +1,13 @@
-"""The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes."""
+"""The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes.
 
-from collections.abc import Sequence
+Balloons of items beside a view, in a column on either side, each with a leader to its part (ISO 6433).
+
+On exploded views a leader crosses no other part: where it begins on its part, and on which side its balloon stands, are
+chosen by exchanges that lower the number of crossings until none does.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import manifold3d as m3
@@ -9,12 +16,12 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from pareto_monoped.cad.assembly import Pose, body_frames
+from pareto_monoped.cad.drawing.dimension import spread
 from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
 from pareto_monoped.cad.drawing.sheet import scale_text
-from pareto_monoped.cad.product import Product
+from pareto_monoped.cad.product import Pose, Product, body_frames
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import SCREWS, Role, Visibility
 
@@ -131,3 +138,171 @@ def captioned(paper: Paper, name: str, scale: float) -> Paper:
     centred = Paper()
     centred.lay(paper, 0.0, -0.5 * (low + high))
     return centred
+
+
+BALLOON_MM = 4.0
+"""Radius of an item's balloon."""
+_PITCH_MM = 9.5
+_TEXT_MM = 2.5
+_COLUMN_MM = 14.0
+_RIM_MM = 3.0
+"""How far within a part's edge a leader may end (our own choice)."""
+_PLACES = 2
+"""Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
+_CROSSING_MM = 1000.0
+"""Length of leader that one crossing less is worth (our own choice: more than any leader has)."""
+_ROUNDS = 4
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _End:
+    """Where a leader ends on its part, and whether its balloon stands in the right column."""
+
+    tip: Point
+    to_right: bool
+
+
+def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
+    """Balloons of a dense view: leaders into the largest visible region of their parts, none crosses another.
+
+    Args:
+        paper: the view.
+        seen: its regions.
+        scale: paper over robot.
+        items: which items to point at; all of them are seen.
+    """
+    points = {}
+    for item in items:
+        region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
+        point = region.representative_point()
+        points[item] = (point.x * scale, point.y * scale)
+    ends = {}
+    for rank, item in enumerate(sorted(points, key=lambda item: (points[item][0], item))):
+        ends[item] = _End(tip=points[item], to_right=2 * rank >= len(points))
+    _draw(paper, _placed(ends, _columns(paper)), ends)
+
+
+def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
+    """Balloons of an exploded view, one for each region, with leaders that cross no other part if there is a way.
+
+    Args:
+        paper: the view.
+        seen: its regions, one for each item.
+        scale: paper over robot.
+    """
+    regions = {one.item: shapely.affinity.scale(one.region, scale, scale, origin=(0.0, 0.0)) for one in seen}
+    choices = {item: list(_ends(region)) for item, region in regions.items()}
+    columns = _columns(paper)
+    middle = 0.5 * sum(columns)
+    ends = {item: min(found, key=lambda end: _from_column(end, columns)) for item, found in choices.items()}
+    tree, order = shapely.STRtree(list(regions.values())), list(regions)
+    cost = _cost(ends, columns, tree, order)
+    for _ in range(_ROUNDS):
+        before = cost
+        for item in sorted(_crossing(ends, columns, tree, order), key=lambda item: abs(ends[item].tip[0] - middle)):
+            for end in choices[item]:
+                changed = ends | {item: end}
+                lower = _cost(changed, columns, tree, order)
+                if lower < cost - 1e-9:
+                    ends, cost = changed, lower
+        if cost == before:
+            break
+    _draw(paper, _placed(ends, columns), ends)
+
+
+def _columns(paper: Paper) -> tuple[float, float]:
+    """Where the columns of balloons stand."""
+    left, _, right, _ = paper.box()
+    return left - _COLUMN_MM, right + _COLUMN_MM
+
+
+def _from_column(end: _End, columns: tuple[float, float]) -> float:
+    return abs(columns[end.to_right] - end.tip[0])
+
+
+def _ends(region: BaseGeometry) -> Iterator[_End]:
+    """Places within a part at its left and its right end, in the middle, above and below."""
+    left, low, right, high = region.bounds
+    rim = min(_RIM_MM, 0.5 * (right - left))
+    for start in np.linspace(left, right - rim, _PLACES):
+        band = region.intersection(shapely.box(start, low, start + rim, high))
+        if band.area == 0.0:
+            continue  # between two instances
+        near = max(shapely.get_parts(band), key=shapely.area)
+        x0, y0, x1, y1 = near.bounds
+        third = (y1 - y0) / 3.0
+        for part in (near, *(near.intersection(shapely.box(x0, y, x1, y + third)) for y in (y0, y1 - third))):
+            if part.area > 0.0:
+                point = part.representative_point()
+                yield from (_End(tip=(point.x, point.y), to_right=to_right) for to_right in (False, True))
+
+
+def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int, Point]:
+    """The middle of every balloon: near the height of its leader's end, in an order in which no leaders cross."""
+    found: dict[int, Point] = {}
+    for to_right, x in zip((False, True), columns, strict=True):
+        tips = {item: end.tip for item, end in ends.items() if end.to_right is to_right}
+        order = sorted(tips, key=lambda item: (tips[item][1], item))
+        heights = spread([tips[item][1] for item in order], _PITCH_MM)
+        for item, y in zip(_uncrossed(order, heights, x, tips), heights, strict=True):
+            found[item] = (x, y)
+    return found
+
+
+def _hits(
+    ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
+) -> tuple[list[int], float]:
+    """The items whose leaders cross other parts, once for each crossing, and the length of all leaders."""
+    placed = _placed(ends, columns)
+    lines = shapely.linestrings([[placed[item], ends[item].tip] for item in order])
+    own, other = tree.query(lines, predicate="intersects")
+    return [order[k] for k in own[own != other].tolist()], float(shapely.length(lines).sum())
+
+
+def _crossing(
+    ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
+) -> set[int]:
+    return set(_hits(ends, columns, tree, order)[0])
+
+
+def _cost(ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]) -> float:
+    crossings, length = _hits(ends, columns, tree, order)
+    return _CROSSING_MM * len(crossings) + length
+
+
+def _draw(paper: Paper, placed: Mapping[int, Point], ends: Mapping[int, _End]) -> None:
+    for item, at in placed.items():
+        _balloon(paper, item, at, ends[item].tip)
+
+
+def _uncrossed(order: Sequence[int], heights: Sequence[float], x: float, points: Mapping[int, Point]) -> list[int]:
+    """Items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
+    items = list(order)
+
+    def long(k: int, item: int) -> float:
+        return math.hypot(points[item][0] - x, points[item][1] - heights[k])
+
+    shorter = True
+    while shorter:
+        shorter = False
+        for a in range(len(items)):
+            for b in range(a + 1, len(items)):
+                now = long(a, items[a]) + long(b, items[b])
+                if long(a, items[b]) + long(b, items[a]) < now - 1e-9:
+                    items[a], items[b] = items[b], items[a]
+                    shorter = True
+    return items
+
+
+def _balloon(paper: Paper, item: int, at: Point, tip: Point) -> None:
+    """An item's number in a circle, with a leader that ends in a dot within the part."""
+    way = np.array(tip) - np.array(at)
+    start = np.array(at) + way / np.hypot(*way) * BALLOON_MM
+    paper.circle(*at, BALLOON_MM, width_mm=0.35)
+    paper.text(f"{item + 1}", at[0], at[1] - 0.5 * _TEXT_MM, height_mm=_TEXT_MM, align="centre")
+    paper.line([tuple(start), tip])
+    angles = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
+    dot = np.stack([tip[0] + 0.5 * np.cos(angles), tip[1] + 0.5 * np.sin(angles)], axis=1)
+    paper.fill(dot)

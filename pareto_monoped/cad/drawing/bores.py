@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from pareto_monoped.cad.drawing.lettering import TIMES
-from pareto_monoped.cad.shape.curves import polygon
-from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.drawing.paper import TIMES
+from pareto_monoped.cad.shape.outlines import contours, polygon
 from pareto_monoped.geometry.features import Cone, Hole, Mouth
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
@@ -27,22 +26,15 @@ _SCREWS = (M25, M3, M4, M5)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bore:
-    """Holes of one circle or pattern, from one height to another.
+    """Holes of one circle or pattern, from one height to another."""
 
-    Attributes:
-        shape: where they are.
-        low, high: heights of their ends.
-        through: whether they go through all of the part's material there.
-        feature: what is cut into them, if the part says so.
-        fit: their tolerance, if they have one.
-    """
-
-    shape: Circle | Pattern
+    shape: Circle | Pattern  #: where they are
+    #: low, high: heights of their ends
     low: float
     high: float
-    through: bool
-    feature: Hole | None
-    fit: Fit | None
+    through: bool  #: whether they go through all of the part's material there
+    feature: Hole | None  #: what is cut into them, if the part says so
+    fit: Fit | None  #: their tolerance, if they have one
 
     @property
     def radius(self) -> float:

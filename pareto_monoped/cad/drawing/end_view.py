@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.bores import Bore, number
 from pareto_monoped.cad.drawing.dimension import callout, callout_height
-from pareto_monoped.cad.drawing.lettering import TIMES
-from pareto_monoped.cad.drawing.paper import CHAIN, DASHED, SOLID, WIDE_MM, Paper
+from pareto_monoped.cad.drawing.paper import CHAIN, DASHED, SOLID, TIMES, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.profile import seen, visible_circles
 from pareto_monoped.cad.drawing.section import RoundPart
 from pareto_monoped.geometry.shapes import Pattern

@@ -10,8 +10,7 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, bores
-from pareto_monoped.cad.shape.curves import Contour, corners, ends, polygon
-from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.shape.outlines import Contour, contours, corners, ends, polygon
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Pattern
 
@@ -36,16 +35,11 @@ class Layer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """What the views of a part with layers are drawn from, in the sheet's directions.
+    """What the views of a part with layers are drawn from, in the sheet's directions."""
 
-    Attributes:
-        layers: from above.
-        bores: round holes, on the axis too.
-        low, high: ends along z.
-    """
-
-    layers: tuple[Layer, ...]
-    bores: tuple[Bore, ...]
+    layers: tuple[Layer, ...]  #: from above
+    bores: tuple[Bore, ...]  #: round holes, on the axis too
+    #: low, high: ends along z
     low: float
     high: float
 

@@ -11,7 +11,7 @@ import shapely
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape

@@ -36,21 +36,13 @@ _SAME_MM = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundPart:
-    """What the views of a round part are drawn from.
+    """What the views of a round part are drawn from."""
 
-    Attributes:
-        body: its half section without holes beside the axis.
-        teeth: its gears.
-        bores: its holes beside the axis.
-        fits: tolerances of its round faces.
-        from_above: whether the end view looks at its upper end.
-    """
-
-    body: BaseGeometry
-    teeth: tuple[Teeth, ...]
-    bores: tuple[Bore, ...]
-    fits: tuple[Fit, ...]
-    from_above: bool
+    body: BaseGeometry  #: its half section without holes beside the axis
+    teeth: tuple[Teeth, ...]  #: its gears
+    bores: tuple[Bore, ...]  #: its holes beside the axis
+    fits: tuple[Fit, ...]  #: tolerances of its round faces
+    from_above: bool  #: whether the end view looks at its upper end
 
     @property
     def is_solid(self) -> bool:

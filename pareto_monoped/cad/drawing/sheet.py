@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pareto_monoped.cad.drawing.lettering import width_mm
-from pareto_monoped.cad.drawing.paper import CHAIN, LETTER_MM, LINE_PITCH, WIDE_MM, Paper
+from pareto_monoped.cad.drawing.paper import CHAIN, LETTER_MM, LINE_PITCH, WIDE_MM, Paper, width_mm
 
 BINDING_MM, MARGIN_MM = 20.0, 10.0
 """Margins of the frame: for filing on the left, and on the other sides (ISO 5457)."""
@@ -39,36 +38,22 @@ SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Title:
-    """What the title block says.
+    """What the title block says."""
 
-    Attributes:
-        name: of the part, in words.
-        number: of the drawing.
-        material, hardness: with condition.
-        mass: of one, with its unit.
-        count: how many the robot has.
-        process: how it is made.
-        tolerances: general ones.
-        finish: arithmetical mean height Ra in micrometres of all faces without another; '' for none.
-        design: which robot.
-        digest: hash of the design.
-        date: of the design; '' if nothing tells it.
-        maker: the program.
-    """
-
-    name: str
-    number: str
+    name: str  #: of the part, in words
+    number: str  #: of the drawing
+    #: material, hardness: with condition
     material: str
     hardness: str
-    mass: str
-    count: int
-    process: str
-    tolerances: str
-    finish: str
-    design: str
-    digest: str
-    date: str
-    maker: str
+    mass: str  #: of one, with its unit
+    count: int  #: how many the robot has
+    process: str  #: how it is made
+    tolerances: str  #: general ones
+    finish: str  #: arithmetical mean height Ra in micrometres of all faces without another; '' for none
+    design: str  #: which robot
+    digest: str  #: hash of the design
+    date: str  #: of the design; '' if nothing tells it
+    maker: str  #: the program
 
 
 def scale_text(scale: float) -> str:

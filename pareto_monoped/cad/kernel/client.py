@@ -43,21 +43,13 @@ since there are half a million lasting objects, and found next to nothing (our o
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolidFacts:
-    """What the kernel finds about a part's solid, in the part's own frame.
+    """What the kernel finds about a part's solid, in the part's own frame."""
 
-    Attributes:
-        valid: whether it passes the kernel's own check of topology and geometry.
-        bodies: of how many separate bodies it is.
-        volume_mm3: its volume.
-        centre_mm: its centre, shape (3,).
-        inertia_mm5: volume integrals of the inertia tensor about the centre, shape (3, 3).
-    """
-
-    valid: bool
-    bodies: int
-    volume_mm3: float
-    centre_mm: Floats
-    inertia_mm5: Floats
+    valid: bool  #: whether it passes the kernel's own check of topology and geometry
+    bodies: int  #: of how many separate bodies it is
+    volume_mm3: float  #: its volume
+    centre_mm: Floats  #: its centre, shape (3,)
+    inertia_mm5: Floats  #: volume integrals of the inertia tensor about the centre, shape (3, 3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,17 +62,11 @@ class StepPlacement:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepAssembly:
-    """What the STEP files of a robot are written from.
+    """What the STEP files of a robot are written from."""
 
-    Attributes:
-        name: of the robot.
-        parts: its unique parts by name.
-        units: its units by name, each with its placed parts.
-    """
-
-    name: str
-    parts: "Mapping[str, Part]"
-    units: Mapping[str, tuple[StepPlacement, ...]]
+    name: str  #: of the robot
+    parts: "Mapping[str, Part]"  #: its unique parts by name
+    units: Mapping[str, tuple[StepPlacement, ...]]  #: its units by name, each with its placed parts
 
 
 def start() -> None:

@@ -18,7 +18,7 @@ from OCP.GProp import GProp_GProps
 from pareto_monoped.cad.kernel import step
 from pareto_monoped.cad.kernel.client import COLLECT_AFTER, SolidFacts, StepAssembly
 from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
-from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 
 

@@ -1,6 +1,10 @@
 """Pictures without a display: shaded triangles, and a PNG writer.
 
 Parallel projection, light from over the viewer's shoulder, and dark lines where the part or the depth changes.
+
+Triangles -> pixels with a depth buffer, compiled by numba; another thread runs on meanwhile.
+
+Importing this module imports numba, so it is imported where a picture is drawn.
 """
 
 import struct
@@ -11,6 +15,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+
+from pareto_monoped.compute.compiled import compiled
 
 Floats = NDArray[np.float64]
 Colour = tuple[float, float, float]
@@ -24,66 +30,40 @@ _LINE_DEPTH_MM = 1.5  # a line is drawn where the depth jumps by more than this,
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """What to draw: triangles in one frame and their colour.
+    """What to draw: triangles in one frame and their colour."""
 
-    Attributes:
-        points_mm: corners, shape (n, 3).
-        triangles: indices of corners, shape (m, 3).
-        colour: of the body.
-        number: of the row in the legend that names it; 0 for none.
-    """
-
-    points_mm: Floats
-    triangles: NDArray[np.int64]
-    colour: Colour
-    number: int = 0
+    points_mm: Floats  #: corners, shape (n, 3)
+    triangles: NDArray[np.int64]  #: indices of corners, shape (m, 3)
+    colour: Colour  #: of the body
+    number: int = 0  #: of the row in the legend that names it; 0 for none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Faces:
-    """What a viewer sees of a body, in the axes of the view: right, up and towards the viewer.
+    """What a viewer sees of a body, in the axes of the view: right, up and towards the viewer."""
 
-    Attributes:
-        box_mm: low and high corner of the body, shape (2, 3).
-        corners_mm: of the triangles that look at the viewer, shape (n, 3, 3).
-        light: how bright each of them is, shape (n,).
-    """
-
-    box_mm: Floats
-    corners_mm: Floats
-    light: Floats
+    box_mm: Floats  #: low and high corner of the body, shape (2, 3)
+    corners_mm: Floats  #: of the triangles that look at the viewer, shape (n, 3, 3)
+    light: Floats  #: how bright each of them is, shape (n,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
-    """Faces in a picture.
+    """Faces in a picture."""
 
-    Attributes:
-        faces: of a body.
-        colour: of the body.
-        number: of the row in the legend that names it; 0 for none.
-        move_mm: in the axes of the view, shape (3,).
-    """
-
-    faces: Faces
-    colour: Colour
-    number: int
-    move_mm: Floats
+    faces: Faces  #: of a body
+    colour: Colour  #: of the body
+    number: int  #: of the row in the legend that names it; 0 for none
+    move_mm: Floats  #: in the axes of the view, shape (3,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drawn:
-    """A picture, and what is where in it.
+    """A picture, and what is where in it."""
 
-    Attributes:
-        image: shape (height, width, 3).
-        numbers: number of the body that is seen at each pixel, 0 for none, shape (height, width).
-        px_per_mm: scale in the plane of the picture.
-    """
-
-    image: NDArray[np.uint8]
-    numbers: NDArray[np.int64]
-    px_per_mm: float
+    image: NDArray[np.uint8]  #: shape (height, width, 3)
+    numbers: NDArray[np.int64]  #: number of the body that is seen at each pixel, 0 for none, shape (height, width)
+    px_per_mm: float  #: scale in the plane of the picture
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,8 +123,6 @@ def draw(bodies: Sequence[Body], view: View, *, width: int, height: int) -> Draw
 
 def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float = 0.04) -> Drawn:
     """A picture of faces that one viewer sees, scaled to fill it."""
-    from pareto_monoped.cad.picture import raster
-
     # Two by two pixels are drawn per pixel of the picture, which smooths edges.
     w, h = 2 * width, 2 * height
     boxes = np.array([one.faces.box_mm + one.move_mm for one in shown])
@@ -156,10 +134,10 @@ def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float
     pixels = np.concatenate([one.faces.corners_mm * stretch + (one.move_mm * stretch + start) for one in shown])
     count = len(pixels)
     winner, depth = np.full((h, w), count, dtype=np.int32), np.full((h, w), -np.inf)
-    raster.nearest(pixels, winner, depth)
+    nearest(pixels, winner, depth)
     owners = np.repeat(np.arange(len(shown) + 1, dtype=np.int32), [*(len(one.faces.light) for one in shown), 1])
     colours = np.concatenate([*(one.faces.light[:, None] * np.asarray(one.colour) for one in shown), _PAPER[None]])
-    image = raster.composed(winner, depth, owners, colours, _LINE, _LINE_DEPTH_MM + 6.0 / scale)
+    image = composed(winner, depth, owners, colours, _LINE, _LINE_DEPTH_MM + 6.0 / scale)
     number = np.array([*(one.number for one in shown), 0])
     return Drawn(
         image=np.clip(image * 255.0 + 0.5, 0, 255).astype(np.uint8),
@@ -201,3 +179,74 @@ def _lit(normal: Floats) -> Floats:
         light += strength * np.clip(normal @ unit, 0.0, None)
     brightness: Floats = np.minimum(light, 1.15)
     return brightness
+
+
+Indices = NDArray[np.int32]
+
+
+@compiled
+def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
+    """Which triangle is nearest at each pixel, and how near; of equally near ones the first.
+
+    Args:
+        triangles: corners in pixels to the right, pixels down, and towards the viewer, shape (n, 3, 3).
+        winner: the triangle's index, shape (height, width); pixels that none covers are left as they are.
+        depth: how near, shape (height, width); -infinity where there is nothing yet.
+    """
+    height, width = winner.shape
+    for index in range(len(triangles)):
+        t = triangles[index]
+        area = (t[1, 0] - t[0, 0]) * (t[2, 1] - t[0, 1]) - (t[1, 1] - t[0, 1]) * (t[2, 0] - t[0, 0])
+        if area == 0.0:
+            continue
+        # Depth is linear over a triangle.
+        slope_x = ((t[1, 2] - t[0, 2]) * (t[2, 1] - t[0, 1]) - (t[2, 2] - t[0, 2]) * (t[1, 1] - t[0, 1])) / area
+        slope_y = ((t[2, 2] - t[0, 2]) * (t[1, 0] - t[0, 0]) - (t[1, 2] - t[0, 2]) * (t[2, 0] - t[0, 0])) / area
+        top, bottom = min(t[0, 1], t[1, 1], t[2, 1]), max(t[0, 1], t[1, 1], t[2, 1])
+        # A pixel belongs to the triangle that covers its centre.
+        for row in range(max(int(np.ceil(top - 0.5)), 0), min(int(np.ceil(bottom - 0.5)), height)):
+            y = row + 0.5
+            left, right = np.inf, -np.inf
+            for i in range(3):
+                j = (i + 1) % 3
+                y0, y1 = t[i, 1], t[j, 1]
+                if y0 != y1 and min(y0, y1) <= y <= max(y0, y1):
+                    x = t[i, 0] + (y - y0) / (y1 - y0) * (t[j, 0] - t[i, 0])
+                    left, right = min(left, x), max(right, x)
+            if left > right:
+                continue
+            for column in range(max(int(np.ceil(left - 0.5)), 0), min(int(np.ceil(right - 0.5)), width)):
+                z = t[0, 2] + slope_x * (column + 0.5 - t[0, 0]) + slope_y * (y - t[0, 1])
+                if z > depth[row, column]:
+                    depth[row, column] = z
+                    winner[row, column] = index
+
+
+@compiled
+def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, line: Floats, jump: float) -> Floats:
+    """Colours from 0 to 1 of a picture of half the width and height, with lines where another body or depth begins.
+
+    Args:
+        winner: index of the triangle at each pixel, shape (2 height, 2 width); the last colour's where none is.
+        depth: how near it is, the same shape.
+        owner: body of each triangle, and a last number for the background.
+        colours: red, green and blue of each triangle, and last of the paper.
+        line: colour of the lines.
+        jump: difference of depth that makes a line.
+    """
+    height, width = winner.shape
+    picture = np.zeros((height // 2, width // 2, 3))
+    for row in range(height):
+        for column in range(width):
+            here = winner[row, column]
+            edge = False
+            for step in range(2):
+                there_row, there_column = row + step, column + 1 - step
+                if there_row < height and there_column < width:
+                    there = winner[there_row, there_column]
+                    if owner[there] != owner[here] or abs(depth[there_row, there_column] - depth[row, column]) > jump:
+                        edge = True
+            for channel in range(3):
+                colour = line[channel] if edge else colours[here, channel]
+                picture[row // 2, column // 2, channel] += 0.25 * colour
+    return picture

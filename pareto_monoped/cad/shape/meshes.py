@@ -5,9 +5,21 @@ within ``TOLERANCE_MM`` of their arcs, which changes the volume of thin round pa
 
 Meshes must also be closed in their files, see ``closed``. Points that would merge there are welded, and parts that
 touch are moved apart.
+
+Bevels on a closed triangle mesh: the edge of a cylinder becomes a cone between two edges. Millimetres.
+
+Boolean operations would do the same at twenty times the cost and leave slivers. Here the cap of the face is
+triangulated anew around the wider or narrower circle, the cylinder's edge slides along the axis to where the cone meets
+it, and a strip of triangles joins both.
+
+Is a mesh closed for the program that reads its file?
+
+An STL file has no shared points. Its reader merges the corners of triangles that stand at the same place, after they
+were rounded to single precision. A mesh that is closed in memory may therefore be open in its file: close points merge
+and leave triangles without area, and parts that touch get edges that border four triangles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -15,12 +27,178 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.shape.beveled import beveled, has_cone
-from pareto_monoped.cad.shape.closed import edge_numbers, place_numbers
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.shape.stacks import is_on, regrouped
-from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
+
+Points = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+_LEAST_FACETS = 3
+_ON_EDGE_MM = 1e-6  # from the edge of a cylinder to its points; far above rounding, far below the shortest facet
+
+
+def has_cone(bevel: Bevel) -> bool:
+    """Whether there is a ring between cone and cylinder."""
+    return float(bevel.edge_mm) != float(bevel.at.radius_mm)
+
+
+def beveled(points_mm: Points, triangles: Triangles, bevels: Iterable[Bevel]) -> tuple[Points, Triangles]:
+    """The mesh with cones on the edges of its cylinders.
+
+    Args:
+        points_mm: shape (n, 3).
+        triangles: indices of points, anticlockwise from outside, shape (m, 3).
+        bevels: of plain numbers.
+
+    Raises:
+        ValueError: a bevel stands on no edge of the mesh, or is deeper than its cylinder.
+    """
+    faces: dict[tuple[float, bool], list[tuple[Bevel, float, float]]] = {}
+    for bevel in bevels:
+        if has_cone(bevel):
+            key = float(bevel.face_mm), float(bevel.end_mm) < float(bevel.face_mm)
+            faces.setdefault(key, []).extend((bevel, x, y) for x, y in bevel.centres_mm())
+    for (face, upward), rings in faces.items():
+        points_mm, triangles = _face_beveled(points_mm, triangles, face, upward, rings)
+    return points_mm, triangles
+
+
+def _face_beveled(
+    points: Points, triangles: Triangles, face_mm: float, upward: bool, rings: list[tuple[Bevel, float, float]]
+) -> tuple[Points, Triangles]:
+    """All bevels of one plane across the axis, in caps that look up or down."""
+    in_plane = np.abs(points[:, 2] - face_mm) < _ON_EDGE_MM
+    cap = np.all(in_plane[triangles], axis=1)
+    cap[cap] = (_doubled_area(points[triangles[cap]]) > 0.0) == upward
+    border = _border(triangles[cap])
+    sides = triangles[~cap]
+    becomes = np.arange(len(points))  # the point in the cap that replaces each one
+    points, count = points.copy(), len(points)
+    added: list[Points] = []
+    strips: list[Triangles] = []
+    for bevel, x, y in rings:
+        wall, edge, end = float(bevel.at.radius_mm), float(bevel.edge_mm), float(bevel.end_mm)
+        away = points[:, :2] - (x, y)
+        on_edge = in_plane & (np.abs(np.hypot(away[:, 0], away[:, 1]) - wall) < _ON_EDGE_MM)
+        ring = np.flatnonzero(on_edge)
+        steps = border[np.all(on_edge[border], axis=1)]
+        around = sides[np.any(on_edge[sides], axis=1)]
+        depth = (points[around, 2] - face_mm) / (end - face_mm)
+        if len(ring) < _LEAST_FACETS or len(steps) != len(ring) or np.any((depth > 1e-9) & (depth <= 1.0)):
+            raise ValueError(
+                f"bevel at ({x:g}, {y:g}, {face_mm:g}) mm, {abs(end - face_mm):g} mm deep: must stand on an edge of "
+                f"radius {wall:g} mm and be less deep than its cylinder; correct the part's features"
+            )
+        becomes[ring] = count + np.arange(len(ring))
+        count += len(ring)
+        added.append(np.column_stack([(x, y) + away[ring] * (edge / wall), np.full(len(ring), face_mm)]))
+        start, stop = steps.T
+        strips += [
+            np.column_stack([start, stop, becomes[stop]]),
+            np.column_stack([start, becomes[stop], becomes[start]]),
+        ]
+        points[ring, 2] = end
+        in_plane[ring] = False
+    points = np.concatenate([points, *added])
+    return points, np.concatenate([sides, _filled(points, becomes[border], upward), *strips])
+
+
+def _doubled_area(corners: Points) -> NDArray[np.float64]:
+    """Twice the area of triangles seen from above, negative if they look down; ``corners`` has the shape (n, 3, 3)."""
+    one, other = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+
+
+def _border(triangles: Triangles) -> Triangles:
+    """Directed edges of triangles that no neighbour has the other way round, shape (n, 2)."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    _, where, counts = np.unique(low * (edges.max(initial=0) + 1) + high, return_index=True, return_counts=True)
+    single: Triangles = edges[np.sort(where[counts == 1])]
+    return single
+
+
+def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:
+    """Triangles that fill closed lines in a plane across the axis."""
+    loops = _loops(border)
+    seen = np.array([1.0, 1.0 if upward else -1.0])  # from the side to which they look, the lines run anticlockwise
+    corners = np.asarray(m3.triangulate([points[loop, :2] * seen for loop in loops]), dtype=np.int64)
+    return np.asarray(np.concatenate(loops)[corners])
+
+
+def _loops(border: Triangles) -> list[NDArray[np.int64]]:
+    """Closed lines from directed edges."""
+    following = dict(border.tolist())
+    loops = []
+    while following:
+        start, here = following.popitem()
+        loop = [start]
+        while here != start:
+            loop.append(here)
+            here = following.pop(here)
+        loops.append(np.array(loop, dtype=np.int64))
+    return loops
+
+
+MERGED = 1e-8
+"""Corners are merged when their coordinates are equal after rounding to this, in the file's unit (as in trimesh)."""
+# Odd numbers without pattern (digits of pi, e and the golden section), for sums modulo 2^64 that tell places apart: two
+# of a million places get the same number with a probability of 3e-8.
+_PLACE = np.array([0x243F6A8885A308D3, 0xB7E151628AED2A6B, 0x9E3779B97F4A7C15], dtype=np.uint64)
+_START, _END = np.uint64(0x13198A2E03707345), np.uint64(0xBF7158809CF4F3C7)
+
+Numbers = NDArray[np.uint64]
+
+
+def place_numbers(points: NDArray[np.floating]) -> Numbers:
+    """A number for each point, equal for the points that a reader merges.
+
+    Args:
+        points: in the file's unit, shape (..., 3).
+    """
+    rounded = np.rint(points.astype(np.float32).astype(np.float64) / MERGED).astype(np.int64).view(np.uint64)
+    x, y, z = np.moveaxis(rounded, -1, 0)
+    numbers: Numbers = x * _PLACE[0] + y * _PLACE[1] + z * _PLACE[2]
+    return numbers
+
+
+def edge_numbers(start: Numbers, end: Numbers) -> Numbers:
+    """A number for each directed edge, from the numbers of its ends."""
+    numbers: Numbers = start * _START + end * _END
+    return numbers
+
+
+def flaws(corners: NDArray[np.floating]) -> str:
+    """What keeps triangles from enclosing a volume, in words; empty if nothing does.
+
+    Every edge must border two triangles, which run along it in opposite directions.
+
+    Args:
+        corners: of the triangles, as they are in the file, shape (n, 3, 3).
+    """
+    here = place_numbers(corners)
+    following = here[:, [1, 2, 0]]
+    flat = int(np.any(here == following, axis=1).sum())
+    if flat:
+        return f"{flat} triangles have no area"
+    there, back = edge_numbers(here, following).ravel(), edge_numbers(following, here).ravel()
+    there.sort()
+    back.sort()
+    if np.all(there[1:] != there[:-1]) and np.array_equal(there, back):
+        return ""
+    edges, counts = np.unique(there, return_counts=True)
+    opposite, counts_opposite = np.unique(back, return_counts=True)
+    sound = np.intersect1d(edges[counts == 1], opposite[counts_opposite == 1], assume_unique=True)
+    return f"{len(edges) - len(sound)} edges do not border two triangles"
+
+
+def volume(corners: NDArray[np.floating]) -> float:
+    """Volume that closed triangles enclose, in the cube of the file's unit."""
+    a, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
+    return float(np.sum(a * np.cross(b, c)) / 6.0)
+
 
 TOLERANCE_MM = 0.01
 WELD_MM = 1e-4
@@ -31,17 +209,11 @@ APART_MM = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh:
-    """Triangles of one part in its own frame.
+    """Triangles of one part in its own frame."""
 
-    Attributes:
-        points_mm: shape (n, 3).
-        triangles: indices of points, anticlockwise from outside, shape (m, 3).
-        body: the same as a manifold, for intersections.
-    """
-
-    points_mm: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    body: m3.Manifold
+    points_mm: NDArray[np.float64]  #: shape (n, 3)
+    triangles: NDArray[np.int64]  #: indices of points, anticlockwise from outside, shape (m, 3)
+    body: m3.Manifold  #: the same as a manifold, for intersections
 
     @property
     def volume_mm3(self) -> float:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pareto_monoped.geometry.bevels import Bevel
+from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Prism
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape

@@ -6,12 +6,12 @@ from typing import Any
 from pareto_monoped import __version__
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.actuator.joint_maps import JointMaps
 from pareto_monoped.actuator.motors import motor_values
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.cad.as_built import Built
+from pareto_monoped.definition.provenance import digest
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
-from pareto_monoped.study.provenance import digest
 
 _DIGITS = 12
 """Of a design's hash: two of a million designs share one with a probability of 0.2 percent."""

@@ -7,27 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.drawing import drawings
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
-from pareto_monoped.cad.product import Product
-from pareto_monoped.cad.write import dxf, mjcf, triangles, urdf
+from pareto_monoped.cad.product import ACTUATOR_UNITS, Product
+from pareto_monoped.cad.write import dxf, meshes, mjcf, urdf
+from pareto_monoped.cad.write.dxf import stand_files
 from pareto_monoped.cad.write.folder import safe, write
-from pareto_monoped.cad.write.jump_record import jump_record, replay_script
-from pareto_monoped.cad.write.stand import stand_files
-from pareto_monoped.cad.write.visuals import METRES, Visual, colliders
+from pareto_monoped.cad.write.meshes import METRES, Visual, colliders
+from pareto_monoped.cad.write.mjcf import jump_record, replay_script
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import mjcf as simulated_mjcf
-from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.robot.population import RobotArrays
 
 
 def part_meshes(product: Product) -> dict[str, bytes]:
     """The STL file of every unique part, by the part's name."""
-    return {unique.name: triangles.stl(unique.mesh) for unique in product.unique}
+    return {unique.name: meshes.stl(unique.mesh) for unique in product.unique}
 
 
 def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
@@ -41,12 +40,10 @@ def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[
     made: dict[str, bytes] = {}
     if "3mf" in formats:
         printed = [unique for unique in product.unique if unique.part.process == "3D printed"]
-        made |= {f"print/{safe(unique.name)}.3mf": triangles.threemf(unique.mesh, unique.name) for unique in printed}
+        made |= {f"print/{safe(unique.name)}.3mf": meshes.threemf(unique.mesh, unique.name) for unique in printed}
     if "glb" in formats:
-        made["assembly.glb"] = triangles.glb(product)
-    return made | {
-        f"model/meshes/{safe(visual.name)}.stl": triangles.stl(visual.mesh, scale=METRES) for visual in shown
-    }
+        made["assembly.glb"] = meshes.glb(product)
+    return made | {f"model/meshes/{safe(visual.name)}.stl": meshes.stl(visual.mesh, scale=METRES) for visual in shown}
 
 
 def write_meshes(

@@ -1,19 +1,168 @@
 """The folder of an export: it is complete or absent, nothing is written outside it, and foreign files stay.
 
 A file is foreign unless the record of an earlier export lists it, under a name that an export writes.
+
+Interrupts while an export is written: its move into place is not broken off, its temporary folders are deleted.
+
+The formats that an export can write, and the files that each of them makes.
 """
 
 import re
 import secrets
-from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager
+import shutil
+import signal
+import threading
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 
-from pareto_monoped.cad.write.formats import ALWAYS, FILES, RECORD
-from pareto_monoped.cad.write.unbroken import noted, unbroken
 from pareto_monoped.config import read_json
-from pareto_monoped.errors import OutputError
+from pareto_monoped.errors import InputError, OutputError, complaint, unknown_name
 from pareto_monoped.files import FORCE, unwritable
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Ctrl-C, and what ends the worker processes of a batch."""
+_TRIES = 100
+"""To delete a folder: what a thread was writing when the folder got another name may come during the first."""
+_moving = threading.Lock()
+_unfinished: set[Path] = set()
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Hold interrupts back until the block has ended, then deliver them."""
+    with _moving:
+        if threading.current_thread() is not threading.main_thread():
+            # Python runs signal handlers in the main thread only.
+            yield
+            return
+        came: list[tuple[int, FrameType | None]] = []
+        before = {held: signal.signal(held, lambda number, frame: came.append((number, frame))) for held in _SIGNALS}
+        try:
+            yield
+        finally:
+            for held, handler in before.items():
+                signal.signal(held, handler)
+    for number, frame in came:
+        handler = before[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+        elif handler is signal.SIG_DFL:
+            signal.raise_signal(number)
+
+
+@contextmanager
+def noted(folder: Path) -> Iterator[None]:
+    """Remember a temporary folder while the block runs, and delete what is still in it at the end."""
+    _unfinished.add(folder)
+    try:
+        yield
+    finally:
+        _delete(folder)
+        _unfinished.discard(folder)
+
+
+@contextmanager
+def without_unfinished() -> Iterator[None]:
+    """Delete all temporary folders; nothing takes its place while the block runs."""
+    with _moving:
+        for folder in tuple(_unfinished):
+            _delete(folder)
+        yield
+
+
+def _delete(folder: Path) -> None:
+    """Delete a folder, to which another thread may still write: under another name, no thread finds it any more."""
+    gone = folder.with_name(f"{folder.name}-deleted")
+    with suppress(OSError):
+        folder.rename(gone)
+    for path in (gone, folder):
+        for _ in range(_TRIES):
+            shutil.rmtree(path, ignore_errors=True)
+            if not path.exists():
+                break
+
+
+FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "step": (
+        ("assembly.step", "the whole robot for any CAD program: named, coloured parts, mm"),
+        ("parts/step/", "each part for machining or changing"),
+    ),
+    "stl": (("parts/stl/", "each part as triangles, mm"),),
+    "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
+    "dxf": (
+        (
+            "laser/",
+            "the plates for the laser cutter: true outline without kerf on the layer CUT, mm; NOTES says what follows",
+        ),
+        ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
+    ),
+    "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
+    "mjcf": (
+        ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
+        ("model/jump.json", "every number that the jump needs besides the model: motors, controller, losses, SI units"),
+        ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
+    ),
+    "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
+    "pdf": (
+        (
+            "drawings/assembly.pdf",
+            "the robot with sections and the list of items, its units pulled apart, with balloons, and its cables",
+        ),
+        ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
+    ),
+    "assembly": (
+        (
+            "assembly/index.html",
+            "how the robot is put together: steps, torques, chain, cables, printing, casting",
+        ),
+        ("assembly/hardware.csv", "what is bought: designations, standards, counts, lengths of cables"),
+        ("assembly/cables.csv", "where the cables run: every corner, bend radius, cut length, ties"),
+        ("assembly/", "the pictures of the steps, and the mould for the foot"),
+    ),
+    "png": (
+        ("assembly.png", "the robot in its start pose"),
+        ("exploded.png", "the robot pulled apart along the joints' axis"),
+        ("hip_actuator_section.png", "the hip actuator cut along its axis, with numbers and names of its parts"),
+        ("knee_actuator_section.png", "the knee actuator, likewise"),
+        ("knee_joint_section.png", "the knee joint, likewise"),
+    ),
+}
+"""Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
+
+RECORD = "design.json"
+"""Name of the file that lists all files of an export; it is written last."""
+ALWAYS = (
+    "README.md",
+    "bom.csv",
+    "strength.csv",
+    "parameters.csv",
+    "monoped_equations.txt",
+    "checks.json",
+    RECORD,
+)
+"""Files of every export."""
+
+FORMATS = tuple(FILES)
+"""All formats, in the order in which they are listed; an export writes all of them by default."""
+
+
+def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
+    """The formats asked for, in the order of ``FORMATS``; all of them for None.
+
+    Raises:
+        InputError: an unknown name.
+    """
+    if names is None:
+        return FORMATS
+    if isinstance(names, str) or not isinstance(names, Sequence):
+        raise InputError(complaint("formats", names, "a list of formats, such as ['step']", "give one"))
+    for name in names:
+        if name not in FORMATS:
+            raise InputError(unknown_name("format", name, FORMATS))
+    return tuple(name for name in FORMATS if name in names)
+
 
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
 

@@ -1,4 +1,7 @@
-"""``hardware.csv``: what is bought, one row per designation with its standard and total count; and screws' torques."""
+"""``hardware.csv``: what is bought, one row per designation with its standard and total count; and screws' torques.
+
+``cables.csv``: every corner of every cable in the assembly's frame, and what is cut how long.
+"""
 
 import csv
 import io
@@ -19,23 +22,14 @@ _BOUGHT_ROUGH = frozenset({Role.SPROCKET})
 
 @dataclass(slots=True, kw_only=True)
 class Item:
-    """What is bought under one designation.
+    """What is bought under one designation."""
 
-    Attributes:
-        kind: role of the parts.
-        designation: what to order.
-        standard: that it follows; '' without one.
-        count: how many.
-        parts: the parts that it becomes.
-        remarks: what else the parts list says about them.
-    """
-
-    kind: str
-    designation: str
-    standard: str
-    count: int
-    parts: list[str]
-    remarks: list[str]
+    kind: str  #: role of the parts
+    designation: str  #: what to order
+    standard: str  #: that it follows; '' without one
+    count: int  #: how many
+    parts: list[str]  #: the parts that it becomes
+    remarks: list[str]  #: what else the parts list says about them
 
 
 def items(product: Listed) -> list[Item]:
@@ -111,3 +105,38 @@ def _split(part: Part) -> tuple[str, str]:
         take += 1
     designation = ", ".join(clauses[:take]) or part.material.name
     return designation, "; ".join(filter(None, (", ".join(clauses[take:]), rest)))
+
+
+_CABLES_COLUMNS = (
+    "cable",
+    "from",
+    "to",
+    "wires",
+    "designation",
+    "diameter_mm",
+    "bend_radius_mm",
+    "least_bend_radius_mm",
+    "path_mm",
+    "cut_mm",
+    "mass_not_counted_g",
+    "corner",
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "what",
+    "warning",
+)
+
+
+def cables_csv(product: Listed) -> str:
+    """The corners as CSV, with the thigh hanging down."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(_CABLES_COLUMNS)
+    for cable in cables(product.robot):
+        head = (cable.name, cable.start, cable.end, cable.wires, cable.designation, f"{cable.diameter_mm:g}")
+        bends = (f"{cable.bend_radius_mm:.1f}", f"{cable.least_bend_radius_mm:.1f}")
+        sizes = (*bends, f"{cable.length_mm:.0f}", f"{cable.cut_mm:g}", f"{cable.mass_g:.1f}")
+        for k, (point, what) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1):
+            writer.writerow((*head, *sizes, k, *(f"{value:.1f}" for value in point), what, cable.warning))
+    return stream.getvalue()

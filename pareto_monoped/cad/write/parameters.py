@@ -13,8 +13,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pareto_monoped.cad.assembly import ACTUATOR_UNITS
-from pareto_monoped.cad.product import Product, UniquePart
+from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, UniquePart
 from pareto_monoped.geometry.features import CountersunkHead, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Pattern, Shape
@@ -27,21 +26,13 @@ _ATTRIBUTE = re.compile(r"^        ((?:\w+, )*\w+): (.*(?:\n {12}.*)*)", re.MULT
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One dimension.
+    """One dimension."""
 
-    Attributes:
-        name: unique in the design; letters, digits and underscores.
-        value: in ``unit``.
-        unit: ``mm``, ``deg``, or empty for numbers and counts.
-        part: file name of the part that has it; empty for the whole leg.
-        meaning: what it is.
-    """
-
-    name: str
-    value: float
-    unit: str
-    part: str
-    meaning: str
+    name: str  #: unique in the design; letters, digits and underscores
+    value: float  #: in ``unit``
+    unit: str  #: ``mm``, ``deg``, or empty for numbers and counts
+    part: str  #: file name of the part that has it; empty for the whole leg
+    meaning: str  #: what it is
 
     @property
     def text(self) -> str:

@@ -6,8 +6,8 @@ from typing import Any
 from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
-from pareto_monoped.cad.write.formats import FILES
-from pareto_monoped.strength.single import GearLife, JointFactor
+from pareto_monoped.cad.write.folder import FILES
+from pareto_monoped.strength.factors import GearLife, JointFactor
 
 _HOW = {
     "laser cut": "Laser-cut by the layer CUT in `laser/`; countersink, tap and ream as its layer NOTES says; deburr.",

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pareto_monoped.cad.write.visuals import Collider, Visual, numbers
+from pareto_monoped.cad.write.meshes import Collider, Visual, numbers
 from pareto_monoped.jump.calibration import Joints
 from pareto_monoped.jump.model import joint_damping
-from pareto_monoped.robot.frames import BODIES, JOINTS
 from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.robot.units import BODIES, JOINTS
 
 _NO_TURN = "0 0 0"
 

@@ -7,11 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.actuator.gearset import GearSet
+from pareto_monoped.actuator.assumptions import DutyData
+from pareto_monoped.actuator.gearset import GearSet, load_sharing
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.rating import load
-from pareto_monoped.actuator.rating.build import build_stage, load_sharing
-from pareto_monoped.actuator.rating.flank import elasticity_factor, work_hardening_factor
+from pareto_monoped.actuator.rating.build import build_stage
+from pareto_monoped.actuator.rating.capacity import (
+    FLANK_CURVES,
+    ROOT_CURVES,
+    elasticity_factor,
+    equivalent_cycles,
+    highest_share,
+    mean_stress_factor,
+    passes_per_rad,
+    roughness_factor,
+    work_hardening_factor,
+)
 from pareto_monoped.actuator.rating.geometry import (
     ToothForm,
     external_rim_factor,
@@ -20,15 +31,6 @@ from pareto_monoped.actuator.rating.geometry import (
     tooth_form,
     zone_factor,
 )
-from pareto_monoped.actuator.rating.life import (
-    FLANK_CURVES,
-    ROOT_CURVES,
-    equivalent_cycles,
-    highest_share,
-    passes_per_rad,
-)
-from pareto_monoped.actuator.rating.root import mean_stress_factor, roughness_factor
-from pareto_monoped.actuator.rating_data import DutyData
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear

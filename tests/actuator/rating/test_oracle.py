@@ -8,12 +8,12 @@ import pytest
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.rating.build import build_stage
-from pareto_monoped.actuator.rating.flank import contact_stress_mpa
+from pareto_monoped.actuator.rating.capacity import contact_stress_mpa
 from pareto_monoped.actuator.rating.geometry import tooth_form
 from pareto_monoped.actuator.rating.load import transverse_load_factors
 from pareto_monoped.actuator.rating.sheet import rate
+from pareto_monoped.actuator.rating.width import lewis_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.actuator.strength import face_width_mm
 from pareto_monoped.materials import GEAR_GRADES
 from tests.actuator.rating import iso6336
 
@@ -145,7 +145,7 @@ def test_contact_stress_of_the_published_sets_as_measured_apart(sun, planet, pla
     one = gears(sun, planet, 0.5, planets)
     mesh, width = (
         build_stage(one, motor, "ESSPG", SETTINGS).sun_mesh,
-        face_width_mm(one, motor, ActuatorSettings(rules="paper")),
+        lewis_width_mm(one, motor, ActuatorSettings(rules="paper")),
     )
     factors = 1.25 * 1.1 * 1.3 * (1.35 if planets == 5 else 1.0)
     for load, expected in ((1.0, bare_mpa), (factors, with_factors_mpa)):

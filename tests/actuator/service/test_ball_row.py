@@ -10,7 +10,7 @@ from scipy.optimize import fsolve
 from scipy.special import ellipe, ellipk
 
 from pareto_monoped.actuator.bearings import rated_bearing, rated_bearings
-from pareto_monoped.actuator.service.ball_row import contact_stiffness, row_load
+from pareto_monoped.actuator.service.loads import contact_stiffness, row_load
 from pareto_monoped.errors import SimulationError
 
 B6808 = rated_bearing(40.0)

@@ -8,12 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pareto_monoped.actuator.actuator import build_actuator
+from pareto_monoped.actuator.assumptions import default_service
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, map_for
-from pareto_monoped.actuator.service.ball_row import row_load
-from pareto_monoped.actuator.service.data import default_service
+from pareto_monoped.actuator.service.loads import row_load
 from pareto_monoped.actuator.service.sheet import service_sheet
-from pareto_monoped.actuator.settings import RULE_SETS, ActuatorSettings
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import RULE_SETS
 
 SERVICE = default_service()
 

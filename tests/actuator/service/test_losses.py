@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pareto_monoped.actuator.assumptions import default_service
 from pareto_monoped.actuator.gearset import GearSet, efficiency
-from pareto_monoped.actuator.service.data import default_service
-from pareto_monoped.actuator.service.losses import Losses, bush_load, churning_loss, planet_bearing_loss
-from pareto_monoped.actuator.service.sheet import service_sheet
+from pareto_monoped.actuator.service.sheet import Losses, bush_load, churning_loss, planet_bearing_loss, service_sheet
 
 FOUR = GearSet(sun_teeth=30, planet_teeth=30, ring_teeth=90, module_mm=0.5, planets=5)
 SIX = GearSet(sun_teeth=18, planet_teeth=36, ring_teeth=90, module_mm=0.5, planets=3)

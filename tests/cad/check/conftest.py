@@ -1,10 +1,10 @@
 import pytest
 
-from pareto_monoped.cad.check import bolts, free_motion, gear_mesh, overlap, retention, watertight
+from pareto_monoped.cad.check import free_motion, overlap, retention, screws, watertight
 from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import files
-from pareto_monoped.cad.write.visuals import visuals
+from pareto_monoped.cad.write.meshes import visuals
 from pareto_monoped.robot.population import robot_arrays
 
 
@@ -51,7 +51,7 @@ def examine(product, arrays, part_files, other_files):
 
     def run(product=product, arrays=arrays, part_files=part_files, other_files=other_files):
         with pytest.MonkeyPatch.context() as patch:
-            for module in (overlap, gear_mesh, free_motion, bolts, retention, watertight):
+            for module in (overlap, free_motion, free_motion, screws, retention, watertight):
                 patch.setattr(module, "check", kept(module))
             checks = run_checks(product, arrays, part_files=part_files, other_files=other_files)
         return {check.name: check for check in checks}

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from pareto_monoped.cad.check import bolts
+from pareto_monoped.cad.check import screws
 from pareto_monoped.geometry.shapes import Circle
 from tests.cad.check.faults import moved, shifted, with_instance
 
@@ -21,7 +21,7 @@ def test_a_screw_off_its_hole_is_measured(product, examine, failing):
 @pytest.mark.parametrize(("offset_mm", "passes"), [(0.049, True), (0.051, False), (-0.051, False)])
 def test_the_limit_is_where_it_is_said_to_be(product, offset_mm, passes):
     for turn in (shifted(x=offset_mm), shifted(y=offset_mm)):
-        check, joins = bolts.check(moved(product, "thigh/knee_mount_screw_1", turn))
+        check, joins = screws.check_bolts(moved(product, "thigh/knee_mount_screw_1", turn))
         assert check.passed is passes
         assert joins.passed
 
@@ -50,7 +50,7 @@ def test_a_hole_that_is_off_in_one_layer_is_not_hidden_by_the_next(product):
         part = dataclasses.replace(instance.part, prisms=(dataclasses.replace(first, holes=holes), *others))
         return dataclasses.replace(instance, part=part)
 
-    check, _ = bolts.check(with_instance(product, "base_frame/base_far_cheek", off))
+    check, _ = screws.check_bolts(with_instance(product, "base_frame/base_far_cheek", off))
     assert check.measured == pytest.approx(0.2, abs=1e-6)
     assert not check.passed
 
@@ -69,5 +69,5 @@ def test_a_part_without_its_holes_is_not_joined(product, examine, failing):
 
 def test_every_screw_and_bolt_is_looked_at(product):
     names = [i.name for i in product.instances if "screw" in i.name or "bolt" in i.name]
-    offsets, joins = bolts.check(product)
+    offsets, joins = screws.check_bolts(product)
     assert offsets.looked_at == joins.looked_at == f"{len(names)} screws and bolts"

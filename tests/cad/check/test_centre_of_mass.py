@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.check import centre_of_mass
-from pareto_monoped.cad.check.limits import CENTRE_OF_MASS
-from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check import mass
+from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check.result import CENTRE_OF_MASS
 from pareto_monoped.geometry.parts import MassProperties
 from tests.cad.check.faults import moved, shifted
 
@@ -45,7 +45,7 @@ def test_the_distance_counts_and_not_the_greatest_of_its_components(arrays):
         for k, body in enumerate(BODIES)
     }
     broken = displaced(displaced(displaced(arrays, "thigh", 0, 0.03), "thigh", 1, -0.03), "thigh", 2, 0.03)
-    base, thigh, shank = centre_of_mass.check(bodies, broken)
+    base, thigh, shank = mass.check_centre_of_mass(bodies, broken)
     assert (base.passed, thigh.passed, shank.passed) == (True, False, True)
     assert thigh.measured == pytest.approx(0.03 * np.sqrt(3.0), abs=1e-6)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.cad.check import free_motion
-from pareto_monoped.cad.check.limits import END_STOP, FREE_MOTION
+from pareto_monoped.cad.check.result import END_STOP, FREE_MOTION
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.geometry.roles import Role
 from tests.cad.check.faults import bare, with_unit
@@ -14,7 +14,7 @@ from tests.cad.check.faults import bare, with_unit
 
 def stops_of(product):
     """The check of the end stops."""
-    return next(check for check in free_motion.check(product) if check.name == END_STOP.name)
+    return next(check for check in free_motion.check_free_motion(product) if check.name == END_STOP.name)
 
 
 def moved_parts(names, x=0.0, y=0.0):

@@ -6,11 +6,10 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.assembly import Pose, body_frames, instances
 from pareto_monoped.cad.check import free_motion
-from pareto_monoped.cad.check.contact import PlacedMesh
-from pareto_monoped.cad.check.limits import FREE_MOTION
-from pareto_monoped.cad.product import build_product
+from pareto_monoped.cad.check.overlap import PlacedMesh
+from pareto_monoped.cad.check.result import FREE_MOTION
+from pareto_monoped.cad.product import Pose, body_frames, build_product, instances
 from pareto_monoped.leg.stops import hip_stop, knee_stop
 from pareto_monoped.robot.build import build_robot
 from tests.cad.check.faults import bare, shifted, with_unit
@@ -95,7 +94,7 @@ def test_a_frame_in_the_thigh_s_way_is_found(product):
 @pytest.mark.parametrize("lengths", [(0.3, 0.3), (0.3, 0.5), (0.5, 0.3)])
 def test_short_and_long_links_fold_freely(product, actuator_map, lengths):
     design = product.robot.design.replace({"thigh_length_m": lengths[0], "shank_length_m": lengths[1]})
-    checks = free_motion.check(build_product(bare(build_robot(design, actuator_map)), product.pose))
+    checks = free_motion.check_free_motion(build_product(bare(build_robot(design, actuator_map)), product.pose))
     assert all(check.passed for check in checks)
     assert checks[-1].measured > 5.0
 

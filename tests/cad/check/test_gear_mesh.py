@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from pareto_monoped.cad.check import gear_mesh
-from pareto_monoped.cad.check.limits import GEAR_MESH
+from pareto_monoped.cad.check import free_motion
+from pareto_monoped.cad.check.result import GEAR_MESH
 
 
 @pytest.mark.parametrize("joint", ["hip", "knee"])
@@ -25,24 +25,24 @@ def test_planets_that_do_not_roll_on_their_ring_are_found(product, joint):
     actuator = getattr(product.robot, joint)
     gears = dataclasses.replace(actuator.gears, ring_teeth=actuator.gears.ring_teeth - 12)
     robot = dataclasses.replace(product.robot, **{joint: dataclasses.replace(actuator, gears=gears)})
-    texts = gear_mesh.check(dataclasses.replace(product, robot=robot)).failures
+    texts = free_motion.check_gear_mesh(dataclasses.replace(product, robot=robot)).failures
     assert any(f"{joint}_actuator/ring" in text and f"{joint}_actuator/planet" in text for text in texts)
 
 
 def test_the_cycle_is_one_tooth_of_the_sun(product, monkeypatch):
     """In steps; the first is the pose itself."""
     poses = []
-    instances = gear_mesh.instances
+    instances = free_motion.instances
 
     def seen(robot, pose, **only):
         poses.append(pose)
         return instances(robot, pose, **only)
 
-    monkeypatch.setattr(gear_mesh, "instances", seen)
-    gear_mesh.in_gear_cycle(product)
-    assert len(poses) == 2 * gear_mesh.STEPS
-    cycles = poses[: gear_mesh.STEPS], poses[gear_mesh.STEPS :]
+    monkeypatch.setattr(free_motion, "instances", seen)
+    free_motion.in_gear_cycle(product)
+    assert len(poses) == 2 * free_motion.STEPS
+    cycles = poses[: free_motion.STEPS], poses[free_motion.STEPS :]
     for actuator, cycle in zip((product.robot.hip, product.robot.knee), cycles, strict=True):
         teeth = [pose.hip_rad * actuator.ratio * actuator.gears.sun_teeth / 6.283185307179586 for pose in cycle]
-        assert teeth == pytest.approx([k / gear_mesh.STEPS for k in range(gear_mesh.STEPS)])
+        assert teeth == pytest.approx([k / free_motion.STEPS for k in range(free_motion.STEPS)])
         assert [pose.knee_rad for pose in cycle] == [pose.hip_rad for pose in cycle]

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
 from tests.cad.check.faults import with_facts
 
 BODIES = ("base", "thigh", "shank")

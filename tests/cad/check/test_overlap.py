@@ -5,17 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.assembly import Instance, turn_z
 from pareto_monoped.cad.check import overlap
-from pareto_monoped.cad.check.limits import OVERLAP
-from pareto_monoped.cad.product import UniquePart
+from pareto_monoped.cad.check.result import OVERLAP
+from pareto_monoped.cad.product import Instance, UniquePart, turn_z
 from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import MATERIALS
-from pareto_monoped.robot.frames import PART_TO_BODY
+from pareto_monoped.robot.units import PART_TO_BODY
 from tests.cad.check.faults import moved, shifted, with_instance
 
 
@@ -56,7 +55,7 @@ def test_the_depth_is_that_of_two_plates_pushed_together():
     """Twice the volume over the surface is the depth of a shallow overlap."""
     import manifold3d as m3
 
-    from pareto_monoped.cad.check.contact import PlacedMesh, overlap_of
+    from pareto_monoped.cad.check.overlap import PlacedMesh, overlap_of
 
     plate = m3.Manifold.cube((100.0, 100.0, 1.0))
     one, other = (PlacedMesh.of(name, plate, shifted(z=z)) for name, z in (("low", 0.0), ("high", 0.95)))

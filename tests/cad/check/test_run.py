@@ -4,10 +4,9 @@ import json
 
 import pytest
 
-from pareto_monoped.cad.check import limits
-from pareto_monoped.cad.check.limits import Limit
-from pareto_monoped.cad.check.result import Finding, count_of, worst_of
-from pareto_monoped.cad.write.checks_record import checks_record
+from pareto_monoped.cad.check import result
+from pareto_monoped.cad.check.result import Finding, Limit, count_of, worst_of
+from pareto_monoped.cad.write.tables import checks_record
 
 NAMES = [
     "solids are valid",
@@ -39,7 +38,7 @@ def test_a_sound_robot_passes_every_check(examine):
 
 def test_every_limit_of_the_table_is_used(examine):
     """Strength has one of its own module, which reads the jump and not the parts."""
-    table = [entry for entry in vars(limits).values() if isinstance(entry, Limit) and entry is not limits.STRENGTH]
+    table = [entry for entry in vars(result).values() if isinstance(entry, Limit) and entry is not result.STRENGTH]
     checks = examine()
     for limit in table:
         for body in ("base", "thigh", "shank"):

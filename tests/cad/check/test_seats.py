@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from pareto_monoped.cad.check import seats
+from pareto_monoped.cad.check import screws
 from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.screws import M3, M4, M25
 from tests.cad.check.faults import with_instance
@@ -51,14 +51,14 @@ def test_a_screw_without_its_thread_is_found(product, thread):
     def retapped(hole):
         return dataclasses.replace(hole, thread=thread) if hole.thread == M3.thread else hole
 
-    check = seats.check(changed(product, "hip_actuator/carrier", retapped))
+    check = screws.check_seats(changed(product, "hip_actuator/carrier", retapped))
     assert not check.passed
     assert check.measured == len(check.failures)
     assert all("no thread M3 in hip_actuator/carrier" in text for text in check.failures)
 
 
 def test_all_screws_of_the_robot_are_looked_at(product):
-    check = seats.check(product)
+    check = screws.check_seats(product)
     assert check.passed
     fasteners = [i for i in product.instances if "screw" in i.name or "bolt" in i.name]
     assert check.looked_at == f"{len(fasteners)} screws and bolts"

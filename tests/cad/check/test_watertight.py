@@ -10,10 +10,10 @@ import pytest
 import trimesh
 
 from pareto_monoped.cad.check import watertight
-from pareto_monoped.cad.check.limits import MESH_VOLUME
-from pareto_monoped.cad.check.read_back import meshes_of, read_stl
-from pareto_monoped.cad.shape.closed import flaws, volume
-from pareto_monoped.cad.write.triangles import stl
+from pareto_monoped.cad.check.result import MESH_VOLUME
+from pareto_monoped.cad.check.watertight import meshes_of, read_stl
+from pareto_monoped.cad.shape.meshes import flaws, volume
+from pareto_monoped.cad.write.meshes import stl
 from tests.cad.check.faults import shifted
 
 HEADER, ROW = 84, 50

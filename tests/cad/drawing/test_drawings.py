@@ -9,12 +9,10 @@ import pytest
 import shapely
 
 from pareto_monoped.cad.cables import cables
-from pareto_monoped.cad.drawing.assembly_sheet import assembly_sheet
-from pareto_monoped.cad.drawing.cable_sheet import cable_sheet
+from pareto_monoped.cad.drawing.assembly_sheets import assembly_sheet, cable_sheet, exploded_sheets
 from pareto_monoped.cad.drawing.drawings import assembly_drawing, origin_of, part_drawings
-from pareto_monoped.cad.drawing.exploded_sheets import exploded_sheets
 from pareto_monoped.cad.drawing.paper import overlapping
-from pareto_monoped.cad.write.parts_list import parts_list
+from pareto_monoped.cad.write.tables import parts_list
 from tests.cad.drawing.crossings import crossed
 from tests.cad.drawing.reader import pages, texts
 
@@ -90,7 +88,7 @@ def test_the_sheet_of_the_cables_notes_a_bend_that_is_too_tight(product, monkeyp
     made = cables(product.robot)
     assert not any(label.text.startswith("Hip motor cable: ") for label in cable_sheet(product)[0].labels)
     tight = dataclasses.replace(made[0], bend_radius_mm=2.5 * made[0].diameter_mm)
-    monkeypatch.setattr("pareto_monoped.cad.drawing.cable_sheet.cables", lambda _: (tight, *made[1:]))
+    monkeypatch.setattr("pareto_monoped.cad.drawing.assembly_sheets.cables", lambda _: (tight, *made[1:]))
     said = " ".join(label.text for label in cable_sheet(product)[0].labels)
     assert f"{tight.warning[0].upper()}{tight.warning[1:]}." in said
 

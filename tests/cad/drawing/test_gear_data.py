@@ -4,15 +4,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from pareto_monoped.cad.drawing.gear_data import (
-    base_tangent_mm,
-    between_pins_mm,
-    gear_rows,
-    measure,
-    spanned_teeth,
-)
-from pareto_monoped.cad.shape.curves import Contour, Spline, polygon
-from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.drawing.data_tables import base_tangent_mm, between_pins_mm, gear_rows, measure, spanned_teeth
+from pareto_monoped.cad.shape.outlines import Contour, Spline, contours, polygon
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 
 EXTERNAL = [

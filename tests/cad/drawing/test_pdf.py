@@ -6,9 +6,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.drawing.lettering import width_mm
-from pareto_monoped.cad.drawing.paper import Label, Paper, circle_points, overlapping
-from pareto_monoped.cad.drawing.pdf import pdf
+from pareto_monoped.cad.drawing.drawings import pdf
+from pareto_monoped.cad.drawing.paper import Label, Paper, circle_points, overlapping, width_mm
 from tests.cad.drawing.reader import pages
 
 

@@ -8,15 +8,13 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.bores import bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
-from pareto_monoped.cad.drawing.lettering import TIMES
-from pareto_monoped.cad.drawing.paper import Paper, overlapping
-from pareto_monoped.cad.drawing.part_sheet import part_sheet
+from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
+from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import plan_of
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
-from pareto_monoped.cad.drawing.round_sheet import round_part
 from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, TITLE_MM, Title, titled
-from pareto_monoped.cad.shape.curves import polygon
+from pareto_monoped.cad.shape.outlines import polygon
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import InternalGear

@@ -9,9 +9,7 @@ import pytest
 from pareto_monoped.cad.kernel.process import solid_facts
 from pareto_monoped.cad.kernel.solids import solid_of
 from pareto_monoped.cad.kernel.step import part_step
-from pareto_monoped.cad.shape.beveled import beveled
-from pareto_monoped.cad.shape.closed import flaws
-from pareto_monoped.cad.shape.meshes import mesh_of
+from pareto_monoped.cad.shape.meshes import beveled, flaws, mesh_of
 from pareto_monoped.geometry.features import Cone, Hole, Mouth, ShaftEnd
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role

@@ -6,8 +6,7 @@ import pytest
 import trimesh
 
 from pareto_monoped.cad.kernel.solids import solid_of, solids_in
-from pareto_monoped.cad.shape.closed import flaws
-from pareto_monoped.cad.shape.meshes import mesh_of
+from pareto_monoped.cad.shape.meshes import flaws, mesh_of
 from pareto_monoped.cad.shape.stacks import regrouped
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role

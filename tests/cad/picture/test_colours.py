@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.picture.colours import LEAST_DISTANCE, LEAST_FOR_DEFICIENT, PALETTE, colour
+from pareto_monoped.cad.picture.labels import LEAST_DISTANCE, LEAST_FOR_DEFICIENT, PALETTE, colour
 
 # Machado, Oliveira and Fernandes 2009, table of severity 1.0, for linear RGB.
 VISION = {

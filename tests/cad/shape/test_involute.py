@@ -10,9 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from pareto_monoped.actuator.gearset import GearSet
-from pareto_monoped.cad.shape.curves import ends, polygon
-from pareto_monoped.cad.shape.involute import Teeth, outline
-from pareto_monoped.cad.shape.outlines import all_polygons, contours
+from pareto_monoped.cad.shape.outlines import Teeth, all_polygons, contours, ends, outline, polygon
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear, fillet_room_rad
 from tests.actuator.rating import iso6336
 

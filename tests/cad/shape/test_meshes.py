@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.cad.shape import meshes
-from pareto_monoped.cad.shape.closed import flaws
+from pareto_monoped.cad.shape.meshes import flaws
 from pareto_monoped.geometry.parts import Ball, Prism
 from pareto_monoped.geometry.shapes import Circle, rectangle
 

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from pareto_monoped.cad.shape.closed import flaws
-from pareto_monoped.cad.write import triangles
-from pareto_monoped.cad.write.assembly_pack import assembly_pack
-from pareto_monoped.cad.write.foot_mould import COLLAR_MM, foot_mould
+from pareto_monoped.cad.shape.meshes import flaws
+from pareto_monoped.cad.write import meshes
+from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, assembly_pack, foot_mould
 from pareto_monoped.geometry.roles import FASTENERS, Role
 
 
@@ -66,7 +65,7 @@ def test_the_mould_is_watertight_and_its_cavity_is_the_foot_without_its_pocket(p
     halves = foot_mould(foot, block)
     for half in halves:
         assert flaws(half.points_mm[half.triangles]) == ""
-        assert trimesh.load(io.BytesIO(triangles.stl(half)), file_type="stl").is_watertight
+        assert trimesh.load(io.BytesIO(meshes.stl(half)), file_type="stl").is_watertight
     (ball,) = foot.balls
     radius, top = float(ball.radius_mm), float(ball.top_mm)
     # A slice well below pins and collar: a square with half a disc cut out.

@@ -13,15 +13,13 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.as_built import as_built
-from pareto_monoped.cad.write.jump_record import jump_record, replay_script
-from pareto_monoped.cad.write.mjcf import mjcf_with_meshes
+from pareto_monoped.cad.write.mjcf import jump_record, mjcf_with_meshes, replay_script
 from pareto_monoped.cad.write.urdf import urdf
 from pareto_monoped.design import PAPER_CASES, Design
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.end_stops import end_stops as end_stops_of
 from pareto_monoped.jump.end_stops import slow_torque_n_m
-from pareto_monoped.jump.model import mjcf
-from pareto_monoped.jump.pose import start_pose
+from pareto_monoped.jump.model import mjcf, start_pose
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 CALIBRATION = load_calibration("reference")

@@ -22,8 +22,8 @@ from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.dxf import LAYER, NOTES, dxf, is_flat
-from pareto_monoped.cad.write.formats import FILES
-from pareto_monoped.cad.write.triangles import glb, stl, threemf
+from pareto_monoped.cad.write.folder import FILES
+from pareto_monoped.cad.write.meshes import glb, stl, threemf
 from pareto_monoped.geometry.features import Cone
 
 

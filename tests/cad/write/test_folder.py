@@ -4,8 +4,7 @@ import json
 
 import pytest
 
-from pareto_monoped.cad.write.folder import beside, move_in, require_free
-from pareto_monoped.cad.write.formats import RECORD
+from pareto_monoped.cad.write.folder import RECORD, beside, move_in, require_free
 from pareto_monoped.errors import OutputError
 
 NEW = {"README.md": "new", "parts/step/a.step": "new", RECORD: "new"}

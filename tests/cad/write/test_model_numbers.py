@@ -125,7 +125,7 @@ def test_urdf_and_mjcf_have_the_same_colliders_and_they_cover_the_robot(exported
 
 def test_the_actuators_colliders_are_where_their_parts_are(product):
     from pareto_monoped.cad.shape.meshes import placed
-    from pareto_monoped.cad.write.visuals import colliders
+    from pareto_monoped.cad.write.meshes import colliders
 
     by_name = {collider.name: collider for collider in colliders(product)}
     for name in ("hip_actuator", "knee_actuator"):

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.check.weighing import weigh_bodies, weigh_parts
+from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
 from pareto_monoped.design import Design
 from pareto_monoped.jump import single
 from pareto_monoped.robot.population import robot_arrays

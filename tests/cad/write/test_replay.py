@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.write.jump_record import jump_record, replay_script
+from pareto_monoped.cad.write.mjcf import jump_record, replay_script
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.model import mjcf

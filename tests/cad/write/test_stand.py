@@ -6,7 +6,7 @@ import ezdxf
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.write.stand import stand_files
+from pareto_monoped.cad.write.dxf import stand_files
 from pareto_monoped.leg.dimensions import leg_dimensions
 
 LEG = leg_dimensions(map_for("VT8020"))

@@ -1,0 +1,1 @@
+"""What is computed from stored studies: alternatives, robustness, sensitivity, limits, verification."""

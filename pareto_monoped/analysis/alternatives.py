@@ -1,0 +1,243 @@
+"""Alternatives to a picked design: trials that cost about as much and are quite different robots.
+
+How two designs of a study differ: on the scale of the variables' ranges, and in plain words.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.design import LENGTHS, RATIOS, VARIABLES
+from pareto_monoped.errors import SelectionError
+from pareto_monoped.pareto.alternatives import distances, most_different, prices
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.selectors import Condition, fitting
+from pareto_monoped.search.algorithm import MOTOR_OF
+from pareto_monoped.storage.reader import StudyData
+
+_VARIABLES = {variable.name: variable for variable in VARIABLES}
+_WORTH_TELLING = 0.05
+"""Least difference of a number that is told, as a share of its range. Our own choice: 1 cm of a link."""
+_MOST_TOLD = 3
+"""Differences told of one design, the greatest first; more make a list instead of a sentence."""
+_LONGER = 1.02
+"""From this ratio of the links on, one of them is called long."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scale:
+    """Designs as points whose distances say how much they differ."""
+
+    names: tuple[str, ...]  #: of the d free variables, and of the choices of a motor (``MOTOR_OF``)
+    #: Shape (n, d): numbers as shares of their ranges, gearboxes by their place in the list of those that the study's
+    #: trials have, motors by number
+    points: NDArray[np.float64]
+    categories: NDArray[np.bool_]  #: which of them have no order, shape (d,)
+
+
+def scale_of(data: StudyData, trials: pd.DataFrame) -> Scale:
+    """The scale of some trials of a study."""
+    names, columns = list(data.study.free), []
+    for name in names:
+        values = trials[name].to_numpy(dtype=np.float64)
+        bounds = data.study.variables[name]
+        assert isinstance(bounds, Bounds)
+        if name in RATIOS and data.study.gear_list:
+            listed = np.unique(data.trials[name].to_numpy(dtype=np.float64))
+            columns.append(np.searchsorted(listed, values) / max(len(listed) - 1, 1))
+        else:
+            columns.append((values - bounds.lower) / (bounds.upper - bounds.lower))
+    for choice in data.study.motor_choices:
+        names.append(choice)
+        known = np.unique(data.trials[choice].to_numpy(dtype=np.str_))
+        columns.append(np.searchsorted(known, trials[choice].to_numpy(dtype=np.str_)).astype(np.float64))
+    return Scale(
+        names=tuple(names),
+        points=np.stack(columns, axis=1),
+        categories=np.array([name in MOTOR_OF for name in names]),
+    )
+
+
+def differences(scale: Scale, trials: pd.DataFrame, row: int, given: int) -> tuple[str, ...]:
+    """How the design in a row differs from a given one, the greatest difference first.
+
+    Args:
+        scale: of the trials.
+        trials: the designs.
+        row: position of the design.
+        given: position of the other one.
+
+    Returns:
+        At most ``_MOST_TOLD`` phrases, such as "shank-long, 0.306 and 0.401 m" or "knee gearbox 6.1 instead of 8.4".
+    """
+    apart = np.abs(scale.points[row] - scale.points[given])
+    apart[scale.categories] = apart[scale.categories] != 0.0
+    design, other = trials.iloc[row], trials.iloc[given]
+    told: list[str] = []
+    for place in np.argsort(-apart, kind="stable"):
+        name = scale.names[place]
+        always = name in MOTOR_OF or name in RATIOS
+        if apart[place] == 0.0 or (apart[place] < _WORTH_TELLING and told and not always):
+            continue
+        phrase = _phrase(name, design, other)
+        if phrase not in told:
+            told.append(phrase)
+    return tuple(told[:_MOST_TOLD])
+
+
+def _phrase(name: str, design: pd.Series, other: pd.Series) -> str:
+    if name in MOTOR_OF:
+        return f"{name.replace('_', ' ')} {design[name]} instead of {other[name]}"
+    if name in RATIOS:
+        return f"{name.removesuffix('_ratio')} gearbox {design[name]:.3g} instead of {other[name]:.3g}"
+    if name in LENGTHS:
+        if (shape := _proportions(design)) != _proportions(other):
+            thigh, shank = (float(design[length]) for length in LENGTHS)
+            return f"{shape}, {thigh:.3f} and {shank:.3f} m"
+        change = 1000.0 * (float(design[name]) - float(other[name]))
+        return f"{name.removesuffix('_length_m')} {abs(change):.0f} mm {'longer' if change > 0.0 else 'shorter'}"
+    variable = _VARIABLES[name]
+    return f"{variable.symbol} {design[name]:.3g} instead of {other[name]:.3g} {variable.unit}"
+
+
+def _proportions(design: pd.Series) -> str:
+    """Which link is the long one."""
+    thigh, shank = (float(design[length]) for length in LENGTHS)
+    if shank > _LONGER * thigh:
+        return "shank-long"
+    return "thigh-long" if thigh > _LONGER * shank else "equal links"
+
+
+TOLERANCE = 0.02
+"""Share by which an alternative may be worse in an objective, unless another is asked for. Our own choice: the seeds of
+a search differ by a percent."""
+_TOLD = 0.0005
+"""Least relative change of an objective that is told: half a unit of what is printed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alternative:
+    """A design that costs about as much as the picked one."""
+
+    trial: int  #: its number
+    objectives: Objectives  #: of the study
+    values: tuple[float, ...]  #: of the objectives, in stored units
+    changes: tuple[float, ...]  #: of the objectives from the picked design, as shares of its values
+    #: The greatest loss in any objective, as a share of the picked design's value; at most 0 if there is none
+    price: float
+    distance: float  #: from the picked design, see ``pareto.alternatives.distances``
+    differs: tuple[str, ...]  #: how it differs, in phrases
+    audited: bool  #: whether it has an audit. Audits are for the front; an alternative is often just behind it.
+
+    def text(self) -> str:
+        """How it differs and its price, such as "shank-long, 0.306 and 0.401 m; 0.8 percent more energy"."""
+        changed = [
+            f"{100.0 * abs(change):.1f} percent {'more' if change > 0.0 else 'less'} {entry.words}"
+            for entry, change in zip(self.objectives.measures, self.changes, strict=True)
+            if abs(change) >= _TOLD
+        ]
+        return "; ".join([*self.differs, ", ".join(changed) or "the same price"])
+
+    def as_dict(self) -> dict[str, object]:
+        """As JSON values."""
+        return {
+            "trial": self.trial,
+            **dict(zip(self.objectives.names, self.values, strict=True)),
+            "changes": dict(zip(self.objectives.names, map(_finite, self.changes), strict=True)),
+            "price": _finite(self.price),
+            "distance": self.distance,
+            "differs": list(self.differs),
+            "audited": self.audited,
+        }
+
+
+def alternatives(
+    data: StudyData,
+    trial: int,
+    *,
+    count: int = 5,
+    tolerance: float = TOLERANCE,
+    conditions: Sequence[Condition] = (),
+    rows: pd.DataFrame | None = None,
+) -> tuple[Alternative, ...]:
+    """The designs of a study that cost about as much as one of its trials and differ most in their variables.
+
+    All feasible trials that have not failed an audit count, not only the front, because a different robot that is worse
+    by half a percent is never on it.
+
+    Args:
+        data: the study.
+        trial: the picked one.
+        count: how many at most.
+        tolerance: share of the picked design's value by which each objective may be worse.
+        conditions: which alternatives must meet, too.
+        rows: the trials to compare, with the measures to compare them by, such as those under uncertainty; the study's
+            trials if None.
+
+    Returns:
+        By ``pareto.alternatives.most_different``, the most different first.
+
+    Raises:
+        SelectionError: no such trial, or one without a jump.
+    """
+    objectives = data.study.objectives
+    names = list(objectives.names)
+    known = data.trials if rows is None else rows
+    picked = known[known["trial"] == trial]
+    values = picked[names].to_numpy(dtype=np.float64)
+    if len(picked) == 0 or not np.isfinite(values).all():
+        raise SelectionError(f"trial = {trial}: must be a trial of the study that jumped; give another number")
+    near = _within(data, known, trial, values[0], tolerance, conditions)
+    table = pd.concat([picked, near], ignore_index=True)
+    scale = scale_of(data, table)
+    chosen = most_different(scale.points, 0, count, scale.categories)
+    apart = distances(scale.points, scale.points[0], scale.categories)
+    cost = prices(table[names].to_numpy(dtype=np.float64), values[0], objectives)
+    audited = table["trial"].isin(data.audits["trial"]).to_numpy()
+    return tuple(
+        Alternative(
+            trial=int(table["trial"].iloc[row]),
+            objectives=objectives,
+            values=tuple(table[names].iloc[row].astype(float).tolist()),
+            changes=_changes(table[names].iloc[row].to_numpy(dtype=np.float64), values[0]),
+            price=float(cost[row]),
+            distance=float(apart[row]),
+            differs=differences(scale, table, row, 0),
+            audited=bool(audited[row]),
+        )
+        for row in chosen
+    )
+
+
+def _within(
+    data: StudyData,
+    trials: pd.DataFrame,
+    trial: int,
+    of: np.ndarray,
+    tolerance: float,
+    conditions: Sequence[Condition],
+) -> pd.DataFrame:
+    """The other feasible trials whose price is within the tolerance, the cheapest first."""
+    able = (trials["state"] == "feasible").to_numpy() & (trials["trial"] != trial).to_numpy()
+    able &= ~trials["trial"].isin(data.ill_conditioned).to_numpy()
+    able &= fitting(trials, conditions)
+    rows = trials[able]
+    cost = prices(rows[list(data.study.objectives.names)].to_numpy(dtype=np.float64), of, data.study.objectives)
+    order = np.argsort(cost, kind="stable")
+    return rows.iloc[order[cost[order] <= tolerance]]
+
+
+def _changes(values: np.ndarray, of: np.ndarray) -> tuple[float, ...]:
+    """Changes as shares; a change from 0 is infinite."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(values == of, 0.0, (values - of) / np.abs(of))
+    return tuple(shares.tolist())
+
+
+def _finite(value: float) -> float | None:
+    """A number for JSON, which knows no infinity."""
+    return value if np.isfinite(value) else None

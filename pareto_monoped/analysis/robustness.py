@@ -1,0 +1,229 @@
+"""Simulate trials of a study again under uncertainty, and store what that says of them.
+
+The front by what nineteen of twenty built robots keep, from what is stored of the robustness of trials.
+"""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import closing
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.compute.chunks import AT_ONCE, in_turn
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.measures import MEASURES, STATISTICS
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.storage.extra_rows import ROBUSTNESS, Stored, read_robustness
+from pareto_monoped.storage.lock import locked
+from pareto_monoped.storage.meta import strict_json
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.store import Store
+from pareto_monoped.study.run import default_workers
+from pareto_monoped.study.simulator import stored_simulator
+from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, Samples, sobol_samples, variations
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Uncertainty
+from pareto_monoped.uncertainty.statistics import Robustness, robustness
+
+LEAST_SAMPLES = 256
+"""Fewest samples of a design that are stored: a 5th percentile then rests on 13 of them."""
+_CHUNK = 4
+"""Designs that are simulated and stored together; an interrupt loses at most these."""
+_SHARED = 32
+"""The same where an executor does the jumps; several such chunks are under way at a time."""
+
+
+def robust(
+    db: StudyPlace,
+    uncertainty: Uncertainty,
+    *,
+    trials: Sequence[int] | None = None,
+    samples: int = DEFAULT_SAMPLES,
+    seed: int = DEFAULT_SEED,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[int, Robustness]:
+    """Simulate trials under uncertainty and store their robustness; what is stored already is not simulated again.
+
+    All designs have the same samples, so that differences between them are of the designs. The same seed gives the
+    same numbers, whatever the number of workers.
+
+    Args:
+        db: the study's database.
+        uncertainty: the ranges.
+        trials: numbers of trials that jump; None: the front.
+        samples: per design, a power of two of at least ``LEAST_SAMPLES``.
+        seed: of the samples.
+        workers: threads, all cores if None.
+        executor: does the jumps in their place.
+        progress: called with the number of designs done and of all after each stored chunk.
+
+    Raises:
+        InputError: too few samples, or ranges that the calibration cannot have.
+        SelectionError: a trial that is not there or did not jump, or an empty front.
+        StudyError: this code or machine computes other jumps than the stored ones.
+        DatabaseError: the study is damaged, or in use by another process.
+    """
+    if samples < LEAST_SAMPLES:
+        raise InputError(complaint("samples", samples, f"a power of two of at least {LEAST_SAMPLES}", "give more"))
+    drawn = sobol_samples(uncertainty, samples, seed)
+    with locked(db):
+        data = read_study(db)
+        rows = _chosen(data, trials)
+        settings = {"uncertainty": uncertainty.as_dict(), "samples": samples, "seed": seed}
+        known = {trial: stored.result for trial, stored in read_robustness(db).items() if stored.settings == settings}
+        fresh = rows[~rows["trial"].isin(known)]
+        done = len(rows) - len(fresh)
+        if len(fresh):
+            threads = workers or default_workers()
+            evaluator = stored_simulator(data, workers=threads, executor=executor).evaluator
+            step, at_once = (_CHUNK, 1) if executor is None else (_SHARED, AT_ONCE)
+            chunks = [fresh.iloc[first : first + step] for first in range(0, len(fresh), step)]
+            under_way = in_turn(lambda chunk: simulated(data, chunk, evaluator, drawn), chunks, at_once)
+            with Store(db, data.study) as store, closing(under_way):
+                for results in under_way:
+                    text = strict_json(settings)
+                    store.set_rows(
+                        ROBUSTNESS, [(trial, text, strict_json(result.as_dict())) for trial, result in results.items()]
+                    )
+                    known |= results
+                    done += len(results)
+                    if progress is not None:
+                        progress(done, len(rows))
+    return {int(trial): known[int(trial)] for trial in rows["trial"]}
+
+
+def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples: Samples) -> dict[int, Robustness]:
+    """The robustness of some trials by number.
+
+    Raises:
+        StudyError: a design without variation does not jump as it is stored.
+    """
+    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    motors = data.kit_numbers(rows)
+    refuse_other_jumps(data, rows, evaluator)
+    count = len(samples)
+    jumps = evaluator(
+        np.repeat(designs, count, axis=0),
+        np.repeat(motors, count),
+        variations=variations(samples, len(rows), data.calibration),
+    )
+    least = data.study.least_safeties
+    return {
+        int(trial): robustness(jumps, slice(k * count, (k + 1) * count), least) for k, trial in enumerate(rows["trial"])
+    }
+
+
+def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator) -> None:
+    """Refuse trials that do not jump as they are stored.
+
+    Raises:
+        StudyError: the message names the first one.
+    """
+    height_m = evaluator(rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)).height_m
+    stored = rows["height_m"].to_numpy(dtype=np.float64)
+    other = np.flatnonzero(height_m != stored)
+    if len(other):
+        k = other[0]
+        raise StudyError(
+            f"study database {str(data.db)!r}: trial {int(rows['trial'].iloc[k])} jumps {height_m[k]:.9g} m with this "
+            f"code and machine, {stored[k]:.9g} m are stored; use the version that made the study, or run it anew"
+        )
+
+
+def _chosen(data: StudyData, trials: Sequence[int] | None) -> pd.DataFrame:
+    if trials is None:
+        front = data.front()
+        if len(front) == 0:
+            raise SelectionError("front: has 0 designs, at least 1 is needed; run the study longer, or name trials")
+        return front
+    numbers = list(dict.fromkeys(trials))
+    known = data.trials.set_index("trial", drop=False)
+    for number in numbers:
+        if number not in known.index or known.loc[number, "status"] != "ok":
+            raise SelectionError(f"trial = {number}: must be a trial of the study that jumped; give another number")
+    return known.loc[numbers].reset_index(drop=True)
+
+
+_SIDES = {"maximise": "p05", "minimise": "p95", None: "mean"}
+"""Which statistic stands for a measure, by its direction: of the two percentiles the worse one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobustTrials:
+    """Trials by what they keep under uncertainty."""
+
+    #: As ``StudyData.trials``, of the trials that fail in at most ``MOST_FAILED`` of their jumps. A measure has its 5th
+    #: percentile where it is to be maximised, its 95th where it is to be minimised, and else its mean. There are also
+    #: columns of all statistics, such as "height_m.p05", ``failed_share`` and ``overloaded_share``.
+    rows: pd.DataFrame
+    fragile: int  #: how many trials fail more often
+    settings: dict[str, object]  #: under which all of them were simulated
+    others: int  #: how many trials were simulated under other settings, and are left out
+
+
+def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials:
+    """The trials whose robustness can be compared: those under the settings that most of them share.
+
+    Args:
+        data: the study.
+        stored: robustness of some of its trials.
+
+    Raises:
+        SelectionError: no trial has a robustness.
+    """
+    if not stored:
+        raise SelectionError(f"study database {str(data.db)!r}: holds no robustness; simulate it with 'robust' first")
+    texts = {trial: json.dumps(one.settings, sort_keys=True) for trial, one in stored.items()}
+    usual = Counter(texts.values()).most_common(1)[0][0]
+    alike = [trial for trial, text in texts.items() if text == usual]
+    rows = data.trials[data.trials["trial"].isin(alike)].reset_index(drop=True)
+    results = [stored[int(trial)].result for trial in rows["trial"]]
+    columns = {
+        "failed_share": np.array([result.failed for result in results]),
+        "overloaded_share": np.array([result.overloaded for result in results]),
+    }
+    for entry in MEASURES:
+        found = [result.measures.get(entry.name) for result in results]
+        for side in STATISTICS:
+            values = np.array([np.nan if one is None else getattr(one, side) for one in found])
+            columns[f"{entry.name}.{side}"] = values
+        columns[entry.name] = columns[f"{entry.name}.{_SIDES[entry.direction]}"]
+    kept = columns["failed_share"] <= MOST_FAILED
+    table = rows.drop(columns=[name for name in columns if name in rows])
+    added = pd.DataFrame(columns, index=rows.index)
+    return RobustTrials(
+        rows=pd.concat([table, added], axis=1)[kept].reset_index(drop=True),
+        fragile=int((~kept).sum()),
+        settings=stored[alike[0]].settings,
+        others=len(stored) - len(alike),
+    )
+
+
+def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
+    """The trials that no other dominates under uncertainty, as ``StudyData.front``.
+
+    Raises:
+        SelectionError: all fail too often, or none is feasible as designed.
+    """
+    objectives, rows = data.study.objectives, trials.rows
+    if len(rows) == 0:
+        raise SelectionError(
+            f"robust front: has 0 designs, because all {trials.fragile} fail in more than {100 * MOST_FAILED:g} "
+            "percent of their jumps; simulate more trials with 'robust'"
+        )
+    able = (rows["state"] == "feasible").to_numpy() & ~rows["trial"].isin(data.ill_conditioned).to_numpy()
+    if not able.any():
+        raise SelectionError(
+            f"robust front: has 0 designs, because none of the {len(rows)} is feasible and well-conditioned as "
+            "designed; simulate others with 'robust'"
+        )
+    mask = front_mask(rows[list(objectives.names)].to_numpy(dtype=np.float64), objectives, able)
+    return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)

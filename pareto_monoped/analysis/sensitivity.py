@@ -1,0 +1,186 @@
+"""Which variable of a trial and which assumption about the built robot moves its measures most, and by how much."""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.analysis.robustness import refuse_other_jumps
+from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.design import NAMES, RATIOS, VARIABLES
+from pareto_monoped.errors import InputError, SelectionError, complaint
+from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.measures import nominal
+from pareto_monoped.search.space import gear_list
+from pareto_monoped.storage.extra_rows import SENSITIVITY, key_of, read_sensitivity
+from pareto_monoped.storage.lock import locked
+from pareto_monoped.storage.meta import strict_json
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.store import Store
+from pareto_monoped.study.run import default_workers
+from pareto_monoped.study.simulator import stored_simulator
+from pareto_monoped.uncertainty.samples import samples_at, variations
+from pareto_monoped.uncertainty.sensitivity import (
+    DEFAULT_BLOCKS,
+    About,
+    Factor,
+    Sensitivity,
+    Simulate,
+    between,
+    factors_of,
+    indices,
+    sensitivity_of,
+)
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, Uncertainty
+
+Floats = NDArray[np.float64]
+
+WITHIN = 0.02
+"""How far a variable moves to either side, as a share of its range. Our own choice: 2 percent is 4 mm of a link, as far
+apart as two designs may be that nobody would call different robots."""
+_ALWAYS = ("height_m", "energy_j", "electrical_energy_j")
+_LABELS = {
+    "thigh_length_m": "length of the thigh",
+    "shank_length_m": "length of the shank",
+    "knee_ratio": "gearbox of the knee",
+    "hip_ratio": "gearbox of the hip",
+    "stiffness_n_per_m": "stiffness K",
+    "damping_n_s_per_m": "damping C",
+    "torsional_stiffness_n_m_per_rad": "torsion T",
+    "knee_release_rad": "release of the knee",
+    "rest_length_m": "rest length",
+    "start_height_m": "start height",
+}
+
+
+def sensitivity(
+    db: StudyPlace,
+    trial: int,
+    ranges: Uncertainty,
+    *,
+    blocks: int = DEFAULT_BLOCKS,
+    within: float = WITHIN,
+    seed: int = DEFAULT_SEED,
+    workers: int | None = None,
+    executor: Executor | None = None,
+) -> tuple[Sensitivity, Sensitivity]:
+    """The sensitivity of a trial to its variables and to what is uncertain, stored; what is there is not made again.
+
+    Args:
+        db: the study's database.
+        trial: its number.
+        ranges: of what is uncertain.
+        blocks: base samples, a power of two; each takes as many jumps as there are factors, and two more.
+        within: how far each free variable moves to either side, as a share of its range; a gearbox moves by one place
+            in the list. The bounds of the study hold.
+        seed: of the samples.
+        workers: threads, all cores if None. It does not change the numbers.
+        executor: does the jumps in their place.
+
+    Raises:
+        InputError: a number out of range, or too many jumps that fail.
+        SelectionError: no such trial, or one without a jump.
+        StudyError: this code or machine computes other jumps than the stored ones.
+        DatabaseError: the study is damaged, or in use by another process.
+    """
+    if not 0.0 < within <= 0.5:
+        raise InputError(complaint("within", within, "a share above 0 and at most 0.5", "correct it"))
+    with locked(db):
+        data = read_study(db)
+        row = data.trials[(data.trials["trial"] == trial) & (data.trials["status"] == "ok")]
+        if len(row) == 0:
+            raise SelectionError(f"trial = {trial}: must be a trial of the study that jumped; give another number")
+        plain = {"samples": blocks, "seed": seed}
+        wanted: dict[About, dict[str, object]] = {
+            "variables": {**plain, "within": within},
+            "assumptions": {**plain, "uncertainty": ranges.as_dict()},
+        }
+        stored = read_sensitivity(db)
+        found: dict[About, Sensitivity] = {}
+        for about, settings in wanted.items():
+            known = stored.get((trial, about))
+            if known is not None and known.settings == settings:
+                found[about] = known.result
+                continue
+            evaluator = stored_simulator(data, workers=workers or default_workers(), executor=executor).evaluator
+            refuse_other_jumps(data, row, evaluator)
+            names = tuple(dict.fromkeys((*_ALWAYS, *map(nominal, data.study.objectives.names))))
+            names = tuple(name for name in names if name in data.trials)
+            if about == "variables":
+                factors, simulate = _of_variables(data, row, evaluator, names, within)
+            else:
+                factors, simulate = _of_assumptions(data, row, evaluator, names, ranges)
+            result = sensitivity_of(about, factors, indices(simulate, len(factors), blocks, seed), names)
+            found[about] = result
+            texts = strict_json(settings), strict_json(result.as_dict())
+            with Store(db, data.study) as store:
+                store.set_rows(SENSITIVITY, [(key_of(trial, about), *texts)])
+    return found["variables"], found["assumptions"]
+
+
+def _of_assumptions(
+    data: StudyData, row: pd.DataFrame, evaluator: Evaluator, names: Sequence[str], ranges: Uncertainty
+) -> tuple[tuple[Factor, ...], Simulate]:
+    """What is uncertain and does vary, and the design's jumps as built."""
+    every = factors_of(ranges)
+    moving = [k for k, factor in enumerate(every) if factor.lower < factor.upper]
+
+    def simulate(points: Floats) -> tuple[NDArray[np.bool_], Floats]:
+        whole = np.full((len(points), len(every)), 0.5)
+        whole[:, moving] = points
+        design = np.repeat(row[list(NAMES)].to_numpy(dtype=np.float64), len(points), axis=0)
+        built = variations(samples_at(ranges, whole), 1, data.calibration)
+        return _measured(evaluator(design, _kits(data, row, len(points)), variations=built), names)
+
+    return tuple(every[k] for k in moving), simulate
+
+
+def _of_variables(
+    data: StudyData, row: pd.DataFrame, evaluator: Evaluator, names: Sequence[str], within: float
+) -> tuple[tuple[Factor, ...], Simulate]:
+    """The free variables around the design, and the jumps of the designs there."""
+    places = [_places(data, row, name, within) for name in data.study.free]
+
+    def simulate(points: Floats) -> tuple[NDArray[np.bool_], Floats]:
+        designs = np.repeat(row[list(NAMES)].to_numpy(dtype=np.float64), len(points), axis=0)
+        for column, (factor, listed) in enumerate(places):
+            values = points[:, column]
+            if listed is None:
+                moved = between(factor, values)
+            else:
+                moved = listed[np.minimum((values * len(listed)).astype(np.intp), len(listed) - 1)]
+            designs[:, NAMES.index(factor.name)] = moved
+        return _measured(evaluator(designs, _kits(data, row, len(points))), names)
+
+    return tuple(factor for factor, _ in places), simulate
+
+
+def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tuple[Factor, Floats | None]:
+    """A free variable as a factor; for a gearbox also the ratios that it goes through."""
+    value, bounds = float(row[name].iloc[0]), data.study.variables[name]
+    assert isinstance(bounds, Bounds)
+    unit = next(variable.unit for variable in VARIABLES if variable.name == name)
+    if name in RATIOS and data.study.gear_list:
+        kit = data.kit_of_trial(int(row["trial"].iloc[0]))
+        ratios = np.array([gear.ratio for gear in gear_list(kit.of(name.removesuffix("_ratio")), bounds)])
+        place = int(np.abs(ratios - value).argmin())
+        listed = ratios[max(place - 1, 0) : place + 2]
+        return _factor(name, float(listed[0]), float(listed[-1]), unit), listed
+    step = within * (bounds.upper - bounds.lower)
+    return _factor(name, max(value - step, bounds.lower), min(value + step, bounds.upper), unit), None
+
+
+def _factor(name: str, lower: float, upper: float, unit: str) -> Factor:
+    return Factor(name=name, label=_LABELS[name], lower=lower, upper=upper, unit=unit)
+
+
+def _kits(data: StudyData, row: pd.DataFrame, count: int) -> NDArray[np.intp]:
+    return np.repeat(data.kit_numbers(row), count)
+
+
+def _measured(jumps: Evaluations, names: Sequence[str]) -> tuple[NDArray[np.bool_], Floats]:
+    values = np.column_stack([getattr(jumps, name) for name in names])
+    return jumps.ok & np.isfinite(values).all(axis=1), values

@@ -1,0 +1,192 @@
+"""Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew.
+
+Whether what a study holds can be: numbering, states, finite and possible values, the kept front.
+"""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from pareto_monoped.design import NAMES
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.database import reading
+from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.kept_front import STATES, KeptFront
+from pareto_monoped.storage.optuna_check import foreign_trials, optuna_findings
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.seals import read_seals
+
+HIGHEST_JUMP_M = 10.0
+"""No robot here jumps higher: our own choice, several times the highest of the paper's designs and of any search."""
+_BOUNDS_SLACK = 0.05
+"""Share by which a variable may be beyond its bounds: the real ratio of the last gearbox of an interval of the actuator
+map may be a little more than the upper bound. Our own choice: half an interval at the lowest ratios."""
+
+
+def implausible(data: StudyData) -> list[str]:
+    """One line per kind of thing that cannot be, with the first row that has it; none if all is plausible."""
+    return [
+        *_trial_findings(data),
+        *_history_findings(data),
+        *(f"audit of trial {n}, which does not exist" for n in data.audits["trial"][~_exists(data)].head(1)),
+    ]
+
+
+def _exists(data: StudyData) -> "pd.Series[bool]":
+    return data.audits["trial"].isin(data.trials["trial"])
+
+
+def _trial_findings(data: StudyData) -> Iterator[str]:
+    trials = data.trials
+    numbers = trials["trial"].to_numpy()
+    if (wrong := np.flatnonzero(numbers != np.arange(len(numbers)))).size:
+        yield f"trials are not numbered from 0 on: trial {numbers[wrong[0]]} stands in place {wrong[0]}"
+    feasible = (trials["state"] == "feasible").to_numpy()
+    yield from _first(trials, ~trials["state"].isin(STATES).to_numpy(), "has an unknown state")
+    yield from _first(trials, np.diff(trials["generation"].to_numpy(), prepend=0) < 0, "has an impossible generation")
+    for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *data.study.objectives.names)):
+        values = trials[name].to_numpy(dtype=np.float64)
+        yield from _first(trials, feasible & ~np.isfinite(values), f"is feasible, but its {name} is no finite number")
+    for name in (name for name in trials if name == "height_m" or name in _ENERGIES):
+        values = trials[name].to_numpy(dtype=np.float64)
+        yield from _first(trials, feasible & (values < 0.0), f"is feasible, but its {name} is negative")
+    high = trials["height_m"].to_numpy() > HIGHEST_JUMP_M
+    yield from _first(trials, high, f"has a height_m above {HIGHEST_JUMP_M:g}")
+    for name, lower, upper in zip(NAMES, data.study.lower, data.study.upper, strict=True):
+        values, slack = trials[name].to_numpy(dtype=np.float64), _BOUNDS_SLACK * max(abs(lower), abs(upper))
+        inside = (values >= lower - slack) & (values <= upper + slack)
+        yield from _first(trials, ~inside, f"has a {name} beyond {lower:g} to {upper:g}")
+    violation = trials["violation"].to_numpy(dtype=np.float64)
+    yield from _first(trials, ~np.isfinite(violation) | (feasible != (violation == 0.0)), "has an impossible violation")
+
+
+_ENERGIES = frozenset({"energy_j", "electrical_energy_j"})
+
+
+def _first(trials: pd.DataFrame, wrong: "np.typing.NDArray[np.bool_]", what: str) -> Iterator[str]:
+    rows = np.flatnonzero(wrong)
+    if len(rows):
+        more = f", and {len(rows) - 1} others" if len(rows) > 1 else ""
+        yield f"trial {trials['trial'].iloc[rows[0]]} {what}{more}"
+
+
+def _history_findings(data: StudyData) -> Iterator[str]:
+    history, checkpoint, count = data.history, data.checkpoint, len(data.trials)
+    done = history["evaluations"].to_numpy()
+    if not np.array_equal(history["generation"].to_numpy(), np.arange(len(history))):
+        yield "its history does not count generations from 0 on"
+    if (np.diff(done, prepend=0) <= 0).any() or (done[-1] if len(done) else 0) != count:
+        yield f"its history does not lead to {count} trials"
+    for name in ("hypervolume", "seconds"):
+        values = history[name].to_numpy()
+        if not (np.isfinite(values) & (values >= 0.0)).all():
+            yield f"its history has a {name} that is negative or no finite number"
+    if (np.diff(history["seconds"].to_numpy(), prepend=0.0) < 0.0).any():
+        yield "its history has seconds that go back"
+    told = dict(zip((history["generation"] + 1).tolist(), done.tolist(), strict=True)) | {0: 0}
+    if told.get(checkpoint.generation) != checkpoint.evaluations:
+        yield (
+            f"its checkpoint stands before generation {checkpoint.generation} with {checkpoint.evaluations} trials, "
+            "which its history does not have"
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verification:
+    """What a check of a study found."""
+
+    trials: int  #: how many it has
+    sealed: bool  #: whether it has a running hash
+    foreign: tuple[int, ...]  #: Optuna's numbers of trials that are not of this package
+    simulated: int  #: how many trials jumped anew
+    findings: tuple[str, ...]  #: what is wrong, one line each; none for a sound study
+
+
+def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Executor | None = None) -> Verification:
+    """Check a study.
+
+    Args:
+        db: its database.
+        simulate: how many of its trials to simulate again, evenly spread over all; they must be equal to the last bit.
+        workers: threads that simulate.
+        executor: does the jumps in their place.
+
+    Raises:
+        DatabaseError: it cannot be read at all, or its rows do not match their hash.
+        StudyError: ``simulate``, but this code or machine computes other jumps than the study began with.
+    """
+    data = read_study(db)
+    read_robustness(db)
+    read_sensitivity(db)
+    with reading(db) as connection:
+        seals = read_seals(connection, db) if data.sealed else None
+        foreign = foreign_trials(connection, len(data.trials), seals)
+        findings = [
+            *connection.defects(),
+            *implausible(data),
+            *_kept_front_findings(connection, data),
+            *optuna_findings(connection, data, seals),
+        ]
+    numbers = np.unique(np.linspace(0, len(data.trials) - 1, min(simulate, len(data.trials))).astype(int))
+    if len(numbers):
+        findings += _jump_findings(data, numbers, workers, executor)
+    return Verification(
+        trials=len(data.trials),
+        sealed=data.sealed,
+        foreign=foreign,
+        simulated=len(numbers),
+        findings=tuple(findings),
+    )
+
+
+def _kept_front_findings(connection: Connection, data: StudyData) -> Iterator[str]:
+    if not data.sealed:
+        return
+    kept = KeptFront(data.study.objectives)
+    kept.load(connection)
+    if kept.numbers != sorted(data.front()["trial"].tolist()):
+        yield "its kept front is not the front of its trials"
+    states = data.trials["state"].tolist()
+    if kept.counts != {state: states.count(state) for state in STATES}:
+        yield "its counts of feasible, infeasible and failed trials are not those of its trials"
+
+
+def _jump_findings(
+    data: StudyData, numbers: "np.typing.NDArray[np.int_]", workers: int, executor: Executor | None
+) -> Iterator[str]:
+    from pareto_monoped.study.run import refuse_other_code
+    from pareto_monoped.study.simulator import evaluation_of, stored_simulator
+
+    simulator = stored_simulator(data, workers=workers, executor=executor)
+    refuse_other_code(data, simulator)
+    rows = data.trials.iloc[numbers]
+    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    jumps = evaluation_of(data.study, simulator.evaluator)(designs, data.kit_numbers(rows))
+    for name in (*MEASURE_NAMES, *data.study.robust_names):
+        again, stored = jumps.of(name), rows[name].to_numpy(dtype=np.float64)
+        for k in np.flatnonzero(~((again == stored) | (np.isnan(again) & np.isnan(stored))))[:1]:
+            yield f"trial {numbers[k]} jumps otherwise: its {name} is {stored[k]!r}, simulated again {again[k]!r}"
+    for k in np.flatnonzero(jumps.status != rows["status"].to_numpy(dtype=np.str_))[:1]:
+        yield f"trial {numbers[k]} ends otherwise: {rows['status'].iloc[k]}, simulated again {jumps.status[k]}"
+
+
+def require_sound(db: StudyPlace, verification: Verification) -> None:
+    """Raise for a study that is not sound.
+
+    Raises:
+        DatabaseError: names the first finding and counts the others.
+    """
+    if verification.findings:
+        more = len(verification.findings) - 1
+        raise DatabaseError(
+            f"study database {str(db)!r}: {verification.findings[0]}"
+            + (f" (and {more} more)" if more else "")
+            + "; restore a copy"
+        )

@@ -1,0 +1,337 @@
+"""What is put together in one go: the instances of one part at one place, with what keeps them from moving.
+
+All parts are stacks of flat shapes across the joints' axes. Along y a part therefore runs into what lies before it and
+covers its outline; across y it runs into what its outline sweeps over at the same height. All paths are straight lines
+that lead out of the assembly, so that blocking does not depend on the distance.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import manifold3d as m3
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.check.retention import Slab, slabs, threads
+from pareto_monoped.cad.product import Instance
+from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
+
+Bools = NDArray[np.bool_]
+
+DIRECTIONS = ("+y", "-y", "+x", "-x", "+z", "-z")
+"""Ways out, of the assembly in ``retention.POSE``: y is the joints' axis."""
+KEY_REACH_MM = 58.0
+"""Free length behind a screw for the long arm of its key: 2.5 mm for M3 (ISO 2936); smaller ones are shorter."""
+SPANNER_REACH_MM = 50.0
+"""Free length beside a head for an open spanner; our own choice, half of one for 5.5 mm (ISO 10102)."""
+_JAW = 2.0  # half width of an open spanner's jaws over the radius of the head (ISO 10102: 13.5 mm for 5.5)
+_SLIDE_MM = 0.05  # fits slide: this is taken off all around
+_AREA_MM2 = 0.3  # a square of 0.5 mm; less is a facet of a round fit
+_TOUCH_MM = 1e-3
+_FLUSH_MM = 0.15  # countersunk heads count as thin discs on their faces, see ``retention``
+_PLAY_MM = 0.25  # of fits that turn or slide, on one side
+_NEAR_MM = 0.8  # a screw's shank is nearer than this to the parts that it goes through
+_DEPTH_MM = 0.2  # least height that a screw and what it goes through have in common
+_FAR_MM = 1000.0  # out of the robot
+_LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING})
+"""Joints that are never taken apart: what is cast onto a part, and a rotor in its supplier's bearings."""
+_FLEXIBLE = frozenset({JointKind.ENGAGED, JointKind.THREADED})
+"""Joints of parts that do not come straight: a chain is laid around its sprocket, a turnbuckle is turned."""
+_LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})
+"""Parts of a chain drive, which are put together link by link."""
+_SPRUNG = frozenset({Role.RETAINING_RING})
+"""Parts that are spread with pliers: they leave their groove, and then go straight."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """Instances of one part at one place of one unit."""
+
+    unit: str  #: name of the unit
+    instances: tuple[int, ...]  #: indices of the placed instances
+    instance: Instance  #: the first of them
+
+    @property
+    def is_fastener(self) -> bool:
+        """Whether it holds others and is undone before they move."""
+        return self.instance.part.role in FASTENERS or self.instance.part.role in _SPRUNG
+
+
+@dataclass(slots=True, kw_only=True)
+class Blocking:
+    """Bodies, and which of them is in the way of which."""
+
+    bodies: tuple[Body, ...]  #: in the order of the assembly
+    #: For +y and -y: true at (i, j) where body i, moved that way, runs into body j; shape (n, n)
+    along: Mapping[str, Bools]
+    lasting: Bools  #: true at (i, j) where two bodies are never taken apart
+    tied: Bools  #: true at (i, j) where one is a screw in the other's thread
+    touching: Bools  #: true at (i, j) where two bodies touch
+    #: For each fastener the bodies in the way of it and of its key, one set for each way to undo it
+    key: Mapping[int, tuple[frozenset[int], ...]]
+    goes_through: Mapping[int, frozenset[int]]  #: for each fastener the bodies that it joins
+    _slabs: "_Slabs"
+    _flexible: Bools
+    _across: dict[tuple[str, int], Bools] = field(default_factory=dict)
+
+    def blocked(self, direction: str, body: int) -> Bools:
+        """The bodies that a body runs into in a direction, shape (n,)."""
+        if direction in self.along:
+            return np.asarray(self.along[direction][body])
+        if (direction, body) not in self._across:
+            row = self._slabs.across(direction, body) & ~self._flexible[body]
+            row[body] = False
+            self._across[direction, body] = row
+        return self._across[direction, body]
+
+    def driven_from(self, fastener: int) -> str:
+        """The side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of the screw of a bolt."""
+        return self._slabs.head_side(fastener)
+
+
+def bodies_of(placed: Sequence[Instance]) -> tuple[Body, ...]:
+    """Instances of one part of one unit that lie at one height belong together."""
+    groups: dict[tuple[int, str, float], list[int]] = {}
+    for k, instance in enumerate(placed):
+        height = round(float(instance.world[1, 3]), 3)
+        groups.setdefault((id(instance.part), instance.unit, height), []).append(k)
+    return tuple(
+        Body(unit=placed[members[0]].unit, instances=tuple(members), instance=placed[members[0]])
+        for members in groups.values()
+    )
+
+
+def blocking_of(placed: Sequence[Instance]) -> Blocking:
+    """Look at all pairs of bodies of an assembly in ``retention.POSE``."""
+    bodies = bodies_of(placed)
+    pieces = slabs(placed, blunt=False)
+    view = _Slabs(bodies, placed, pieces)
+    count = len(bodies)
+    owner = np.empty(len(placed), dtype=np.intp)
+    for k, body in enumerate(bodies):
+        owner[list(body.instances)] = k
+    tied = _grouped(threads(placed, pieces), owner, count)
+    lasting = _joined(bodies, _LASTING)
+    limp = np.array([body.instance.part.role in _LIMP for body in bodies])
+    flexible = _joined(bodies, _FLEXIBLE) | (limp[:, None] & limp[None])
+    forward = view.along() & ~flexible & ~np.eye(count, dtype=bool)
+    fasteners = [k for k, body in enumerate(bodies) if body.is_fastener]
+    joined = {k: view.around(k) for k in fasteners}
+    return Blocking(
+        bodies=bodies,
+        along={"+y": forward, "-y": forward.T.copy()},
+        lasting=lasting,
+        tied=tied,
+        touching=view.touching(),
+        key={k: view.in_the_way_of_key(k) for k in fasteners},
+        goes_through=joined,
+        _slabs=view,
+        _flexible=flexible,
+    )
+
+
+def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
+    """The same matrix for bodies: true where it is for any of their instances."""
+    found = np.zeros((count, count), dtype=bool)
+    one, other = np.nonzero(matrix)
+    found[owner[one], owner[other]] = True
+    return found
+
+
+def _joined(bodies: Sequence[Body], kinds: Iterable[JointKind]) -> Bools:
+    """True at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
+    wanted = frozenset(kinds)
+    found = np.zeros((len(bodies), len(bodies)), dtype=bool)
+    for i, body in enumerate(bodies):
+        joint = body.instance.part.joint
+        if joint is None or joint.kind not in wanted:
+            continue
+        partners = [j for j, other in enumerate(bodies) if other.instance.part.name == joint.partner]
+        # Both actuators have parts of one name; a chain's sprocket may be in another unit.
+        near = [j for j in partners if bodies[j].unit == body.unit] or partners
+        found[i, near] = found[near, i] = True
+    return found
+
+
+class _Slabs:
+    """The slabs of bodies as arrays, and what they run into."""
+
+    def __init__(self, bodies: Sequence[Body], placed: Sequence[Instance], pieces: Sequence[Slab]) -> None:
+        self.bodies = bodies
+        # A part on a circle has its x axis away from the circle's centre.
+        self.outwards = np.array([instance.world[[0, 2], 0] for instance in placed])
+        owner = {instance: k for k, body in enumerate(bodies) for instance in body.instances}
+        self.owner = np.array([owner[piece.owner] for piece in pieces])
+        self.instance = np.array([piece.owner for piece in pieces])
+        self.low = np.array([piece.low for piece in pieces])
+        self.high = np.array([piece.high for piece in pieces])
+        self.section = [piece.section for piece in pieces]
+        self.slim = [piece.section.offset(-_SLIDE_MM, m3.JoinType.Miter) for piece in pieces]
+        self.bounds = np.array([piece.section.bounds() for piece in pieces])
+        self.corners = np.array([piece.section.num_vert() for piece in pieces])
+
+    def along(self) -> Bools:
+        """True at (i, j) where body i, moved along +y, runs into body j."""
+        count = len(self.bodies)
+        found = np.zeros((count, count), dtype=bool)
+        before = self.low[None] > self.high[:, None] - _TOUCH_MM
+        before &= self.owner[:, None] != self.owner[None]
+        before &= self._covering(self.bounds)
+        for a, b in self._simple_first(before):
+            i, j = int(self.owner[a]), int(self.owner[b])
+            if not found[i, j] and (self.slim[a] ^ self.section[b]).area() > _AREA_MM2:
+                found[i, j] = True
+        return found
+
+    def across(self, direction: str, body: int) -> Bools:
+        """The bodies that one runs into, moved across the axis, shape (n,)."""
+        sign = 1.0 if direction[0] == "+" else -1.0
+        way = np.array([sign, 0.0] if direction[1] == "x" else [0.0, sign]) * _FAR_MM
+        found = np.zeros(len(self.bodies), dtype=bool)
+        for a in np.flatnonzero(self.owner == body).tolist():
+            swept = _swept(self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter), way)
+            if swept.is_empty():
+                continue
+            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
+            meets = (common > _SLIDE_MM) & (self.owner != body) & self._covering(np.array([swept.bounds()]))[0]
+            for b in np.flatnonzero(meets).tolist():
+                j = int(self.owner[b])
+                if not found[j] and (swept ^ self.section[b]).area() > _AREA_MM2:
+                    found[j] = True
+        return found
+
+    def touching(self) -> Bools:
+        """True at (i, j) where two bodies lie beside or before each other with no more than play between them."""
+        found = np.eye(len(self.bodies), dtype=bool)
+        margin = np.array([-_PLAY_MM, -_PLAY_MM, _PLAY_MM, _PLAY_MM])
+        common = np.minimum(self.high[:, None], self.high[None]) - np.maximum(self.low[:, None], self.low[None])
+        near = (common > -_PLAY_MM) & (self.owner[:, None] < self.owner[None]) & self._covering(self.bounds + margin)
+        wide: dict[int, m3.CrossSection] = {}
+        for a, b in self._simple_first(near):
+            i, j = int(self.owner[a]), int(self.owner[b])
+            if found[i, j]:
+                continue
+            if a not in wide:
+                wide[a] = self.section[a].offset(_PLAY_MM, m3.JoinType.Miter)
+            if (wide[a] ^ self.section[b]).area() > _AREA_MM2:
+                found[i, j] = found[j, i] = True
+        return found
+
+    def around(self, fastener: int) -> frozenset[int]:
+        """The bodies whose material is close around a fastener."""
+        found = set()
+        for a in np.flatnonzero(self.owner == fastener).tolist():
+            wide = self.section[a].offset(_NEAR_MM, m3.JoinType.Round)
+            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
+            near = (common > _DEPTH_MM) & (self.owner != fastener) & self._covering(np.array([wide.bounds()]))[0]
+            found |= {
+                int(self.owner[b])
+                for b in np.flatnonzero(near).tolist()
+                if int(self.owner[b]) not in found and (wide ^ self.section[b]).area() > _AREA_MM2
+            }
+        return frozenset(found)
+
+    def in_the_way_of_key(self, fastener: int) -> tuple[frozenset[int], ...]:
+        """The bodies that keep a fastener from being undone: before its head, by its length and that of its key.
+
+        A bolt with its nut needs room at both ends. A spanner comes from beside the head, from any direction. A sprung
+        ring is held by the walls of its groove and leaves it on either side.
+        """
+        role = self.bodies[fastener].instance.part.role
+        if role in _SPRUNG:
+            sides = [self._before_heads(fastener, (sign,)) for sign in (1, -1)]
+            groove = sides[0] & sides[1]
+            return tuple(frozenset(side - groove) for side in sides)
+        fastening = self.bodies[fastener].instance.part.fastening
+        if fastening is not None and fastening.head == "hexagon":
+            before = self._before_heads(fastener, (), reach_mm=0.0)
+            angles = np.arange(0.0, 2.0 * np.pi, np.pi / 6.0)
+            return tuple(frozenset(before | self._beside_heads(fastener, float(angle))) for angle in angles)
+        return (frozenset(self._before_heads(fastener, (1, -1) if role is Role.BOLT else ())),)
+
+    def _before_heads(self, fastener: int, sides: tuple[int, ...], *, reach_mm: float = KEY_REACH_MM) -> set[int]:
+        """What lies before the widest end of each instance, or before the given sides (1 is +y)."""
+        found: set[int] = set()
+        for instance in self.bodies[fastener].instances:
+            own = np.flatnonzero(self.instance == instance)
+            low, high = float(self.low[own].min()), float(self.high[own].max())
+            widest = self._widest(own)
+            head_up = float(self.low[widest] + self.high[widest]) > low + high
+            reach = reach_mm if self.bodies[fastener].instance.part.role in _SPRUNG else high - low + reach_mm
+            path = self.slim[widest]
+            for side in sides or ((1,) if head_up else (-1,)):
+                start = high if side > 0 else low
+                if side > 0:
+                    before = (self.low > start - _FLUSH_MM) & (self.low < start + reach)
+                else:
+                    before = (self.high < start + _FLUSH_MM) & (self.high > start - reach)
+                before &= (self.owner != fastener) & self._covering(self.bounds[[widest]])[0]
+                found |= {
+                    int(self.owner[b])
+                    for b in np.flatnonzero(before).tolist()
+                    if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
+                }
+        return found
+
+    def _beside_heads(self, fastener: int, angle_rad: float) -> set[int]:
+        """What an open spanner meets that comes to each head, at an angle to the way out from the circle's axis."""
+        found: set[int] = set()
+        for instance in self.bodies[fastener].instances:
+            head = self._widest(np.flatnonzero(self.instance == instance))
+            left, low, right, high = self.bounds[head].tolist()
+            radius = 0.5 * (right - left)
+            half, reach = _JAW * radius, radius + SPANNER_REACH_MM
+            outwards = np.arctan2(*self.outwards[instance][[1, 0]])
+            path = m3.CrossSection([np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])])
+            path = path.rotate(float(np.degrees(outwards + angle_rad))).translate(
+                (0.5 * (left + right), 0.5 * (low + high))
+            )
+            common = np.minimum(self.high[head], self.high) - np.maximum(self.low[head], self.low)
+            meets = (common > _DEPTH_MM) & (self.instance != instance) & self._covering(np.array([path.bounds()]))[0]
+            found |= {
+                int(self.owner[b])
+                for b in np.flatnonzero(meets).tolist()
+                if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
+            }
+        return found
+
+    def head_side(self, fastener: int) -> str:
+        """The side on which a fastener is widest."""
+        own = np.flatnonzero(self.instance == self.bodies[fastener].instances[0])
+        widest = self._widest(own)
+        middle = float(self.low[own].min() + self.high[own].max())
+        return "+y" if float(self.low[widest] + self.high[widest]) > middle else "-y"
+
+    def _widest(self, own: NDArray[np.intp]) -> int:
+        """Of some slabs the widest: the head of a screw."""
+        size = self.bounds[own]
+        return int(own[int(np.argmax(size[:, 2] - size[:, 0]))])
+
+    def _simple_first(self, pairs: Bools) -> list[list[int]]:
+        """The pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
+        found = np.argwhere(pairs)
+        return list(found[np.argsort(self.corners[found].sum(axis=1), kind="stable")].tolist())
+
+    def _covering(self, bounds: NDArray[np.float64]) -> Bools:
+        """Which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
+        mine = bounds[:, None]
+        return np.asarray(
+            np.all((mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2]), axis=2)
+        )
+
+
+def _swept(section: m3.CrossSection, way: NDArray[np.float64]) -> m3.CrossSection:
+    """All that a section covers on a straight way."""
+    return m3.CrossSection.batch_boolean([section, *_strips(section, way)], m3.OpType.Add)
+
+
+def _strips(section: m3.CrossSection, way: NDArray[np.float64]) -> Iterator[m3.CrossSection]:
+    """What each edge of a section sweeps over."""
+    for polygon in section.to_polygons():
+        corners = np.asarray(polygon)
+        for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            strip = np.array([start, end, end + way, start + way])
+            along = end - start
+            if along[0] * way[1] < along[1] * way[0]:
+                strip = strip[::-1]
+            yield m3.CrossSection([strip])

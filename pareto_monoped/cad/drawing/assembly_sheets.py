@@ -1,0 +1,300 @@
+"""The drawing of the assembly: the robot from its side, sections of hip and knee, balloons and the list of items.
+
+Further sheets of the assembly: its units pulled apart along the joints' axis, so that every item has a balloon.
+
+The sheet of the cables: base and actuators from the front and from the left, with every corner of every cable.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from string import ascii_uppercase
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from pareto_monoped.cad.cables import Cable, cables, rounded
+from pareto_monoped.cad.drawing.assembly_views import (
+    FROM_FRONT,
+    FROM_FRONT_LYING,
+    FROM_LEFT,
+    Seen,
+    areas,
+    balloons,
+    captioned,
+    clear_balloons,
+    drawn,
+    leg_section,
+    outline_of,
+    side_view,
+    to_view,
+    within,
+)
+from pareto_monoped.cad.drawing.bores import number
+from pareto_monoped.cad.drawing.dimension import Tag, place_tags
+from pareto_monoped.cad.drawing.paper import Paper
+from pareto_monoped.cad.drawing.sheet import A0, A1, A2, SCALES, Size, compose, scale_text, table
+from pareto_monoped.cad.product import Instance, Pose, Product, UniquePart, body_frames, pulled_apart
+from pareto_monoped.cad.shape.meshes import placed
+from pareto_monoped.geometry.roles import Role, Visibility
+
+_ITEMS = 99
+"""Rows of the list of items in one column."""
+_CLEAR_MM2 = 12.0
+"""Area on paper of a region that a balloon's leader is sure to find (our own choice)."""
+_SECTION_SCALE = 1.0
+_ABOVE_MM, _BELOW_MM = 130.0, 110.0
+"""How far the hip's section reaches above and below its axis; the knee's reaches as far as 70 mm either way."""
+_KNEE_MM = 70.0
+_CAPTION_MM = 3.5
+_NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show every item.")
+
+
+def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
+    """The sheet of the assembly.
+
+    Raises:
+        ValueError: the robot fits no sheet.
+    """
+    side, section = side_view(product), leg_section(product)
+    knee = -1000.0 * product.robot.design.thigh_length_m
+    cuts = (
+        ("Section through the hip, joints straight", within(section, -_BELOW_MM, _ABOVE_MM)),
+        ("Section through the knee, joints straight", within(section, knee - _KNEE_MM, knee + _KNEE_MM)),
+    )
+    tables = _lists(product)
+    for size in (A1, A0):
+        for scale in (scale for scale in SCALES if scale <= _SECTION_SCALE):
+            views = _views(side, cuts, scale)
+            paper = compose(size, views, tables, _NOTES)
+            if paper is not None:
+                return paper, size, scale
+    raise ValueError("drawing of the assembly: the robot fits no sheet")
+
+
+def _views(side: Sequence[Seen], cuts: Sequence[tuple[str, list[Seen]]], scale: float) -> list[Paper]:
+    """Side view, and the sections below each other; each item has its balloon where it is seen best."""
+    pointed: dict[int, int] = {}
+    shown = [(side, scale), *((seen, _SECTION_SCALE) for _, seen in cuts)]
+    for least in (_CLEAR_MM2, 0.0):
+        for k, (seen, at) in enumerate(shown):
+            for item, area in areas(seen).items():
+                if area * at**2 > least:
+                    pointed.setdefault(item, k)
+    papers = []
+    captions = [f"Side view, {scale_text(scale)}", *(f"{name}, {scale_text(_SECTION_SCALE)}" for name, _ in cuts)]
+    for k, (seen, at) in enumerate(shown):
+        paper = drawn(seen, at)
+        balloons(paper, seen, at, [item for item, view in pointed.items() if view == k])
+        left, _, right, top = paper.box()
+        paper.text(captions[k], 0.5 * (left + right), top + 6.0, height_mm=_CAPTION_MM, align="centre")
+        papers.append(paper)
+    return [_centred([papers[0]]), _centred(papers[1:])]
+
+
+def _centred(papers: Sequence[Paper]) -> Paper:
+    """Papers below each other, with the middle of the column at the origin."""
+    column = Paper()
+    y = 0.0
+    for paper in papers:
+        left, low, right, high = paper.box()
+        column.lay(paper, -0.5 * (left + right), y - high)
+        y -= high - low + 15.0
+    whole = column.box()
+    middle = Paper()
+    middle.lay(column, 0.0, -0.5 * (whole[1] + whole[3]))
+    return middle
+
+
+def _lists(product: Product) -> list[Paper]:
+    """The list of items, in the order of ``bom.csv``."""
+    rows = [
+        (
+            f"{k}",
+            f"{unique.count}",
+            unique.name.replace("_", " "),
+            _material(unique.part.grade, unique.part.material.name),
+        )
+        for k, unique in enumerate(product.unique, 1)
+    ]
+    head = ("Item", "Count", "Part", "Material")
+    chunks = [rows[k : k + _ITEMS] for k in range(0, len(rows), _ITEMS)]
+    return [table("Items" if k == 0 else "Items, continued", head, chunk) for k, chunk in enumerate(chunks)]
+
+
+def _material(grade: object, name: str) -> str:
+    return str(getattr(grade, "name", name))
+
+
+_SCALE = 0.5
+"""At most: heads of M3 are then 2.8 mm wide."""
+_NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
+
+Sheet = tuple[Paper, Size, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Group:
+    """The instances of one item that lie at one height of a unit, which stay together."""
+
+    item: int
+    members: tuple[tuple[Instance, UniquePart], ...]
+
+
+def exploded_sheets(product: Product) -> list[Sheet]:
+    """As few sheets as hold all units; each item is shown and numbered once.
+
+    Raises:
+        ValueError: a unit fits no sheet.
+    """
+    views = list(_unit_views(product))
+    sheets: list[Sheet] = []
+    while views:
+        taken, sheet = _filled(views)
+        sheets.append(sheet)
+        views = views[taken:]
+    return sheets
+
+
+def _filled(views: Sequence[tuple[str, list[Seen]]]) -> tuple[int, Sheet]:
+    """The largest scale at which the first view fits a sheet, and with it as many more as fit."""
+    for scale in (scale for scale in SCALES if scale <= _SCALE):
+        papers = [_view(name, seen, scale) for name, seen in views]
+        for size in (A1, A0):
+            for count in range(len(papers), 0, -1):
+                paper = compose(size, papers[:count], [], ["The numbers are those of sheet 1."])
+                if paper is not None:
+                    return count, (paper, size, scale)
+    raise ValueError(f"drawing of the assembly: {views[0][0]} fits no sheet")
+
+
+def _view(name: str, seen: Sequence[Seen], scale: float) -> Paper:
+    paper = drawn(seen, scale)
+    clear_balloons(paper, seen, scale)
+    return captioned(paper, name, scale)
+
+
+def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
+    """The parts of each unit that no unit before it has, pulled apart, seen from the front with their axes upright."""
+    frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    shown: set[int] = set()
+    for unit in product.robot.units:
+        groups = list(_groups(product, unit.name, shown))
+        shown |= {group.item for group in groups}
+        if not groups:
+            continue
+        regions, boxes = [], []
+        for group in groups:
+            bodies = [
+                placed(unique.mesh.body, to_view(FROM_FRONT_LYING) @ frames[instance.body] @ instance.in_body)
+                for instance, unique in group.members
+            ]
+            regions.append(shapely.union_all([outline_of(body.project()) for body in bodies]))
+            corners = np.array([body.bounding_box() for body in bodies])
+            boxes.append([*corners[:, :3].min(axis=0), *corners[:, 3:].max(axis=0)])
+        limits = np.array(boxes)
+        limits[:, [2, 5]] = _NO_WIDTH
+        moves = pulled_apart(limits, axis=1)
+        yield (
+            unit.name.replace("_", " ").capitalize(),
+            [
+                Seen(item=group.item, region=shapely.affinity.translate(region, 0.0, move), cut=False)
+                for group, region, move in zip(groups, regions, moves, strict=True)
+            ],
+        )
+
+
+def _groups(product: Product, unit: str, shown: set[int]) -> Iterator[_Group]:
+    """The items of a unit that are not shown yet, each with its instances at the first of its heights."""
+    found: dict[int, dict[float, list[tuple[Instance, UniquePart]]]] = {}
+    for (instance, unique), kind in zip(product.placed(), product.kinds, strict=True):
+        if instance.unit == unit and kind not in shown:
+            height = round(float(instance.in_body[1, 3]), 3)
+            found.setdefault(kind, {}).setdefault(height, []).append((instance, unique))
+    for item, heights in found.items():
+        yield _Group(item=item, members=tuple(next(iter(heights.values()))))
+
+
+_WIDE_MM = 0.7
+_NAME_MM = 2.5
+_LARGEST = 1.0
+_CABLE_SHEET_NOTES = (
+    "Lengths in mm, from the hip's axis in the middle of the leg: x forward, y left, z up. The thigh hangs down.",
+    "Path: along the middle line with rounded corners. Cut: with the tails at both ends, rounded up.",
+)
+
+
+def cable_sheet(product: Product) -> tuple[Paper, Size, float]:
+    """The sheet.
+
+    Raises:
+        ValueError: the robot fits no sheet.
+    """
+    made = cables(product.robot)
+    regions = {name: list(_seen(product, axes)) for name, axes in _VIEWS}
+    tables = _tables(made)
+    notes = (
+        *_CABLE_SHEET_NOTES,
+        *(f"{cable.warning[0].upper()}{cable.warning[1:]}." for cable in made if cable.warning),
+    )
+    for scale in (scale for scale in SCALES if scale <= _LARGEST):
+        views = [_cable_sheet_view(name, regions[name], axes, made, scale) for name, axes in _VIEWS]
+        for size in (A2, A1):
+            paper = compose(size, views, tables, notes)
+            if paper is not None:
+                return paper, size, scale
+    raise ValueError("drawing of the cables: the robot fits no sheet")
+
+
+_VIEWS = (("From the front", FROM_FRONT), ("From the left", FROM_LEFT))
+
+
+def _seen(product: Product, axes: NDArray[np.float64]) -> Iterator[Seen]:
+    """Outlines of what stands on the base or belongs to an actuator, all of them, with the leg hanging down."""
+    frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
+    units = {unit.name for unit in product.robot.units if unit.body == "base"}
+    for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
+        near = instance.unit in units or instance.part.role in (Role.HOUSING, Role.SHAFT, Role.ELECTRONICS)
+        if instance.body == "shank" or not near or instance.part.visibility is not Visibility.OUTSIDE:
+            continue
+        body = placed(unique.mesh.body, to_view(axes) @ frames[instance.body] @ instance.in_body)
+        yield Seen(item=item, region=outline_of(body.project()), cut=False)
+
+
+def _cable_sheet_view(
+    name: str, seen: Sequence[Seen], axes: NDArray[np.float64], made: Sequence[Cable], scale: float
+) -> Paper:
+    """The outlines with the cables over them, and a name at every corner."""
+    paper = drawn(seen, scale)
+    tags = []
+    for letter, cable in zip(ascii_uppercase, made, strict=False):
+        line = rounded(cable.points_mm, cable.bend_radius_mm) @ axes[:2].T * scale
+        paper.line(line, width_mm=_WIDE_MM)
+        for k, (x, y) in enumerate((cable.points_mm @ axes[:2].T).tolist(), 1):
+            tags.append(Tag(text=f"{letter}{k}", x=x, y=y, radius=0.0, height_mm=_NAME_MM))
+    place_tags(paper, tags, scale)
+    return captioned(paper, name, scale)
+
+
+def _tables(made: Sequence[Cable]) -> list[Paper]:
+    """What is cut, and the corners."""
+    cut = [
+        (
+            letter,
+            f"{cable.start} to {cable.end}",
+            f"{cable.wires} x {cable.designation}",
+            f"{cable.length_mm:.0f}",
+            f"{cable.cut_mm:g}",
+            f"{cable.bend_radius_mm:.0f}",
+        )
+        for letter, cable in zip(ascii_uppercase, made, strict=False)
+    ]
+    corners = [
+        (f"{letter}{k}", *(number(round(value, 1)) for value in point), what)
+        for letter, cable in zip(ascii_uppercase, made, strict=False)
+        for k, (point, what) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1)
+    ]
+    return [
+        table("Cables", ("Cable", "From, to", "Wires", "Path", "Cut", "Bend radius"), cut),
+        table("Corners", ("Corner", "x", "y", "z", "What"), corners),
+    ]

@@ -1,0 +1,333 @@
+"""The steps of putting an assembly together: what comes to what, from where, and which screws are then driven.
+
+Take an assembly apart, two halves at a time: the reverse is the order in which it goes together.
+
+Wilson and Latombe (Geometric reasoning about mechanical assembly, 1994): among bodies with fixed ways out, let i point
+to j where i, moved along a direction, runs into j. A set that contains all that its members point to can leave in this
+direction as a whole. Fasteners whose keys have room are undone first; all others tie the bodies that they thread into.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pareto_monoped.cad.bodies import DIRECTIONS, Blocking, Bools
+from pareto_monoped.cad.product import ACTUATOR_UNITS
+
+Members = frozenset[int]
+
+_PIECE = 3
+"""Cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice."""
+_CUT_ACTUATOR = 10
+"""Cost of a cut through an actuator, over that through a link: more than there are links."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Whole:
+    """Bodies that do not come apart: one, or several that last together."""
+
+    members: Members  #: indices of bodies
+    stuck: bool = False  #: whether they should come apart, but no straight way leads out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joined:
+    """Two assemblies that are put together, and the fasteners that are then driven."""
+
+    kept: "Assembly"  #: stays where it is
+    added: "Assembly"  #: comes to it
+    out: str  #: the direction in which ``added`` leaves; it comes the other way
+    fasteners: tuple[int, ...]  #: driven once both are together
+
+    @property
+    def members(self) -> Members:
+        """Indices of all bodies."""
+        return self.kept.members | self.added.members | frozenset(self.fasteners)
+
+
+Assembly = Whole | Joined
+
+
+def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
+    """Take an assembly apart as far as straight ways out and room for keys allow."""
+    everything = frozenset(range(len(blocking.bodies))) if members is None else members
+    if len(everything) == 1:
+        return Whole(members=everything)
+    undone = _undone(blocking, everything)
+    rest = everything - undone
+    if not rest:
+        # Fasteners only: any one of them can be put aside.
+        first = min(everything)
+        return Joined(
+            kept=take_apart(blocking, everything - {first}),
+            added=Whole(members=frozenset({first})),
+            out=DIRECTIONS[0],
+            fasteners=(),
+        )
+    if len(rest) == 1:
+        return Joined(
+            kept=Whole(members=rest),
+            added=Whole(members=frozenset()),
+            out=DIRECTIONS[0],
+            fasteners=tuple(sorted(undone)),
+        )
+    split = _best_split(blocking, rest, undone)
+    if split is None:
+        lasting = _masks(blocking.lasting[np.ix_(sorted(everything), sorted(everything))])
+        return Whole(members=everything, stuck=len(list(_pieces(lasting, (1 << len(lasting)) - 1))) > 1)
+    out, leaving = split
+    leaving, staying, crossing = _shared(blocking, out, leaving, rest - leaving, undone)
+    if len(leaving) > len(staying):
+        leaving, staying, out = staying, leaving, _opposite(out)
+    return Joined(
+        kept=take_apart(blocking, staying),
+        added=take_apart(blocking, leaving),
+        out=out,
+        fasteners=tuple(sorted(crossing)),
+    )
+
+
+def stuck(assembly: Assembly) -> Iterator[Members]:
+    """The wholes of an assembly that should come apart and do not."""
+    if isinstance(assembly, Whole):
+        if assembly.stuck:
+            yield assembly.members
+        return
+    yield from stuck(assembly.kept)
+    yield from stuck(assembly.added)
+
+
+def _undone(blocking: Blocking, members: Members) -> Members:
+    """The fasteners that can be undone, one after the other."""
+    undone: set[int] = set()
+    waiting = {k for k in members if blocking.bodies[k].is_fastener}
+    while True:
+        left = members - undone
+        free = {k for k in waiting if not all(way & left for way in blocking.key[k])}
+        if not free:
+            return frozenset(undone)
+        undone |= free
+        waiting -= free
+
+
+def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str, Members] | None:
+    """A direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced halves."""
+    order = sorted(rest)
+    everything = (1 << len(order)) - 1
+    touching = _masks(blocking.touching[np.ix_(order, order)])
+    best: tuple[tuple[int, int, int], str, Members] | None = None
+    for direction in DIRECTIONS:
+        if best is not None and direction not in blocking.along:
+            break  # across the axis only what does not leave along it
+        reach = _masks(_closure(_edges(blocking, direction, order)))
+        seen: set[int] = set()
+        for k, mask in enumerate(_candidates(blocking, order, reach, touching)):
+            if mask in (0, everything) or mask in seen:
+                continue
+            seen.add(mask)
+            leaving = frozenset(order[m] for m in _bits(mask))
+            # What falls to pieces once the set has gone has to be held in its place meanwhile.
+            pieces = sum(1 for _ in _pieces(touching, everything & ~mask)) - 1
+            cost = _cuts(blocking, leaving, rest - leaving) + _PIECE * pieces
+            score = (cost, -min(len(leaving), len(rest) - len(leaving)), k)
+            if best is None or score < best[0]:
+                best = (score, direction, leaving)
+    return None if best is None else best[1:]
+
+
+def _edges(blocking: Blocking, direction: str, order: list[int]) -> Bools:
+    """True at (i, j) where i takes j with it: it runs into j, or is tied to it."""
+    rows = np.stack([blocking.blocked(direction, k) for k in order])[:, order]
+    chosen = np.ix_(order, order)
+    return np.asarray(rows | blocking.tied[chosen] | blocking.lasting[chosen])
+
+
+def _closure(edges: Bools) -> Bools:
+    """What each node reaches, itself included."""
+    reach = edges | np.eye(len(edges), dtype=bool)
+    # Warshall 1962: ways over the first k nodes.
+    for k in range(len(reach)):
+        reach[reach[:, k]] |= reach[k]
+    return np.asarray(reach)
+
+
+def _candidates(
+    blocking: Blocking, order: Sequence[int], reach: Sequence[int], touching: Sequence[int]
+) -> Iterator[int]:
+    """Sets that can leave and hold together: what units, and then single bodies, take with them.
+
+    Of a set in several pieces each piece that runs into no other can leave by itself.
+
+    Args:
+        blocking: the bodies.
+        order: which of them are looked at.
+        reach: per body a mask of what it takes with it.
+        touching: per body a mask of what it touches.
+
+    Yields:
+        masks of sets.
+    """
+    units = [blocking.bodies[k].unit for k in order]
+    seeds = [_united(reach, (k for k, name in enumerate(units) if name == unit)) for unit in dict.fromkeys(units)]
+    for mask in dict.fromkeys([*seeds, *reach]):
+        pieces = list(_pieces(touching, mask))
+        # A piece may run into another that it does not touch.
+        yield from (piece for piece in pieces if _united_in(reach, piece) == piece)
+        if len(pieces) > 1:
+            yield mask
+
+
+def _masks(rows: Bools) -> list[int]:
+    """Each row as an integer whose bit m is the row's element m."""
+    return [int.from_bytes(row.tobytes(), "little") for row in np.packbits(rows, axis=1, bitorder="little")]
+
+
+def _bits(mask: int) -> Iterator[int]:
+    """Numbers of the bits that are set, from the lowest."""
+    while mask:
+        low = mask & -mask
+        yield low.bit_length() - 1
+        mask ^= low
+
+
+def _united(masks: Sequence[int], members: Iterable[int]) -> int:
+    """All that some of the masks hold."""
+    found = 0
+    for k in members:
+        found |= masks[k]
+    return found
+
+
+def _united_in(masks: Sequence[int], members: int) -> int:
+    """The same for members that are the bits of a mask."""
+    found = 0
+    while members:
+        low = members & -members
+        found |= masks[low.bit_length() - 1]
+        members ^= low
+    return found
+
+
+def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
+    """The pieces into which a set of bodies falls, as masks, from that of the lowest body."""
+    while mask:
+        piece = fresh = mask & -mask
+        while fresh:
+            fresh = _united_in(touching, fresh) & mask & ~piece
+            piece |= fresh
+        yield piece
+        mask &= ~piece
+
+
+def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
+    """What it costs that units have bodies on both sides; an actuator is tested on the bench and stays whole."""
+    names = [{blocking.bodies[k].unit for k in side} for side in (one, other)]
+    return sum(_CUT_ACTUATOR if name in ACTUATOR_UNITS else 1 for name in names[0] & names[1])
+
+
+def _shared(
+    blocking: Blocking, out: str, leaving: Members, staying: Members, undone: Members
+) -> tuple[Members, Members, Members]:
+    """Both sides with the undone fasteners that belong to one of them alone, and those that join or part both.
+
+    A retaining ring parts what it holds from what is then in its way.
+    """
+    sides, crossing = (set(leaving), set(staying)), set()
+    for k in sorted(undone):
+        joins = blocking.goes_through[k] - undone
+        touched = [bool(joins & side) for side in (leaving, staying)]
+        goes_along = touched[0]
+        hit = np.flatnonzero(blocking.blocked(out, k)).tolist() if goes_along else []
+        parts = bool(staying & set(hit)) or (not goes_along and any(blocking.blocked(out, m)[k] for m in leaving))
+        if all(touched) or parts:
+            crossing.add(k)
+        else:
+            sides[0 if touched[0] else 1].add(k)
+    return frozenset(sides[0]), frozenset(sides[1]), frozenset(crossing)
+
+
+def _opposite(direction: str) -> str:
+    return ("-" if direction[0] == "+" else "+") + direction[1]
+
+
+MOST_ADDED = 4
+"""Additions in a step; more would not be told apart in its picture."""
+
+_BY_HAND = 3
+"""Bodies that need no step of their own to be put together, if they need no screws."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Addition:
+    """Bodies that come to an assembly together, along a straight line."""
+
+    members: Members  #: indices of bodies
+    out: str  #: the direction in which they would leave; they come the other way
+    #: Of the step that has put them together before; None for a single body, and for a few that are put together by
+    #: hand before they come
+    number: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One step."""
+
+    number: int  #: from 1
+    base: Members  #: what is together already, or the first body
+    base_number: int | None  #: of the step that has put the base together; None for a single body
+    additions: tuple[Addition, ...]  #: what comes to it, one after the other
+    fasteners: tuple[int, ...]  #: indices of the screws that are driven then
+
+    @property
+    def members(self) -> Members:
+        """Indices of all bodies that are together after the step."""
+        return self.base.union(*(addition.members for addition in self.additions), self.fasteners)
+
+
+def steps_of(assembly: Assembly) -> tuple[Step, ...]:
+    """The steps in order: each assembly is made in consecutive steps, what comes to it is made before."""
+    found: list[Step] = []
+    _make(assembly, found)
+    return tuple(found)
+
+
+def _make(assembly: Assembly, found: list[Step]) -> int | None:
+    """Append the steps of an assembly, and return the number of its last one; None if it needs none."""
+    if isinstance(assembly, Whole):
+        return None
+    base_number = _make(assembly.kept, found)
+    before = len(found)
+    number = _make(assembly.added, found)
+    if len(found) == before + 1 and not found[-1].fasteners and len(assembly.added.members) <= _BY_HAND:
+        number = None
+        del found[-1]
+    last = found[-1] if found else None
+    added = Addition(members=assembly.added.members, out=assembly.out, number=number)
+    additions = (added,) if added.members else ()
+    continues = last is not None and last.number == base_number and before == len(found)
+    if continues and last is not None and not last.fasteners and len(last.additions) < MOST_ADDED:
+        found[-1] = replace(last, additions=(*last.additions, *additions), fasteners=assembly.fasteners)
+    else:
+        found.append(
+            Step(
+                number=len(found) + 1,
+                base=assembly.kept.members,
+                base_number=base_number,
+                additions=additions,
+                fasteners=assembly.fasteners,
+            )
+        )
+    return found[-1].number
+
+
+def titled(step: Step, blocking: Blocking) -> str:
+    """What a step works at: the names of the units that it touches, the greatest first."""
+    names: dict[str, int] = {}
+    for k in step.members:
+        unit = blocking.bodies[k].unit
+        names[unit] = names.get(unit, 0) + 1
+    order = sorted(names, key=lambda name: -names[name])
+    words = [name.replace("_", " ") for name in order]
+    text = words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+    return text[0].upper() + text[1:]

@@ -1,0 +1,162 @@
+"""``bom.csv``: the parts list.
+
+``strength.csv``: the safety factor of every joint under the loads of the jump.
+
+``checks.json``: what was checked, and what was found.
+"""
+
+import csv
+import io
+import json
+from collections import defaultdict
+from collections.abc import Sequence
+
+from pareto_monoped.cad.check.result import Check
+from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, extent_mm, part_file_name
+from pareto_monoped.geometry.parts import Part
+from pareto_monoped.strength.factors import JointFactor
+from pareto_monoped.strength.joint import ActuatorJoint
+
+_COLUMNS = (
+    "part",
+    "count",
+    "material",
+    "process",
+    "mass_g",
+    "total_g",
+    "made_or_bought",
+    "size_mm",
+    "used_in",
+    "torque_n_m",
+    "lock",
+    "safety_factors",
+    "note",
+)
+
+
+def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
+    """The parts list as CSV, one row per unique part.
+
+    Args:
+        product: the parts.
+        factors: safety factors of the joints; each stands with the parts that it is about.
+    """
+    joints = _by_part(factors)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(_COLUMNS)
+    for unique in product.unique:
+        part = unique.part
+        mass_g = 1e3 * float(part.unit_mass_kg())
+        writer.writerow(
+            (
+                unique.name,
+                unique.count,
+                part.material.name,
+                part.process,
+                f"{mass_g:.2f}",
+                f"{mass_g * unique.count:.2f}",
+                "bought" if part.process == "bought" else "made",
+                " x ".join(f"{size:.1f}" for size in extent_mm(unique.mesh)),
+                " ".join(unique.units),
+                f"{part.fastening.torque_n_m:.1f}" if part.fastening else "",
+                part.fastening.lock if part.fastening else "",
+                "; ".join(joints[unique.name]),
+                _note(part),
+            )
+        )
+    return stream.getvalue()
+
+
+def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
+    """File name of a part -> its joints, each with factor and required factor."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for one in factors:
+        required = "informs" if one.joint.informs else f"{one.joint.required:g}"
+        text = f"{one.joint.name} {one.factor:.2f} ({required})"
+        for part in one.joint.parts:
+            # A joint of an actuator may name parts of the leg too, and both actuators may share their parts.
+            found[part].append(text)
+            if isinstance(one.joint, ActuatorJoint):
+                found[part_file_name((f"{one.joint.side}_actuator",), part)].append(text)
+                found[part_file_name(tuple(ACTUATOR_UNITS), part)].append(text)
+    return found
+
+
+def _note(part: Part) -> str:
+    """What the maker must know: grade and accuracy, fits, note, joint."""
+    return "; ".join(
+        filter(
+            None,
+            (
+                f"{part.grade.name}, {part.grade.hardness}" if part.grade else "",
+                f"ISO 1328-1 class {part.accuracy_class}" if part.accuracy_class else "",
+                *(one.text for one in part.teeth),
+                *(fit.text for fit in part.fits),
+                part.note,
+                part.joint.text if part.joint else "",
+            ),
+        )
+    )
+
+
+_STRENGTH_TABLE_COLUMNS = (
+    "joint",
+    "group",
+    "actuator",
+    "factor",
+    "required",
+    "factor_over_required",
+    "asked",
+    "loads",
+    "formula",
+    "source",
+    "required_because",
+    "parts",
+    "cure",
+)
+
+
+def strength_table(factors: Sequence[JointFactor]) -> str:
+    """The table as CSV, a row per joint; without rows if the design does not jump."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(_STRENGTH_TABLE_COLUMNS)
+    for one in factors:
+        joint = one.joint
+        writer.writerow(
+            (
+                joint.name,
+                joint.group,
+                joint.side if isinstance(joint, ActuatorJoint) else "",
+                f"{one.factor:.12g}",
+                f"{joint.required:g}",
+                f"{one.share:.12g}",
+                "informs" if joint.informs else "required",
+                " ".join(f"{name}={value:.6g}" for name, value in one.loads.items()),
+                joint.formula,
+                joint.source,
+                joint.required_source,
+                " ".join(joint.parts),
+                joint.cure,
+            )
+        )
+    return stream.getvalue()
+
+
+def checks_record(checks: Sequence[Check]) -> str:
+    """The checks as JSON, in the order in which they ran."""
+    rows = [
+        {
+            "check": check.name,
+            "passed": check.passed,
+            "looked_at": check.looked_at,
+            "worst": check.worst,
+            "measured": check.measured,
+            "limit": check.limit,
+            "unit": check.unit,
+            "failures": list(check.failures),
+        }
+        for check in checks
+    ]
+    return json.dumps(rows, indent=2) + "\n"

@@ -1,0 +1,260 @@
+"""Commands that look after a study database: ``verify`` and ``repair``.
+
+Command ``dashboard``: optuna-dashboard on a study, for this machine only and without leave to write.
+
+Command ``report``: one HTML page of one or more studies, and figures for print.
+
+``trials``: every trial of a study with all its measures, for other programs.
+"""
+
+import errno
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pareto_monoped.cli.options import (
+    CSV_FILE,
+    DATABASE,
+    HTML_FILE,
+    PARQUET_FILE,
+    Local,
+    Where,
+    executor_at,
+    force_option,
+    where,
+    where_options,
+)
+from pareto_monoped.cli.terminal import echo, name, note
+from pareto_monoped.errors import require_extra
+from pareto_monoped.storage.place import StudyPlace
+
+if TYPE_CHECKING:
+    from wsgiref.simple_server import WSGIServer
+
+    from pandas import DataFrame
+
+
+@click.command()
+@click.argument("db", type=DATABASE)
+@click.option(
+    "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
+)
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
+@where_options
+def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | None, scheduler: str | None) -> None:
+    """Check that nothing in a study has been lost or changed.
+
+    Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
+    """
+    from pareto_monoped.analysis.verify import require_sound
+    from pareto_monoped.analysis.verify import verify as verify_study
+    from pareto_monoped.storage.front_reader import foreign_note
+    from pareto_monoped.storage.seals import UNSEALED
+    from pareto_monoped.study.run import default_workers
+
+    place = where(processes, scheduler, workers)
+    if place != Where() and not simulate:
+        raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
+    with executor_at(place) as executor:
+        result = verify_study(db, simulate=simulate, workers=workers or default_workers(), executor=executor)
+    for line in result.findings:
+        echo(f"found: {line}", err=True)
+    if result.foreign:
+        note(foreign_note(len(result.foreign)))
+    if not result.sealed:
+        note(UNSEALED)
+    require_sound(db, result)
+    again = f", {result.simulated} jumped again as stored" if result.simulated else ""
+    echo(f"{db}: sound, {result.trials} trials{again}")
+
+
+@click.command()
+@click.argument("db", type=DATABASE)
+def repair(db: StudyPlace) -> None:
+    """Drop trials that an Optuna user has added to a study.
+
+    They are ignored by all other commands, but Optuna and its dashboard count them among the study's.
+    """
+    from pareto_monoped.storage.optuna_check import repair as repair_study
+
+    dropped = repair_study(db)
+    numbers = f", which Optuna numbered {', '.join(map(str, dropped))}" if dropped else ""
+    echo(f"{db}: dropped {len(dropped)} trials{numbers}")
+
+
+HOST = "127.0.0.1"
+"""The loopback: nobody else in the network reaches the dashboard, which asks for no password."""
+PORT = 8080
+"""Where optuna-dashboard listens by default, too."""
+
+
+@click.command()
+@click.argument("db", type=DATABASE)
+@click.option(
+    "--port", type=click.IntRange(1, 65535), metavar="N", help=f"Where it listens.  [default: {PORT}, or any free one]"
+)
+@click.option("--open", "browse", is_flag=True, help="Open it in the browser.")
+def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
+    """Show a study in optuna-dashboard, until Ctrl-C.
+
+    It listens on this machine only. The study is opened for reading, also while it runs: notes, new names and deletions
+    are refused there.
+    """
+    from pareto_monoped.errors import require_extra
+    from pareto_monoped.storage.status import read_summary
+
+    require_extra("dashboard", "dashboard")
+    read_summary(db)  # says what is wrong with the file before Optuna does
+    with _server(_application(db), port) as server:
+        address = f"http://{HOST}:{server.server_port}/"
+        echo(f"{name(db)} is at {address}, read only; Ctrl-C ends it", err=True)
+        if browse:
+            webbrowser.open(address)
+        try:
+            server.serve_forever(poll_interval=0.1)
+        except KeyboardInterrupt:
+            echo("ended", err=True)
+
+
+def _application(db: StudyPlace) -> Any:
+    """The dashboard's WSGI application of a study."""
+    from optuna_dashboard import wsgi
+
+    from pareto_monoped.storage.optuna_tables import reading_storage
+
+    return _reading(wsgi(reading_storage(db)))
+
+
+def _reading(application: Any) -> Any:
+    """The application for requests that read; others are answered with a refusal, which the page shows."""
+
+    def answered(environment: dict[str, Any], start: Any) -> Any:
+        if environment["REQUEST_METHOD"] in ("GET", "HEAD"):
+            return application(environment, start)
+        start("403 Forbidden", [("Content-Type", "application/json")])
+        return [b'{"reason": "the study is open for reading only"}']
+
+    return answered
+
+
+def _server(application: Any, port: int | None) -> "WSGIServer":
+    """A server on the loopback, at the port asked for.
+
+    Raises:
+        InputError: that port is in use, or not allowed.
+    """
+    from socketserver import ThreadingMixIn
+    from wsgiref.simple_server import WSGIRequestHandler, WSGIServer, make_server
+
+    from pareto_monoped.errors import InputError
+
+    class Quiet(WSGIRequestHandler):
+        """Nobody needs a line per request."""
+
+        def log_message(self, *_: Any) -> None:
+            """Say nothing."""
+
+    class Threads(ThreadingMixIn, WSGIServer):
+        """A slow request holds up no other one; none holds up the end."""
+
+        daemon_threads = True
+
+    def at(number: int) -> WSGIServer:
+        return make_server(HOST, number, application, server_class=Threads, handler_class=Quiet)
+
+    try:
+        return at(port or PORT)
+    except OSError as error:
+        if port is None and error.errno == errno.EADDRINUSE:
+            return at(0)
+        raise InputError(
+            f"--port = {port or PORT}: cannot be listened at ({error.strerror}); give another one"
+        ) from None
+
+
+@click.command()
+@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
+@click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
+@click.option(
+    "--figures",
+    type=Local(file_okay=False),
+    metavar="DIR",
+    help="Folder for figures for print, as SVG and PNG.",
+)
+@click.option(
+    "--exports",
+    type=Local(file_okay=False),
+    metavar="DIR",
+    help="Folder of exported designs, DIR/trial_N.",
+)
+@click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
+@force_option
+def report(
+    dbs: tuple[StudyPlace, ...],
+    output: Path | None,
+    figures: Path | None,
+    exports: Path | None,
+    no_jumps: bool,
+    force: bool,
+) -> None:
+    """Write the report of a study, or of several in comparison.
+
+    The page is one file that works without a network.
+    """
+    if output is None and figures is None:
+        raise click.UsageError("no output given: must be -o FILE.html, --figures DIR, or both; add one")
+    from pareto_monoped.files import refuse_database, write_text
+    from pareto_monoped.report.page import page, payload_of
+
+    if output is not None:
+        refuse_database(output)
+    # Figures show one jump only.
+    most_jumps = 0 if no_jumps else 1 if output is None else None
+    payload = payload_of(dbs, exports=exports, most_jumps=most_jumps, note=note)
+    if output is not None:
+        write_text(output, page(payload), force=force)
+        echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
+    if figures is not None:
+        from pareto_monoped.report.figures import write_figures
+
+        for path in write_figures(payload, figures, force=force):
+            echo(f"wrote {path}", err=True)
+
+
+@click.command()
+@click.argument("db", type=DATABASE)
+@click.option("--csv", "csv_file", metavar="FILE.csv", type=CSV_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE.parquet", type=PARQUET_FILE, help="Write a table of Apache Parquet.")
+@click.option(
+    "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
+)
+@force_option
+def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
+    """Give all trials of a study with every measure, as a table.
+
+    Columns have their stored names and SI units. Without a file the table goes to stdout, as CSV.
+    """
+    from pareto_monoped.storage.reader import read_study
+
+    if parquet is not None:
+        require_extra("parquet", "--parquet", instead="use --csv")
+    rows = read_study(db).trials
+    if state is not None:
+        rows = rows[rows["state"] == state]
+    if csv_file is None and parquet is None:
+        echo(rows.to_csv(index=False, lineterminator="\n"), nl=False)
+        return
+    from pareto_monoped.files import write_bytes, write_text
+
+    if csv_file is not None:
+        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
+        _say(csv_file, rows)
+    if parquet is not None:
+        write_bytes(parquet, rows.to_parquet(index=False), force=force)
+        _say(parquet, rows)
+
+
+def _say(path: Path, rows: "DataFrame") -> None:
+    echo(f"wrote {path} ({len(rows)} trials)", err=True)

@@ -1,0 +1,1 @@
+"""What a study is: its file, variables, goals and algorithm settings, as checked records."""

@@ -1,0 +1,338 @@
+"""The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.config import checked
+from pareto_monoped.definition.algorithms import AlgorithmSettings, WeightedSettings, within_budget
+from pareto_monoped.definition.goals import (
+    LEAST_SAFETY,
+    Constraints,
+    constraints_of,
+    corner_of,
+    objectives_of,
+    stored_objectives,
+)
+from pareto_monoped.definition.study_file import (
+    Stop,
+    StudyFile,
+    algorithm_of,
+    file_values,
+    plain_values,
+    with_objectives,
+)
+from pareto_monoped.definition.variables import (
+    MOTOR_KEYS,
+    Bounds,
+    Named,
+    all_names,
+    kits_of,
+    named_motors,
+    names_of,
+    text_of,
+    variables_of,
+)
+from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, rules_for, strength_for
+from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
+from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.strength.groups import GROUP_MEASURES
+from pareto_monoped.uncertainty.settings import Sampling, sampling_of
+
+NO_STRENGTH = "strength was not asked for: designs may not hold"
+"""What every output says of a study without ``Study.strength``; those of earlier versions are among them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """A complete study. Each variable is either free within ``Bounds`` or fixed to a number.
+
+    ``motor`` is the name or file of the motor of both joints, or a tuple of several from which each design has one. It
+    is None where ``hip_motor`` and ``knee_motor`` say the same of either joint.
+    ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
+    the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
+    measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
+    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``uncertainty``
+    is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
+    ``shared_iterations`` says whether the iterations of a weighted search are each weight's share of the budget,
+    because the file gives none; it is not stored.
+
+    Example:
+        >>> from pareto_monoped import Study
+        >>> study = Study.define(name="mine", motor="U8", evaluations=400, constraints={"mass_kg": {"max": 4.0}})
+        >>> study.objectives.names, study.constraints.value("max_mass_kg")
+        (('height_m', 'energy_j'), 4.0)
+    """
+
+    name: str
+    description: str
+    case: str | None
+    motor: Named
+    hip_motor: Named = None
+    knee_motor: Named = None
+    calibration: str
+    rules: RuleSet = "paper"
+    evaluations: int
+    seed: int
+    variables: Mapping[str, Bounds | float]
+    objectives: Objectives
+    constraints: Constraints
+    reference_point: ReferencePoint
+    stop: Stop
+    audit: bool
+    strength: bool = False
+    gear_list: bool = False
+    uncertainty: Sampling | None = None
+    algorithm: AlgorithmSettings
+    shared_iterations: bool = field(default=False, compare=False)
+
+    @classmethod
+    def from_toml(cls, path: str | PathLike[str], **changes: Any) -> "Study":
+        """The study in a TOML file, with other values for some of its keys.
+
+        Args:
+            path: the file.
+            changes: as for ``define``.
+
+        Raises:
+            StudyError: no readable TOML, an unknown key, a wrong type, or impossible bounds.
+            MotorError: an unknown name of a motor.
+            CalibrationError: an unknown name of a calibration.
+
+        Example:
+            >>> from pareto_monoped import Study
+            >>> Study.from_toml("studies/case_c.toml", evaluations=400).name
+            'case_c'
+        """
+        if not isinstance(path, str | PathLike) or not isinstance(fspath(path), str):
+            raise StudyError(complaint("study file", path, "text or a path", "give one"))
+        source = f"study file {str(path)!r}"
+        return filled(file_values(Path(path)) | plain_values(changes, source), source=source)
+
+    @classmethod
+    def define(cls, **values: Any) -> "Study":
+        """A study from the keys of a study file, such as ``motor="U8"`` or ``constraints={"mass_kg": {"max": 4.0}}``.
+
+        Args:
+            values: the keys. ``name`` and ``evaluations`` are required; the others have the defaults of a study file.
+                Tables are mappings, an algorithm may be a name, and files of motors and calibrations may be paths.
+
+        Raises:
+            StudyError: an unknown key, a wrong type, or impossible bounds.
+            MotorError: an unknown name of a motor.
+            CalibrationError: an unknown name of a calibration.
+
+        Example:
+            >>> from pareto_monoped import Study
+            >>> study = Study.define(name="mine", evaluations=200, objectives=["height_m", "electrical_energy_j"])
+            >>> study.free[0]
+            'thigh_length_m'
+        """
+        return filled(plain_values(values, "study"), source="study")
+
+    @property
+    def motors(self) -> tuple[str, ...]:
+        """Names or files of all motors, those of the hip first."""
+        return all_names(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def kits(self) -> tuple[tuple[str, str], ...]:
+        """The motors of hip and knee, named as in ``motors``, that a design may have."""
+        return kits_of(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def motor_text(self) -> str:
+        """All motors in one line."""
+        return text_of(self.motor, self.hip_motor, self.knee_motor)
+
+    @property
+    def motor_choices(self) -> tuple[str, ...]:
+        """The keys of the file that name several motors, of ``motor``, ``hip_motor`` and ``knee_motor``."""
+        return tuple(key for key in MOTOR_KEYS if isinstance(getattr(self, key), tuple))
+
+    @property
+    def robust_names(self) -> tuple[str, ...]:
+        """The measures under uncertainty that each trial has, which are those asked for and the shares of jumps."""
+        asked = [name for name in (*self.objectives.names, *self.constraints.measures) if is_robust(name)]
+        shares = [entry.name for entry in SHARE_MEASURES] if asked else []
+        return tuple(dict.fromkeys((*shares, *asked)))
+
+    @property
+    def own_names(self) -> tuple[str, ...]:
+        """The measures that are functions of the user's own, such as "own_landing_speed", each once."""
+        asked = (*self.objectives.names, *self.constraints.measures)
+        return tuple(dict.fromkeys(name for name in asked if is_own(name)))
+
+    @property
+    def least_safeties(self) -> dict[str, float]:
+        """Each measure of strength -> what it must be for a jump not to overload a part."""
+        return {name: self.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the free variables, in the order of ``NAMES``."""
+        return tuple(name for name in NAMES if isinstance(self.variables[name], Bounds))
+
+    @property
+    def lower(self) -> NDArray[np.float64]:
+        """Lower bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
+
+    @property
+    def upper(self) -> NDArray[np.float64]:
+        """Upper bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
+
+    def _ordered(self) -> list[Bounds | float]:
+        return [self.variables[name] for name in NAMES]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
+
+        Left out are keys of motors that say nothing, optional variables at their defaults, limits that are off and came
+        later, the rules ``paper``, strength that is not asked for, a list of gearboxes that is not searched, and
+        uncertainty where nothing is said of it. The paper's objectives stand as 0.1.0 stored them. So studies stored
+        before there were others keep their hash.
+        """
+        plain = asdict(self)
+        del plain["shared_iterations"]
+        if self.rules == "paper":
+            del plain["rules"]
+        if not self.strength:
+            del plain["strength"]
+        if not self.gear_list:
+            del plain["gear_list"]
+        if self.uncertainty is None:
+            del plain["uncertainty"]
+        else:
+            plain["uncertainty"] = self.uncertainty.as_dict()
+        for key in MOTOR_KEYS:
+            if plain[key] is None:
+                del plain[key]
+        plain["variables"] = {
+            name: asdict(v) if isinstance(v, Bounds) else v
+            for name, v in zip(NAMES, self._ordered(), strict=True)
+            if v != DEFAULTS.get(name)
+        }
+        plain["objectives"] = stored_objectives(self.objectives)
+        plain["constraints"] = self.constraints.as_dict()
+        plain["reference_point"] = self.reference_point.as_dict()
+        return plain
+
+
+def load_study(
+    path: Path,
+    *,
+    evaluations: int | None = None,
+    seed: int | None = None,
+    objectives: Sequence[str] | None = None,
+    strength: bool | None = None,
+) -> Study:
+    """The study in a TOML file.
+
+    Args:
+        path: the file.
+        evaluations: budget to use instead of the one in the file.
+        seed: seed to use instead of the one in the file.
+        objectives: measures to use instead of those in the file; what its reference point says of others is left out.
+        strength: whether designs must hold, instead of what the file says.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
+            weighted search, or no readable TOML.
+    """
+    values = file_values(path)
+    if evaluations is not None:
+        values["evaluations"] = evaluations
+    if seed is not None:
+        values["seed"] = seed
+    if strength is not None:
+        values["strength"] = strength
+    if objectives is not None:
+        values = with_objectives(values, objectives)
+    return filled(values, source=f"study file {str(path)!r}")
+
+
+def filled(values: dict[str, Any], *, source: str) -> Study:
+    """The study of a file's keys, with the defaults of a file where they say nothing.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, or impossible bounds.
+        MotorError: an unknown name of a motor; its file is read only when the study runs.
+        CalibrationError: an unknown name of a calibration, likewise.
+    """
+    calibration = str(values.get("calibration"))
+    defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
+    values = defaults | values
+    if isinstance(name := values.get("algorithm"), str):
+        values["algorithm"] = {"name": name}
+    study = study_from_dict(values, source=source)
+    _require_names(study, source)
+    given = "iterations" in values.get("algorithm", {})
+    return budgeted(study, given=given, source=source)
+
+
+def budgeted(study: Study, *, given: bool, source: str) -> Study:
+    """A study whose search comes to its end within the budget, see ``within_budget``."""
+    settings = within_budget(study.algorithm, study.evaluations, given=given, source=source)
+    return replace(study, algorithm=settings, shared_iterations=not given and isinstance(settings, WeightedSettings))
+
+
+def _require_names(study: Study, source: str) -> None:
+    """Refuse names of motors and of a calibration that no run could find; a stored study has what they meant."""
+    from pareto_monoped.actuator.motors import require_motor_name
+    from pareto_monoped.jump.calibration import require_calibration_name
+
+    for key in MOTOR_KEYS:
+        for name in names_of(getattr(study, key)):
+            require_motor_name(name, key=f"{source}: {key}")
+    if not study.calibration.startswith(OWN_CALIBRATION):
+        require_calibration_name(study.calibration, key=f"{source}: calibration")
+
+
+def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
+    """A study from plain values.
+
+    Args:
+        values: the keys of a study file.
+        source: where they come from, for messages.
+
+    Raises:
+        StudyError: an unknown key, a wrong type, or impossible bounds.
+    """
+    file = checked(StudyFile, values, source=source, error=StudyError)
+    rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
+    objectives = objectives_of(file.objectives, source=source)
+    corner = corner_of(file.reference_point, objectives, source=source)
+    robust = any(map(is_robust, objectives.names))
+    constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
+    table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
+    return Study(
+        name=file.name,
+        description=file.description,
+        case=file.case,
+        **named_motors(file.motor, file.hip_motor, file.knee_motor, source),
+        calibration=file.calibration,
+        rules=rules,
+        evaluations=file.evaluations,
+        seed=file.seed,
+        variables=variables_of(file.variables, file.case, source),
+        objectives=objectives,
+        constraints=constraints,
+        reference_point=corner,
+        stop=file.stop,
+        audit=file.audit,
+        strength=file.strength,
+        gear_list=file.gear_list,
+        uncertainty=None if table is None else sampling_of(table, source=source),
+        algorithm=algorithm_of(file, corner, source),
+        shared_iterations=False,
+    )

@@ -1,0 +1,195 @@
+"""The variables of a study: each is free within bounds or fixed to a number.
+
+The motors that a study file names: one or a list for both joints, or one or a list for hip and knee each.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from pareto_monoped.design import LENGTHS, NAMES, PAPER_CASES, PAPER_MOTOR, VARIABLES
+from pareto_monoped.errors import StudyError, complaint, unknown_name
+
+_LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
+"""Unit -> allowed range. Values beyond it are typing errors; controller gains may be any number from 0."""
+_REST_LENGTHS_M = (0.5, 100.0)  # longer than any leg; a longer spring acts by its product with K alone
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds:
+    """Range of a free variable."""
+
+    lower: float
+    upper: float
+
+
+def variables_of(given: Mapping[str, Any], case: str | None, source: str) -> dict[str, Bounds | float]:
+    """What each variable may be: as given, else as in the paper's case, else free within the paper's bounds.
+
+    Args:
+        given: the table ``variables`` of a study file.
+        case: the paper's case whose fixed variables the study has, if any.
+        source: the file, for messages.
+
+    Raises:
+        StudyError: an unknown name, impossible bounds, nothing free, or links shorter than the start height.
+    """
+    for name in given:
+        if name not in NAMES:
+            raise StudyError(f"{source}: {unknown_name('variable', name, NAMES)}")
+    chosen: dict[str, Bounds | float] = {}
+    for variable in VARIABLES:
+        value = given.get(variable.name)
+        if value is not None:
+            chosen[variable.name] = _variable(variable.name, value, source)
+        elif variable.default is not None:
+            chosen[variable.name] = variable.default
+        elif case is None or variable.name in PAPER_CASES[case].free:
+            chosen[variable.name] = Bounds(lower=variable.lower, upper=variable.upper)
+        else:
+            chosen[variable.name] = getattr(PAPER_CASES[case].design, variable.name)
+    if not any(isinstance(value, Bounds) for value in chosen.values()):
+        raise StudyError(f"{source}: variables: all are fixed, at least one must be free; give one bounds")
+    longest = sum(v.upper if isinstance(v, Bounds) else v for v in (chosen[name] for name in LENGTHS))
+    start = chosen["start_height_m"]
+    lowest = start.lower if isinstance(start, Bounds) else start
+    if longest <= lowest:
+        raise StudyError(
+            f"{source}: thigh_length_m + shank_length_m = {longest:g} at most: must exceed the start height of "
+            f"{lowest:g} m; allow longer links"
+        )
+    return chosen
+
+
+def _variable(name: str, given: Any, source: str) -> Bounds | float:
+    key = f"{source}: variables.{name}"
+    if isinstance(given, Mapping):
+        if set(given) != {"lower", "upper"}:
+            raise StudyError(f"{key} has the keys {sorted(map(str, given))}; must be lower and upper; correct them")
+        bounds = Bounds(
+            lower=number_of(f"{key}.lower", name, given["lower"]), upper=number_of(f"{key}.upper", name, given["upper"])
+        )
+        if bounds.lower >= bounds.upper:
+            raise StudyError(
+                f"{key}: lower = {bounds.lower:g}, upper = {bounds.upper:g}: lower must be below upper; "
+                "correct them, or fix the variable to a number"
+            )
+        return bounds
+    if not isinstance(given, int | float):
+        low, high = _limits(name)
+        allowed = f"a number from {low:g} to {high:g}, or a range such as {_range_example(name)}"
+        raise StudyError(complaint(key, given, allowed, "correct it"))
+    return number_of(key, name, given)
+
+
+def _range_example(name: str) -> str:
+    bounds = next(variable for variable in VARIABLES if variable.name == name)
+    return f'{{"lower": {bounds.lower:g}, "upper": {bounds.upper:g}}}'
+
+
+def _limits(name: str) -> tuple[float, float]:
+    """Least and greatest value of a variable."""
+    unit = next(variable.unit for variable in VARIABLES if variable.name == name)
+    return _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
+
+
+def number_of(key: str, name: str, given: Any) -> float:
+    """A value of the variable ``name``, which messages call ``key``.
+
+    Raises:
+        StudyError: no number, or one out of range.
+    """
+    low, high = _limits(name)
+    allowed = f"a number from {low:g} to {high:g}"
+    if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
+        raise StudyError(complaint(key, given, allowed, "correct it"))
+    return float(given)
+
+
+MOTOR_KEYS = ("motor", "hip_motor", "knee_motor")
+"""Keys of a study file that name motors: of both joints, or of either."""
+Named = str | tuple[str, ...] | None
+"""What a key says: the name or file of a motor, several, or nothing."""
+
+_LONGEST_NAME = 1000
+"""Of a motor, or of the path to its file; longer ones are errors of typing."""
+
+
+def names_of(named: Named) -> tuple[str, ...]:
+    """The names that a key gives."""
+    return (named,) if isinstance(named, str) else named or ()
+
+
+def all_names(motor: Named, hip: Named, knee: Named) -> tuple[str, ...]:
+    """Every motor once, those of the hip first; capitals do not tell names apart."""
+    found: dict[str, str] = {}
+    for name in (*names_of(motor), *names_of(hip), *names_of(knee)):
+        found.setdefault(name.lower(), name)
+    return tuple(found.values())
+
+
+def kits_of(motor: Named, hip: Named, knee: Named) -> tuple[tuple[str, str], ...]:
+    """The motors of hip and knee that a design may have, named as in ``all_names``.
+
+    Each motor twice where both joints have the same, else each of the hip's with each of the knee's.
+    """
+    if motor is not None:
+        return tuple((name, name) for name in names_of(motor))
+    called = {name.lower(): name for name in all_names(motor, hip, knee)}
+    return tuple((called[one.lower()], called[other.lower()]) for one, other in product(names_of(hip), names_of(knee)))
+
+
+def text_of(motor: Named, hip: Named, knee: Named) -> str:
+    """All motors in one line, with commas between them: of both joints, or of hip and knee."""
+    if motor is not None:
+        return ", ".join(names_of(motor))
+    return f"hip {', '.join(names_of(hip))}; knee {', '.join(names_of(knee))}"
+
+
+def named_motors(motor: Any, hip: Any, knee: Any, source: str) -> dict[str, Named]:
+    """The motors as a study keeps them, by ``MOTOR_KEYS``; one motor that both joints have stands for both.
+
+    Args:
+        motor: what the file says of both joints, None where it says nothing.
+        hip: of the hip, likewise.
+        knee: of the knee.
+        source: the file, for messages.
+
+    Raises:
+        StudyError: what is no name and no list of different names; or keys that exclude or need each other.
+    """
+    joints = {"hip_motor": hip, "knee_motor": knee}
+    given = [key for key, value in joints.items() if value is not None]
+    if not given:
+        return {"motor": _motor("motor", PAPER_MOTOR if motor is None else motor, source)}
+    if motor is not None:
+        raise StudyError(
+            f"{source}: motor and {given[0]} are both given: must be motor, which stands for both joints, or hip_motor "
+            "and knee_motor; drop one"
+        )
+    if len(given) == 1:
+        missing = next(key for key in joints if key not in given)
+        raise StudyError(f"{source}: {given[0]} is given without {missing}; name both, or one motor for both joints")
+    one, other = (_motor(key, value, source) for key, value in joints.items())
+    if isinstance(one, str) and isinstance(other, str) and one.lower() == other.lower():
+        return {"motor": one}
+    return {"motor": None, "hip_motor": one, "knee_motor": other}
+
+
+def _motor(key: str, given: Any, source: str) -> str | tuple[str, ...]:
+    names = given if isinstance(given, list | tuple) else [given]
+    if not all(isinstance(name, str) and 0 < len(name) <= _LONGEST_NAME for name in names):
+        allowed = f"the name of a motor or its TOML file, of at most {_LONGEST_NAME} letters, or a list of such names"
+        raise StudyError(f"{source}: {complaint(key, given, allowed, 'correct it')}")
+    if isinstance(given, str):
+        return given
+    if len(names) < 2:
+        cure = f"give the name alone: {key} = {json.dumps(names[0])}" if names else "name the motors to choose from"
+        raise StudyError(f"{source}: {complaint(key, list(names), 'a list of at least two motors', cure)}")
+    for place, name in enumerate(names):
+        if name.lower() in [other.lower() for other in names[:place]]:
+            allowed = "a list of different motors"
+            raise StudyError(f"{source}: {complaint(key, list(names), allowed, f'name {name!r} once')}")
+    return tuple(names)

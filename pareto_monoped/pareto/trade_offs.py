@@ -1,0 +1,203 @@
+"""Two ways to find where a front bends most.
+
+What a little more of the first objective costs, at one design of a front.
+
+How designs of a front are scored, and the objectives on one scale.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.measures import nominal
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scored:
+    """How good each of n designs is for a choice."""
+
+    score: Floats  #: more is better, shape (n,)
+    why: Callable[[int], str]  #: the reason for choosing the design in a row, as a part of a sentence
+
+
+def scaled(values: Floats) -> Floats:
+    """Each column scaled to its extent, from 0 at its least to 1 at its greatest value; zeros where all are equal."""
+    least, extent = values.min(axis=0), np.ptp(values, axis=0)
+    return np.where(extent > 0.0, (values - least) / np.where(extent > 0.0, extent, 1.0), 0.0)
+
+
+def losses(values: Floats, objectives: Objectives) -> Floats:
+    """Objectives scaled to the extent of the front, shape (n, m): 0 is the best of each, 1 the worst."""
+    return scaled(objectives.minimised(values))
+
+
+NEIGHBOURHOOD = 0.125
+"""Distance on the scaled front within which designs are neighbours. Source: pymoo, ``mcdm.high_tradeoff``."""
+
+
+def knee(values: Floats, objectives: Objectives) -> Scored:
+    """Das 1999 (On characterizing the "knee" of the Pareto curve): the distance from the chord.
+
+    With each objective scaled to the extent of the front and its better end at 1, the ends of a front of two objectives
+    are (0, 1) and (1, 0), and a point's distance from the chord between them is (sum of the scaled objectives - 1) /
+    sqrt(2). For three objectives the chord becomes the plane through (1, 0, 0), (0, 1, 0) and (0, 0, 1), and the
+    divisor sqrt(3).
+
+    Args:
+        values: shape (n, m), by the first objective.
+        objectives: which m measures these are.
+    """
+    n, m = values.shape
+    # The better end of a minimised objective lies at 1 - scaled. The ones are added last: with the paper's objectives
+    # nothing is left of them, so that no digit is lost.
+    ones = (objectives.signs > 0.0).sum() - 1
+    distance = (-(scaled(values) * objectives.signs).sum(axis=1) + ones) / np.sqrt(float(m))
+
+    def why(row: int) -> str:
+        if n < m + 1:
+            return f"the front has only {n} design(s), so its knee is an end of it"
+        return f"the knee, farthest ({distance[row]:.3f} of the scaled front) from {_flat(values, objectives)}"
+
+    return Scored(score=distance, why=why)
+
+
+def _flat(values: Floats, objectives: Objectives) -> str:
+    """What the knee is farthest from."""
+    if len(objectives.names) > 2:
+        return "the plane through the best of each objective"
+    first, last = values[0], values[-1]
+    if objectives == HEIGHT_AND_ENERGY:
+        ends = [f"{height:.3f} m at {energy:.2f} J" for height, energy in (first, last)]
+    else:
+        ends = [objectives.text(end.tolist()) for end in (first, last)]
+    return f"the chord between the front's ends {ends[0]} and {ends[1]}"
+
+
+def tradeoff(values: Floats, objectives: Objectives) -> Scored:
+    """Rachmawati and Srinivasan 2009: what a step to a neighbour gives up for what it gains, for the best neighbour.
+
+    Both are sums over the objectives, scaled to the extent of the front. Neighbours are the designs within
+    ``NEIGHBOURHOOD``, and at least the 2 m nearest ones and all that are as near.
+
+    Args:
+        values: shape (n, m).
+        objectives: which m measures these are.
+    """
+    points = losses(values, objectives)
+    least = np.array([_least_bargain(points, i) for i in range(len(points))])
+
+    def why(row: int) -> str:
+        if len(points) < 2:
+            return "the only design on the front"
+        return (
+            f"the largest trade-off: every neighbour on the front gives up at least {least[row]:.3g} times what it "
+            "gains (objectives scaled to the front's extent)"
+        )
+
+    return Scored(score=least, why=why)
+
+
+def _least_bargain(points: Floats, i: int) -> float:
+    """The least ratio of sacrifice to gain among the neighbours of one design; infinite if none gains anything."""
+    apart = np.linalg.norm(points - points[i], axis=1)
+    others = np.arange(len(points)) != i
+    nearest = np.sort(apart[others])[: 2 * points.shape[1]]
+    # Equally far designs are all neighbours or none, whatever their order and last digits.
+    reach = max(NEIGHBOURHOOD, nearest[-1] if len(nearest) else 0.0) + 1e-9
+    change = points[others & (apart <= reach)] - points[i]
+    sacrifice, gain = np.maximum(change, 0.0).sum(axis=1), np.maximum(-change, 0.0).sum(axis=1)
+    gains = gain > 0.0
+    return float((sacrifice[gains] / gain[gains]).min()) if gains.any() else np.inf
+
+
+_STEPS = {"height_m": (0.01, "one more centimetre of")}
+"""Stored step and words of measures for which people have a natural step, also under uncertainty."""
+_PART = 0.1
+"""Share of the front's extent that the step of any other measure is at most. Our own choice: ten steps cross it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OneMore:
+    """What a step in the first objective costs."""
+
+    objectives: Objectives  #: of the front
+    step: float  #: in the first objective, in its stored unit, above 0
+    step_words: str  #: the step in words
+    trial: int | None  #: the design that is better by at least the step and costs least; None if there is none
+    #: By how much each other objective becomes worse with it, in stored units; negative where it gets better
+    costs: tuple[float, ...] = ()
+    values: tuple[float, ...] = ()  #: of that design's objectives
+
+    def text(self) -> str:
+        """In one sentence, such as "one more centimetre of height costs 0.52 J of energy (trial 3: ...)"."""
+        if self.trial is None:
+            return f"{self.step_words} cannot be had on this front"
+        others = self.objectives.measures[1:]
+        parts = []
+        for entry, cost in zip(others, self.costs, strict=True):
+            verb, worse = ("costs", cost) if cost >= 0.0 else ("saves", -cost)
+            if entry.direction == "maximise":
+                verb = {"costs": "takes", "saves": "adds"}[verb]
+            shown = f"{worse * entry.scale:.3g} {entry.shown_unit}".removesuffix(" 1")
+            parts.append(f"{verb} {shown} of {entry.words}")
+        return f"{self.step_words} {' and '.join(parts)} (trial {self.trial}: {self.objectives.text(self.values)})"
+
+    def as_dict(self) -> dict[str, object]:
+        """As JSON values: the step, and the cost in each other objective."""
+        first, *others = self.objectives.names
+        costs = dict(zip(others, self.costs, strict=True)) if self.trial is not None else None
+        return {"objective": first, "step": self.step, "trial": self.trial, "costs": costs}
+
+
+def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
+    """What the next step in the first objective costs at a trial of the front.
+
+    Differences between neighbours on a front jump, because a search finds designs at random distances. The cost is
+    therefore that of the cheapest design that is better by at least a whole step. With three objectives the cheapest is
+    that with the least sum of losses in the other two, scaled to the front's extent.
+
+    Args:
+        front: one row per design, in any order.
+        trial: one of them.
+        objectives: of the front.
+    """
+    values = front[list(objectives.names)].to_numpy(dtype=np.float64)
+    row = int(np.flatnonzero(front["trial"].to_numpy() == trial)[0])
+    step, words = _step(values[:, 0], objectives)
+    loss, scaled = objectives.minimised(values), losses(values, objectives)
+    # A design exactly one step away must not be lost to the last digit.
+    better = np.flatnonzero(loss[:, 0] <= loss[row, 0] - step * (1.0 - 1e-9))
+    if len(better) == 0:
+        return OneMore(objectives=objectives, step=step, step_words=words, trial=None)
+    found = int(better[np.argmin(scaled[better, 1:].sum(axis=1))])
+    return OneMore(
+        objectives=objectives,
+        step=step,
+        step_words=words,
+        trial=int(front["trial"].iloc[found]),
+        costs=tuple((loss[found, 1:] - loss[row, 1:]).tolist()),
+        values=tuple(values[found].tolist()),
+    )
+
+
+def _step(values: NDArray[np.float64], objectives: Objectives) -> tuple[float, str]:
+    """Step in the stored unit, and in words: a power of ten in the shown unit for what has no natural step."""
+    entry = objectives.measures[0]
+    if nominal(entry.name) in _STEPS:
+        step, words = _STEPS[nominal(entry.name)]
+        return step, f"{words} {entry.words}"
+    extent = float(np.ptp(values)) * entry.scale
+    power = math.floor(math.log10(_PART * extent)) if extent > 0.0 else 0
+    shown = f"{10.0**power:g} {entry.shown_unit}".removesuffix(" 1")
+    more = "more" if entry.direction == "maximise" else "less"
+    return 10.0**power / entry.scale, f"{shown} {more} {entry.words}"

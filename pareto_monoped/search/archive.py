@@ -1,0 +1,316 @@
+"""All simulated designs of a search, and how they stand: which are the front, and how far the others are behind it.
+
+Distances between points and from a front, compiled by numba. Importing this module imports numba.
+
+All sums run over the axes in order, one point after the other, so a distance does not depend on the other points.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.compute.compiled import compiled
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.search.algorithm import Floats, Scores, Space
+from pareto_monoped.search.response_surface import features_of
+
+
+@compiled
+def squared_distances(points: Floats, others: Floats) -> Floats:
+    """Squares of the distances between n points and k others, shape (n, f) and (k, f) -> (n, k)."""
+    away = np.zeros((points.shape[0], others.shape[0]))
+    columns = others.T.copy()
+    for n in range(points.shape[0]):
+        row = away[n]
+        for f in range(points.shape[1]):
+            value, column = points[n, f], columns[f]
+            for k in range(row.shape[0]):
+                row[k] += (value - column[k]) * (value - column[k])
+    return away
+
+
+@compiled
+def nearest_squared(points: Floats, others: Floats) -> Floats:
+    """Square of the distance of each of n points to the nearest of k others, shape (n, f) and (k, f) -> (n,)."""
+    nearest = np.full(points.shape[0], np.inf)
+    columns = points.T.copy()
+    away = np.empty(points.shape[0])
+    # The points are the innermost loop: a processor takes several of them at once.
+    for k in range(others.shape[0]):
+        away[:] = 0.0
+        for f in range(columns.shape[0]):
+            value, column = others[k, f], columns[f]
+            for n in range(away.shape[0]):
+                away[n] += (column[n] - value) * (column[n] - value)
+        for n in range(away.shape[0]):
+            nearest[n] = min(nearest[n], away[n])
+    return nearest
+
+
+@compiled
+def nearest_places(points: Floats, others: Floats) -> NDArray[np.intp]:
+    """Which of k others is nearest each of n points, the first of equals, shape (n, f) and (k, f) -> (n,)."""
+    places = np.zeros(points.shape[0], dtype=np.intp)
+    for n in range(points.shape[0]):
+        least = np.inf
+        for k in range(others.shape[0]):
+            away = 0.0
+            for f in range(points.shape[1]):
+                away += (points[n, f] - others[k, f]) * (points[n, f] - others[k, f])
+            if away < least:
+                least, places[n] = away, k
+    return places
+
+
+@compiled
+def farthest_first(points: Floats, first: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Up to ``count`` of n points: the ``first``, then always the farthest from all chosen, shape (n, f) -> (k,).
+
+    It ends early where all points are equal to chosen ones.
+    """
+    chosen = np.empty(max(count, len(first)), dtype=np.intp)
+    chosen[: len(first)] = first
+    away = np.full(points.shape[0], np.inf)
+    known = 0
+    for place in range(len(chosen)):
+        if place >= len(first):
+            farthest = 0
+            for n in range(points.shape[0]):
+                if away[n] > away[farthest]:
+                    farthest = n
+            if not away[farthest] > 0.0:
+                break
+            chosen[place] = farthest
+        for n in range(points.shape[0]):
+            square = 0.0
+            for f in range(points.shape[1]):
+                square += (points[n, f] - points[chosen[place], f]) * (points[n, f] - points[chosen[place], f])
+            away[n] = min(away[n], square)
+        known += 1
+    return chosen[:known]
+
+
+@compiled
+def shortfall_of_two(points: Floats, front: Floats) -> Floats:
+    """The shift in both objectives after which no point of a front dominates a point, shape (n, 2) -> (n,).
+
+    The lesser of what is missing in either objective is greatest where the two cross along the front.
+
+    Args:
+        points: objectives, less is better.
+        front: shape (k, 2), k at least 1, by ascending first and descending second objective.
+    """
+    result = np.empty(points.shape[0])
+    last = front.shape[0] - 1
+    for n in range(points.shape[0]):
+        first, second = points[n, 0], points[n, 1]
+        low, high = 0, front.shape[0]
+        while low < high:
+            middle = (low + high) // 2
+            if front[middle, 0] - front[middle, 1] < first - second:
+                low = middle + 1
+            else:
+                high = middle
+        before, after = max(low - 1, 0), min(low, last)
+        result[n] = max(
+            min(first - front[before, 0], second - front[before, 1]),
+            min(first - front[after, 0], second - front[after, 1]),
+        )
+    return result
+
+
+@compiled
+def shortfall_of_more(points: Floats, front: Floats) -> Floats:
+    """The same for any number of objectives and any order of the front, shape (n, m) and (k, m) -> (n,)."""
+    columns = points.T.copy()
+    result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
+    # The points are the innermost loop: a processor takes several of them at once.
+    for k in range(front.shape[0]):
+        least[:] = np.inf
+        for m in range(columns.shape[0]):
+            value, column = front[k, m], columns[m]
+            for n in range(least.shape[0]):
+                least[n] = min(least[n], column[n] - value)
+        for n in range(least.shape[0]):
+            result[n] = max(result[n], least[n])
+    return result
+
+
+_POSTS = 20
+"""Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
+_LEAST_SHARE = 0.01
+"""Values that come nearer to 0 have logarithms that rule over all others. Our own choice: two orders of magnitude."""
+_MOST = 12_000
+"""Designs that an archive holds at most. Our own choice: half as many again as the main job has, so that the time per
+design stays what it is there, however long a search goes on."""
+_KEPT = 8_000
+"""Designs that stay when there are more."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standing:
+    """How n designs stand."""
+
+    #: Objectives, less is better: logarithms where all values are above 0 and those of feasible designs above
+    #: ``_LEAST_SHARE`` of the greatest, so that a percent counts as much at 10 J as at 70 J; shape (n, m), NaN where
+    #: the jump failed
+    costs: Floats
+    front: NDArray[np.intp]  #: rows of the designs on the front, by their first cost
+    posts: NDArray[np.intp]  #: places in ``front`` that stand for its parts, the best in each objective first
+    behind: Floats  #: how far each design is behind the front as a share of its extent, plus its violation, shape (n,)
+    order: NDArray[np.intp]  #: rows of the designs that jumped, the nearest to the front first
+    #: low, extent: of the front's costs, each of shape (m,)
+    low: Floats
+    extent: Floats
+    line: Floats  #: the front's costs as shares of its extent, in the order that ``shortfall`` wants, shape (k, m)
+
+    def scaled(self, costs: Floats) -> Floats:
+        """Costs as shares of the front's extent, shape (n, m)."""
+        return (costs - self.low) / self.extent
+
+    @property
+    def stands(self) -> Floats:
+        """Where the k posts stand, as shares of the front's extent, shape (k, m)."""
+        return self.scaled(self.costs[self.front[self.posts]])
+
+    def parts(self, costs: Floats) -> NDArray[np.intp]:
+        """Which of the posts is nearest each of n designs, shape (n, m) -> (n,); 0 without a front."""
+        if len(self.posts) == 0:
+            return np.zeros(len(costs), dtype=np.intp)
+        return nearest_places(self.scaled(costs), self.stands)
+
+
+class Archive:
+    """The designs that a search has simulated; of very many, those that tell it most.
+
+    Above ``_MOST`` designs, ``_KEPT`` stay: the front, evenly thinned if it is long, then the designs close behind it,
+    and a share spread over all others.
+
+    Attributes:
+        space: that is searched.
+        values: of the designs' variables, shape (n, d).
+        points: their features, see ``Features.scaled``, shape (n, f).
+        constraints: how far each of k constraints is missed, shape (n, k).
+    """
+
+    def __init__(self, space: Space) -> None:
+        self.space = space
+        self._features = features_of(space)
+        self.values: Floats = np.zeros((0, len(space.names)))
+        self.points: Floats = np.zeros((0, len(self._features.lower)))
+        self.constraints: Floats = np.zeros((0, 0))
+        self._objectives: Floats = np.zeros((0, len(space.objectives.names)))
+        self._violation: Floats = np.zeros(0)
+        # The front of the first designs, and of how many: what has been dominated once stays so.
+        self._front, self._fronted = np.zeros(0, dtype=np.intp), 0
+
+    def add(self, values: Floats, scores: Scores) -> None:
+        """Add simulated designs: points of the space, shape (n, d), and their scores."""
+        missed = scores.constraints if scores.constraints.shape[1] else scores.violation[:, None]
+        self.constraints = np.vstack((self.constraints, missed)) if len(self.values) else missed
+        self.values = np.vstack((self.values, values))
+        self.points = np.vstack((self.points, self._features.scaled(values)))
+        self._objectives = np.vstack((self._objectives, scores.values))
+        self._violation = np.concatenate((self._violation, scores.violation))
+        if len(self.values) > _MOST:
+            self._keep(_told_most(self.standing(), _KEPT))
+
+    def _keep(self, rows: NDArray[np.intp]) -> None:
+        self.values, self.points, self.constraints = self.values[rows], self.points[rows], self.constraints[rows]
+        self._objectives, self._violation = self._objectives[rows], self._violation[rows]
+        self._front, self._fronted = self._front[:0], 0
+
+    def standing(self) -> Standing:
+        """How the designs stand now."""
+        costs = self._costs()
+        jumped = np.asarray(np.isfinite(costs).all(axis=1))
+        front = self._feasible_front()
+        front = front[np.argsort(costs[front, 0], kind="stable")]
+        low, extent = np.zeros(costs.shape[1]), np.ones(costs.shape[1])
+        posts, behind = np.zeros(0, dtype=np.intp), self._violation.copy()
+        line = np.zeros((0, costs.shape[1]))
+        if len(front):
+            low = costs[front].min(axis=0)
+            span = costs[front].max(axis=0) - low
+            extent = np.where(span > 0.0, span, 1.0)
+            scaled = (costs[front] - low) / extent
+            posts = _posts(scaled)
+            points = (np.where(jumped[:, None], costs, low) - low) / extent
+            behind += np.maximum(shortfall(points, along(scaled[posts])), 0.0)
+            line = along(scaled)
+        # Of equals the newest first: a long front is known best where the search is now.
+        order = len(behind) - 1 - np.argsort(behind[::-1], kind="stable")
+        return Standing(
+            costs=costs,
+            front=front,
+            posts=posts,
+            behind=behind,
+            order=order[jumped[order]],
+            low=low,
+            extent=extent,
+            line=line,
+        )
+
+    def _feasible_front(self) -> NDArray[np.intp]:
+        """Rows of the designs on the front, in their order."""
+        rows = np.concatenate((self._front, np.arange(self._fronted, len(self.values))))
+        on_it = front_mask(self._objectives[rows], self.space.objectives, self._violation[rows] == 0.0)
+        self._front, self._fronted = rows[on_it], len(self.values)
+        return self._front
+
+    def _costs(self) -> Floats:
+        values, feasible = self._objectives, self._objectives[self._violation == 0.0]
+        graded = ~(values <= 0.0).any(axis=0)
+        if len(feasible):
+            graded &= feasible.min(axis=0) > _LEAST_SHARE * feasible.max(axis=0)
+        logarithms = np.log(np.where(graded, values, 1.0))
+        return np.where(graded, logarithms, values) * self.space.objectives.signs
+
+
+def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
+    """Rows of up to ``count`` designs that tell a search most, in the order of the trials.
+
+    Half of them may be the front, from end to end; three quarters of the others are the nearest behind it, the rest are
+    spread evenly over what lies farther.
+    """
+    front = standing.front
+    if len(front) > count // 2:
+        front = front[np.linspace(0, len(front) - 1, count // 2).astype(np.intp)]
+    behind = standing.order[~np.isin(standing.order, standing.front)]
+    nearest, others = np.split(behind, [min(len(behind), (count - len(front)) * 3 // 4)])
+    left = min(count - len(front) - len(nearest), len(others))
+    spread = others[np.linspace(0, len(others) - 1, left).astype(np.intp)] if left else others[:0]
+    return np.sort(np.concatenate((front, nearest, spread)))
+
+
+def shortfall(points: Floats, front: Floats) -> Floats:
+    """How far points are behind a front: the shift in all objectives after which none is dominated.
+
+    The additive epsilon indicator (Zitzler et al. 2003) of the front against each point; below 0 for a point that gains
+    over the front.
+
+    Args:
+        points: objectives, less is better, shape (n, m).
+        front: shape (k, m), k at least 1, in the order of ``along``.
+
+    Returns:
+        Shape (n,).
+    """
+    if front.shape[1] == 2:
+        return shortfall_of_two(points, front)
+    return shortfall_of_more(points, front)
+
+
+def along(front: Floats) -> Floats:
+    """A front of two objectives from end to end, shape (k, 2); any other as it is.
+
+    Along it, a point falls ever less short in the first objective and ever more in the second.
+    """
+    return front[np.lexsort((-front[:, 1], front[:, 0]))] if front.shape[1] == 2 else front
+
+
+def _posts(front: Floats) -> NDArray[np.intp]:
+    """Rows of the front that stand for its parts: the best in each objective, then always the farthest from them."""
+    chosen = list(dict.fromkeys(front.argmin(axis=0).tolist()))
+    return farthest_first(front, np.array(chosen, dtype=np.intp), _POSTS)

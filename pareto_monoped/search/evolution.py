@@ -1,0 +1,154 @@
+"""pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2 behind the ask-and-tell interface."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pymoo.algorithms.base.genetic import GeneticAlgorithm
+from pymoo.core.duplicate import DefaultDuplicateElimination
+from pymoo.core.population import Population
+from pymoo.core.problem import Problem
+from pymoo.core.repair import Repair
+from pymoo.core.termination import NoTermination
+from pymoo.operators.crossover.sbx import SBX
+from pymoo.operators.mutation.pm import PM
+
+from pareto_monoped.definition.algorithms import EvolutionSettings
+from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space, generator_state, set_generator_state
+from pareto_monoped.search.seen import Seen, drawn
+from pareto_monoped.search.space import MotorPM, MotorSBX
+
+
+class Evolution:
+    """A genetic algorithm of pymoo that asks for no design twice. ``nsga2.Nsga2`` is the same as its NSGA-II, faster.
+
+    Between generations, all three keep only the population with its ranks and crowding distances, the number of
+    generations and the random generator. These are the state. The designs so far are in the history.
+    """
+
+    def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
+        self._space = space
+        self._seen = Seen()
+        self._algorithm = _algorithm(settings, seed, space, self._seen)
+        lower, upper = space.edges
+        problem = Problem(n_var=len(space.names), n_obj=len(space.objectives.names), n_ieq_constr=1, xl=lower, xu=upper)
+        self._algorithm.setup(problem, termination=NoTermination())
+        self._asked: Population = Population.empty()
+
+    def ask(self) -> Proposal | None:
+        """The first population, later new offspring of the current one.
+
+        Where a population has only known offspring, as in a small space, new designs are drawn uniformly; None if
+        there are none left.
+        """
+        asked = self._algorithm.ask()
+        if asked is None or len(asked) == 0:
+            generator, size = self._algorithm.random_state, self._algorithm.pop_size
+            values = drawn(self._space, self._seen, generator, size)
+            if len(values) == 0:
+                return None
+            asked = Population.new(X=values)
+        self._asked = asked
+        return Proposal(values=self._asked.get("X").astype(float))
+
+    def tell(self, scores: Scores) -> None:
+        """Select the survivors. Infeasible designs rank behind all feasible ones, in the order of their violation."""
+        self._seen.add(self._asked.get("X"))
+        self._asked.set("F", scores.minimised())
+        self._asked.set("G", scores.violation[:, None])
+        self._algorithm.tell(infills=self._asked)
+
+    def state(self) -> dict[str, Any]:
+        """Population, ranks, crowding distances, number of generations, random generator."""
+        state: dict[str, Any] = {"generator": generator_state(self._algorithm.random_state)}
+        if self._algorithm.is_initialized:
+            population = self._algorithm.pop
+            state["iteration"] = self._algorithm.n_iter
+            for key in ("X", "F", "G"):
+                state[key] = population.get(key).astype(float).tolist()
+            for key in ("rank", "crowding"):
+                # Infeasible survivors have neither rank nor crowding distance. The ends of the front have an infinite
+                # crowding distance, which JSON cannot hold as a number.
+                state[key] = [None if value is None else jsonable(float(value)) for value in population.get(key)]
+        return state
+
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
+        """Set the whole state, and remember the designs of the history."""
+        for values, _ in history:
+            self._seen.add(values)
+        algorithm = self._algorithm
+        set_generator_state(algorithm.random_state, state["generator"])
+        if "X" not in state:
+            return
+        arrays = {key: np.array(state[key], dtype=np.float64) for key in ("X", "F", "G")}
+        n = len(state["rank"])
+        for key, width in (("X", algorithm.problem.n_var), ("F", algorithm.problem.n_obj), ("G", 1)):
+            if arrays[key].shape != (n, width):
+                raise ValueError(f"{key} of the population has the shape {arrays[key].shape}, must be {(n, width)}")
+        population = Population.new(**arrays)
+        for key in ("rank", "crowding"):
+            for individual, value in zip(population, state[key], strict=True):
+                if value is not None:
+                    individual.set(key, int(value) if key == "rank" else float(value))
+        algorithm._initialize()
+        algorithm.pop = population
+        algorithm.n_iter = int(state["iteration"])
+        algorithm.is_initialized = True
+
+
+def jsonable(value: float) -> float | str:
+    """A number as JSON can hold it: an infinite one as text."""
+    return value if np.isfinite(value) else str(value)
+
+
+class _Snap(Repair):  # type: ignore[misc]  # pymoo has no types
+    """Rounds the variables that are whole numbers."""
+
+    def __init__(self, space: Space) -> None:
+        super().__init__()
+        self._space = space
+
+    def _do(self, problem: Problem, X: Floats, **_: Any) -> Floats:
+        return self._space.snap(X)
+
+
+class _Unseen(DefaultDuplicateElimination):  # type: ignore[misc]  # pymoo has no types
+    """Leaves out what is in the population already, as pymoo does, and what was ever asked for."""
+
+    def __init__(self, seen: Seen) -> None:
+        super().__init__()
+        self._seen = seen
+
+    def _do(self, pop: Population, other: Population | None, is_duplicate: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        found: NDArray[np.bool_] = super()._do(pop, other, is_duplicate)
+        return found if other is not None else found | ~self._seen.new(pop.get("X"))
+
+
+def varying(space: Space, settings: EvolutionSettings) -> tuple[SBX, PM]:
+    """Crossover and mutation of all three.
+
+    pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
+    """
+    crossover = {"prob": settings.crossover_probability, "eta": settings.crossover_eta}
+    mutation = {"eta": settings.mutation_eta}
+    if space.choices:
+        return MotorSBX(space, **crossover), MotorPM(space, **mutation)
+    return SBX(**crossover), PM(**mutation)
+
+
+def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen) -> GeneticAlgorithm:
+    from pymoo.algorithms.moo.age2 import AGEMOEA2
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.algorithms.moo.sms import SMSEMOA
+
+    crossover, mutation = varying(space, settings)
+    kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
+    return kind(
+        pop_size=settings.population,
+        crossover=crossover,
+        mutation=mutation,
+        repair=_Snap(space),
+        eliminate_duplicates=_Unseen(seen),
+        seed=seed,
+    )

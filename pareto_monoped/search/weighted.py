@@ -1,0 +1,136 @@
+"""The paper's search: CMA-ES on a weighted cost of two objectives, one run per weight.
+
+The cost that the weighted search minimises: the paper's for height and energy, a normalised sum for other pairs.
+"""
+
+from collections.abc import Iterable
+from itertools import islice
+from typing import Any
+
+import cma
+import numpy as np
+
+from pareto_monoped.definition.algorithms import WeightedSettings
+from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space
+
+
+def weighted_cost(values: Floats, weight: float, corner: ReferencePoint, height_scale_j: float) -> Floats:
+    """Cost of n designs by two objectives, shape (n,); less is better.
+
+    For the paper's objectives lambda1 Kh exp(-h) + lambda2 E, with lambda2 = 1 - lambda1 (paper, section III-B, and the
+    commented-out passage on C_h in its source). For any other two the sum of w f1 / s1 and (1 - w) f2 / s2, where each
+    f is the measure with the sign that makes less better, and its scale s is its value at the study's reference point:
+    a number of the size of its values, which does not change while the search runs. Our own choice.
+
+    Args:
+        values: of the objectives in stored units, shape (n, 2).
+        weight: of the first objective, the paper's lambda1.
+        corner: the study's reference point, which names the objectives.
+        height_scale_j: the paper's Kh, used for its objectives only.
+    """
+    if corner.objectives == HEIGHT_AND_ENERGY:
+        return weight * height_scale_j * np.exp(-values[:, 0]) + (1.0 - weight) * values[:, 1]
+    scaled = corner.objectives.minimised(values) / np.array(corner.values)
+    cost: Floats = weight * scaled[:, 0] + (1.0 - weight) * scaled[:, 1]
+    return cost
+
+
+class WeightedSearch:
+    """CMA-ES (Hansen's ``cma``) on ``weighted_cost``.
+
+    The runs follow one another. A run
+    ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run is
+    replayed from its history. This is exact because each run has its own random generator, and it takes a fraction of
+    a second.
+    """
+
+    def __init__(
+        self, space: Space, settings: WeightedSettings, start: Floats, seed: int, corner: ReferencePoint
+    ) -> None:
+        """Begin with the first weight.
+
+        Args:
+            space: the free variables and two objectives.
+            settings: weights, population and the like.
+            start: where each run starts, a point of the space, shape (d,).
+            seed: of the study.
+            corner: the study's reference point, which scales other objectives than the paper's.
+        """
+        self._space = space
+        self._settings = settings
+        self._seed = seed
+        self._corner = corner
+        lower, upper = space.edges
+        self._start = np.clip((start - lower) / (upper - lower), 0.0, 1.0)
+        self._run = 0
+        self._iteration = 0
+        self._strategy = self._fresh()
+        self._asked: list[Floats] = []
+
+    def ask(self) -> Proposal | None:
+        """The next designs of the current run; None after the last run."""
+        if self._run == len(self._settings.height_weights):
+            return None
+        self._asked = self._strategy.ask()
+        unit = np.clip(np.array(self._asked), 0.0, 1.0)
+        lower, upper = self._space.edges
+        return Proposal(
+            values=self._space.snap(np.minimum(lower + unit * (upper - lower), upper)),
+            height_weight=self._settings.height_weights[self._run],
+        )
+
+    def tell(self, scores: Scores) -> None:
+        """Update the distribution of the current run; when this run has ended, start the next one."""
+        self._strategy.tell(self._asked, self.cost(scores).tolist())
+        self._iteration += 1
+        if self._iteration == self._settings.iterations or self._strategy.stop():
+            self._run += 1
+            self._iteration = 0
+            if self._run < len(self._settings.height_weights):
+                self._strategy = self._fresh()
+
+    def cost(self, scores: Scores) -> Floats:
+        """Cost of each design, shape (n,).
+
+        An infeasible design costs more than any feasible one, and more the larger its violation. CMA-ES uses only the
+        ranks.
+        """
+        weight, scale = self._settings.height_weights[self._run], self._settings.height_scale_j
+        feasible = weighted_cost(scores.values, weight, self._corner, scale)
+        return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)
+
+    def state(self) -> dict[str, Any]:
+        """Number of the current run and of its iterations; the designs and scores are in the database."""
+        return {"run": self._run, "iteration": self._iteration}
+
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
+        """Replay the history of the current run."""
+        generations = list(history)
+        self._run = int(state["run"])
+        self._iteration = 0
+        if self._run == len(self._settings.height_weights):
+            return
+        self._strategy = self._fresh()
+        iterations = int(state["iteration"])
+        for _, scores in islice(generations, len(generations) - iterations, None):
+            self.ask()
+            self.tell(scores)
+
+    def _fresh(self) -> cma.CMAEvolutionStrategy:
+        generator = np.random.default_rng([self._seed, self._run])
+        dimensions = len(self._start)
+        return cma.CMAEvolutionStrategy(
+            self._start,
+            self._settings.sigma,
+            {
+                "popsize": self._settings.population,
+                "bounds": [[0.0] * dimensions, [1.0] * dimensions],
+                # With these normal deviates and no seed, cma does not touch NumPy's global generator.
+                "randn": lambda *shape: generator.standard_normal(shape),
+                "seed": np.nan,
+                "verbose": -9,
+                "verb_log": 0,
+            },
+        )

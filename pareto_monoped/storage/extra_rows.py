@@ -1,0 +1,132 @@
+"""Tables that a study has only where something was stored in them; their rows have their place in the running hash.
+
+The stored robustness of a study: one row per trial that was simulated under uncertainty.
+
+The stored sensitivities of a study: one row per trial and per kind of factors.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar, get_args
+
+from pareto_monoped.config import checked, parsed_json
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.database import reading
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.seals import damaged, has_seals, read_seals
+from pareto_monoped.uncertainty.sensitivity import About, Sensitivity
+from pareto_monoped.uncertainty.statistics import Robustness
+
+T = TypeVar("T")
+Row = tuple[int | str, str, str]
+"""A key, the settings under which something was simulated, and the result, both as JSON."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtraTable:
+    """A table of keys, settings and results."""
+
+    what: str  #: its name in the running hash and in messages
+    key: str  #: SQL of the column that is the key
+
+    @property
+    def create(self) -> str:
+        """The statement that makes it where it is not there."""
+        columns = f"{self.key} PRIMARY KEY, settings TEXT NOT NULL, result TEXT NOT NULL"
+        return f"CREATE TABLE IF NOT EXISTS monoped_{self.what} ({columns})"
+
+    def rows(self, connection: Connection) -> list[Row]:
+        """All rows by their keys; none if the study has no such table."""
+        there = connection.columns(f"monoped_{self.what}")
+        key = self.key.split()[0]
+        select = f"SELECT {key}, settings, result FROM monoped_{self.what} ORDER BY {key}"
+        return connection.execute(select).fetchall() if there else []
+
+
+def read_rows(
+    db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]
+) -> dict[Any, tuple[dict[str, Any], T]]:
+    """Settings and results by key, checked against the running hash.
+
+    Args:
+        db: the study's database.
+        table: the table.
+        make: key, result as JSON values and source for messages -> the result.
+
+    Raises:
+        DatabaseError: missing, not a study, or damaged.
+    """
+    with reading(db) as connection:
+        rows = table.rows(connection)
+        findings = read_seals(connection, db).row_findings(table.what, rows) if has_seals(connection) else []
+    if findings:
+        raise damaged(db, findings)
+    source = f"study database {str(db)!r}, its {table.what}"
+    try:
+        return {key: (dict(parsed_json(text)), make(key, parsed_json(result), source)) for key, text, result in rows}
+    except (TypeError, ValueError, RecursionError) as error:
+        raise DatabaseError(
+            f"study database {str(db)!r}: its {table.what} is damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
+
+
+ROBUSTNESS = ExtraTable(what="robustness", key="trial INTEGER")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stored:
+    """The robustness of one trial, and the settings that it was simulated under."""
+
+    settings: dict[str, Any]
+    result: Robustness
+
+
+def read_robustness(db: StudyPlace) -> dict[int, Stored]:
+    """The stored robustness of a study by trial; empty if it has none.
+
+    Raises:
+        DatabaseError: missing, not a study, or damaged.
+    """
+    found = read_rows(db, ROBUSTNESS, _result)
+    return {int(trial): Stored(settings=settings, result=result) for trial, (settings, result) in found.items()}
+
+
+def _result(_: Any, values: Any, source: str) -> Robustness:
+    return checked(Robustness, values, source=source, error=DatabaseError)
+
+
+SENSITIVITY = ExtraTable(what="sensitivity", key="trial_and_factors TEXT")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredSensitivity:
+    """A sensitivity, and the settings that it was simulated under."""
+
+    settings: dict[str, Any]
+    result: Sensitivity
+
+
+def key_of(trial: int, about: About) -> str:
+    """The key of a row, such as "17 assumptions"."""
+    return f"{trial} {about}"
+
+
+def read_sensitivity(db: StudyPlace) -> dict[tuple[int, About], StoredSensitivity]:
+    """The stored sensitivities of a study by trial and kind of factors; empty if it has none.
+
+    Raises:
+        DatabaseError: missing, not a study, or damaged.
+    """
+    found: dict[tuple[int, About], StoredSensitivity] = {}
+    for key, (settings, result) in read_rows(db, SENSITIVITY, _sensitivity_rows_result).items():
+        found[int(key.split()[0]), result.about] = StoredSensitivity(settings=settings, result=result)
+    return found
+
+
+def _sensitivity_rows_result(key: Any, values: Any, source: str) -> Sensitivity:
+    trial, _, about = str(key).partition(" ")
+    result = checked(Sensitivity, values, source=source, error=DatabaseError)
+    if not trial.isdecimal() or about != result.about or about not in get_args(About):
+        raise ValueError(f"a row is called {key!r}")
+    return result

@@ -1,0 +1,155 @@
+"""The front and the counts of a study as its database keeps them, so that nobody needs to read all trials for them.
+
+The trials of the front that a study keeps, in a moment: for a shell that completes their numbers.
+"""
+
+import json
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from pareto_monoped.config import parsed_json
+from pareto_monoped.definition.goals import objectives_of
+from pareto_monoped.design import in_use
+from pareto_monoped.pareto.front import GrowingFront
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.storage.columns import listed
+from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.database import reading
+from pareto_monoped.storage.place import StudyPlace
+
+FRONT = """
+CREATE TABLE monoped_front (
+    id INTEGER PRIMARY KEY CHECK (id = 1), trials TEXT NOT NULL, feasible INTEGER NOT NULL,
+    infeasible INTEGER NOT NULL, failed INTEGER NOT NULL, used TEXT NOT NULL
+);
+"""
+"""One row: numbers of the trials on the front without ill-conditioned ones, ascending; how many trials have each state;
+names of the optional variables of which some trial has another value than the default. The row is of as many trials as
+it counts, from the first on. While a study with a long front runs, it may lack the last ones, see ``KeptFront.due``."""
+
+STATES = ("feasible", "infeasible", "failed")
+_CHUNK = 500
+"""Rows asked for at once; SQLite takes at least 999 parameters."""
+_SHARE = 16
+"""The row is written again once so many times the new trials outnumber the front. Our own choice: a front of a thousand
+designs is written with every generation, and one of any length takes less than 200 bytes per trial."""
+
+
+class KeptFront:
+    """Follows the front of a study while it grows.
+
+    Attributes:
+        counts: number of trials in each state.
+        used: names of the optional variables of which some trial has another value than the default.
+    """
+
+    def __init__(self, objectives: Objectives) -> None:
+        self._objectives = objectives
+        self._front = GrowingFront(objectives)
+        self.counts = dict.fromkeys(STATES, 0)
+        self.used: set[str] = set()
+        self._stored = 0
+
+    @property
+    def numbers(self) -> list[int]:
+        """Of the trials on the front, ascending."""
+        numbers: list[int] = self._front.numbers.tolist()
+        return numbers
+
+    @property
+    def trials(self) -> int:
+        """Number of trials that it is of."""
+        return sum(self.counts.values())
+
+    @property
+    def behind(self) -> bool:
+        """Whether the database's row lacks trials."""
+        return self._stored < self.trials
+
+    @property
+    def due(self) -> bool:
+        """Whether the row lacks so many trials that it is to be written again: a long front takes a while."""
+        return self.behind and _SHARE * (self.trials - self._stored) >= len(self._front)
+
+    def load(self, connection: Connection) -> None:
+        """Take what the database keeps, and add the trials that came after."""
+        numbers, self.counts, self.used = kept_row(connection)
+        rows = rows_of(connection, self._objectives.names, numbers)
+        if len(rows) != len(numbers):
+            raise ValueError("trials of its kept front are missing")
+        values = np.array(rows, dtype=np.float64).reshape(-1, len(self._objectives.names))
+        self._front.add(np.array(numbers, dtype=np.int64), values)
+        self._stored = self.trials
+        cursor = connection.execute("SELECT * FROM monoped_trials WHERE trial >= ? ORDER BY trial", (self._stored,))
+        names, later = [entry[0] for entry in cursor.description], cursor.fetchall()
+        if later:
+            self.add(dict(zip(names, zip(*later, strict=True), strict=True)))
+
+    def add(self, values: Mapping[str, Any]) -> None:
+        """Add trials: column -> values, one per trial."""
+        states = list(values["state"])
+        for state in STATES:
+            self.counts[state] += states.count(state)
+        self.used.update(variable.name for variable in in_use(values) if variable.default is not None)
+        feasible = np.array([state == "feasible" for state in states], dtype=bool)
+        objectives = np.column_stack([np.asarray(values[n], dtype=np.float64) for n in self._objectives.names])
+        self._front.add(np.asarray(values["trial"], dtype=np.int64)[feasible], objectives[feasible])
+
+    def leave_out(self, connection: Connection, ill_conditioned: Collection[int]) -> None:
+        """Make the front anew without these trials; trials that they dominated may enter."""
+        names = listed(self._objectives.names)
+        rows = connection.execute(
+            f"SELECT trial, {names} FROM monoped_trials WHERE state = 'feasible' ORDER BY trial"
+        ).fetchall()
+        rows = [row for row in rows if row[0] not in ill_conditioned]
+        values = np.array([row[1:] for row in rows], dtype=np.float64).reshape(-1, len(self._objectives.names))
+        self._front = GrowingFront(self._objectives)
+        self._front.add(np.array([row[0] for row in rows], dtype=np.int64), values)
+
+    def store(self, connection: Connection) -> tuple[Any, ...]:
+        """Replace the kept row; returns it."""
+        numbers = json.dumps(self.numbers, separators=(",", ":"))
+        row = (1, numbers, *self.counts.values(), json.dumps(sorted(self.used)))
+        connection.replace("monoped_front", [row])
+        self._stored = self.trials
+        return row
+
+
+def kept_row(connection: Connection) -> tuple[list[int], dict[str, int], set[str]]:
+    """Numbers of the trials on the kept front, how many trials have each state, and names of the optional variables."""
+    row = connection.execute("SELECT trials, feasible, infeasible, failed, used FROM monoped_front").fetchone()
+    numbers = [int(number) for number in parsed_json(row[0])]
+    return numbers, dict(zip(STATES, map(int, row[1:4]), strict=True)), set(parsed_json(row[4]))
+
+
+def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int]) -> list[tuple[Any, ...]]:
+    """Values of some columns of some trials, ascending by number."""
+    rows = []
+    for first in range(0, len(trials), _CHUNK):
+        chunk = trials[first : first + _CHUNK]
+        marks = ", ".join("?" * len(chunk))
+        rows += connection.execute(
+            f"SELECT {listed(names)} FROM monoped_trials WHERE trial IN ({marks}) ORDER BY trial", chunk
+        ).fetchall()
+    return rows
+
+
+def front_trials(db: StudyPlace) -> dict[int, str]:
+    """Number of each trial of the kept front -> its objectives in words, by the first objective.
+
+    They are not checked against the study's seals, which takes longer than a key press: good for choosing a trial, and
+    for no more.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, of a newer version, or of format 1, which kept no front.
+        ServerError: the server is away.
+    """
+    with reading(db) as connection:
+        (study,) = connection.execute("SELECT value FROM monoped_meta WHERE key = 'study'").fetchone()
+        (numbers,) = connection.execute("SELECT trials FROM monoped_front").fetchone()
+        objectives = objectives_of(parsed_json(study)["objectives"])
+        rows = rows_of(connection, ("trial", *objectives.names), parsed_json(numbers))
+    rows.sort(key=lambda row: (row[1], row[0]))
+    return {row[0]: objectives.text(row[1:]) for row in rows}

@@ -1,0 +1,345 @@
+"""Read a study database: everything that report, CAD and command line need, by plain SELECTs.
+
+Stored rows of trials as a data frame: every column there is, each of its type, with the names of the motors.
+
+Measures that databases of earlier versions lack and that follow exactly from what they have.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pareto_monoped.config import parsed_json
+from pareto_monoped.definition.study import Study, study_from_dict
+from pareto_monoped.definition.variables import MOTOR_KEYS, names_of
+from pareto_monoped.design import DEFAULTS, PAPER_MOTOR
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.indicators import ReferencePoint
+from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
+from pareto_monoped.storage.database import reading, undamaged
+from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys
+from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.seals import ROWS, Seals, damaged, has_seals, read_seals
+
+if TYPE_CHECKING:
+    from pareto_monoped.actuator.motor import Motor
+    from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
+    from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.search.space import AnyCoordinates
+
+_DTYPES = {column.name: column.dtype for column in COLUMNS}
+
+
+_BLOCK = 20_000
+"""Rows that are values of Python at once, eight times as large as in the frame: 40 MB. Our own choice."""
+
+
+def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
+    """Trials as read from the database.
+
+    Args:
+        names: of the columns that were read.
+        rows: values of these columns, one row per trial, read block by block.
+        db: the database, for messages.
+
+    Raises:
+        DatabaseError: a value is not of its column's type, or a required column is missing.
+    """
+    left = iter(rows)
+    try:
+        frames = [_frame(names, list(islice(left, _BLOCK)))]
+        while block := list(islice(left, _BLOCK)):
+            frames.append(_frame(names, block))
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise DatabaseError(
+            f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
+    return pd.concat(frames, ignore_index=True)
+
+
+def _frame(names: list[str], rows: list[tuple[Any, ...]]) -> pd.DataFrame:
+    columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
+    if rows:
+        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+    for column in LATER:
+        columns.setdefault(column.name, (DEFAULTS.get(column.name),) * len(rows))
+    known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
+    ordered = [*known, *(name for name in columns if name not in known)]
+    # A column that only a later version knows is read as a number, as every measure is.
+    return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})
+
+
+def _typed(values: tuple[Any, ...], dtype: str) -> Any:
+    if dtype == "str":
+        return pd.array(["" if value is None else str(value) for value in values], dtype="str")
+    if dtype == "int64":
+        return np.array(values, dtype=np.int64)
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
+    """The trials with the names of each one's motors, which the database leaves out where all have the same.
+
+    The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
+    study names them.
+
+    Raises:
+        DatabaseError: a trial has a motor that the study does not name.
+    """
+    contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
+    known = {
+        named.lower(): str(values.get("name", named)) for values, named in zip(contents, study.motors, strict=True)
+    }
+    for key in MOTOR_KEYS:
+        given = getattr(study, key)
+        if given is None:
+            trials = trials.drop(columns=key)
+            continue
+        names = [known[named.lower()] for named in names_of(given)]
+        if len(names) == 1:
+            trials = trials.assign(**{key: pd.array(names * len(trials), dtype="str")})
+        unknown = trials.loc[~trials[key].isin(names), key]
+        if len(unknown):
+            raise DatabaseError(
+                f"study database {str(db)!r}: its trials are damaged ({key.replace('_', ' ')} {unknown.iloc[0]!r} is "
+                "not of the study); restore a copy"
+            )
+    if study.motor is None:
+        from pareto_monoped.actuator.ratiomap import motor_label
+
+        labels = map(motor_label, trials["hip_motor"], trials["knee_motor"])
+        trials = trials.assign(motor=pd.array(list(labels), dtype="str"))
+    return trials
+
+
+def with_agility(trials: pd.DataFrame) -> pd.DataFrame:
+    """The trials with ``agility_m_per_s`` wherever height and time of the apex are known.
+
+    It is the same division as in ``jump.evaluate``, so a filled value equals a stored one to the last bit. The running
+    hash is over what is stored: check it before.
+    """
+    stored = trials["agility_m_per_s"].to_numpy(dtype=np.float64)
+    height, start, apex = (trials[name].to_numpy(dtype=np.float64) for name in ("height_m", "start_height_m", "apex_s"))
+    missing = np.isnan(stored) & np.isfinite(height) & (apex > 0.0)
+    if not missing.any():
+        return trials
+    filled = stored.copy()
+    filled[missing] = (height[missing] - start[missing]) / apex[missing]
+    return trials.assign(agility_m_per_s=filled)
+
+
+_HISTORY = {"generation": np.int64, "evaluations": np.int64, "hypervolume": np.float64, "seconds": np.float64}
+"""Columns of the table ``monoped_history`` and their types in the data frame."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checkpoint:
+    """The algorithm's state before generation ``generation``, when it knew the scores of ``evaluations`` trials."""
+
+    generation: int
+    evaluations: int
+    state: dict[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)  # without slots: cached properties need a place to keep their values
+class StudyData:
+    """All of a study."""
+
+    db: StudyPlace  #: the database it was read from
+    study: Study  #: its definition
+    #: What else is stored about it: versions, hash, budget, how it ended, contents of motor and calibration
+    meta: StudyMeta
+    trials: pd.DataFrame  #: one row per trial; ``columns.COLUMNS`` says what each column is
+    #: One row per generation: generation, evaluations, hypervolume, seconds, all counted from the start
+    history: pd.DataFrame
+    audits: pd.DataFrame  #: one row per audited trial: trial, well_conditioned, the measures of the audit, reason
+    checkpoint: Checkpoint  #: for resuming
+    sealed: bool = True  #: whether it has a running hash, against which everything above was checked
+    links: int = 0  #: length of its running hash
+
+    def __repr__(self) -> str:
+        """One line: name, place and how many trials."""
+        return f"StudyData({self.study.name!r}, {str(self.db)!r}, {len(self.trials)} trials)"
+
+    @cached_property
+    def motors(self) -> "tuple[Motor, ...]":
+        """The motors that the study simulates with, as stored: the user's files may be gone or changed.
+
+        Raises:
+            DatabaseError: the stored values are damaged.
+        """
+        from pareto_monoped.actuator.motors import stored_motor
+
+        contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
+        return tuple(stored_motor(values, source=self._source, error=DatabaseError) for values in contents)
+
+    @property
+    def motor_choices(self) -> dict[str, tuple[str, ...]]:
+        """Each key of the study that names several motors -> their names, in its order."""
+        if not self.study.motor_choices:
+            return {}
+        called = {named.lower(): motor.name for named, motor in zip(self.study.motors, self.motors, strict=True)}
+        return {
+            key: tuple(called[named.lower()] for named in names_of(getattr(self.study, key)))
+            for key in self.study.motor_choices
+        }
+
+    @cached_property
+    def calibration(self) -> "Calibration":
+        """The calibration that the study simulates with, as stored.
+
+        Raises:
+            DatabaseError: the stored values are damaged.
+        """
+        from pareto_monoped.jump.calibration import calibration_of
+
+        return calibration_of(self.meta.contents.get("calibration", {}), source=self._source, error=DatabaseError)
+
+    @cached_property
+    def actuator_maps(self) -> "dict[str, ActuatorMap]":
+        """Name of each motor -> its gearboxes under the study's rules."""
+        from pareto_monoped.actuator.search import map_of
+
+        return {motor.name: map_of(motor, self.study.rules) for motor in self.motors}
+
+    @cached_property
+    def kits(self) -> "tuple[JointMaps, ...]":
+        """The gearboxes of each kit of motors that a design may have, in the order of ``Study.kits``."""
+        from pareto_monoped.search.space import kit_maps
+
+        return kit_maps(self.study, list(self.actuator_maps.values()))
+
+    @property
+    def case_kit(self) -> "JointMaps":
+        """The gearboxes of the paper's designs: with the paper's own motor, or with the first kit of the study."""
+        papers = [kit for kit in self.kits if kit.label == PAPER_MOTOR]
+        return (papers or self.kits)[0]
+
+    def kit_of_trial(self, trial: int) -> "JointMaps":
+        """The gearboxes of a trial's motors."""
+        ((kit, _),) = self.kit_rows(self.trials[self.trials["trial"] == trial])
+        return kit
+
+    def kit_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[JointMaps, NDArray[np.intp]]]":
+        """The gearboxes of each kit of motors that some of these trials have, and the positions of those trials."""
+        numbers = self.kit_numbers(trials)
+        for k in np.unique(numbers).tolist():
+            yield self.kits[k], np.flatnonzero(numbers == k)
+
+    def kit_numbers(self, trials: pd.DataFrame) -> NDArray[np.intp]:
+        """Which of ``kits`` each of n trials has, shape (n,)."""
+        hip, knee = ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
+        known = {(kit.hip.motor.name, kit.knee.motor.name): k for k, kit in enumerate(self.kits)}
+        return np.array([known[pair] for pair in zip(trials[hip], trials[knee], strict=True)], dtype=np.intp)
+
+    @cached_property
+    def coordinates(self) -> "AnyCoordinates":
+        """What the study searches."""
+        from pareto_monoped.search.space import plain_coordinates, searched_coordinates
+
+        if not self.study.gear_list and len(self.study.kits) == 1:
+            return plain_coordinates(self.study)
+        return searched_coordinates(self.study, self.kits)
+
+    @property
+    def _source(self) -> str:
+        return f"study database {str(self.db)!r}"
+
+    @property
+    def wall_time_s(self) -> float:
+        """Running time so far, over all sessions."""
+        return float(self.history["seconds"].iloc[-1]) if len(self.history) else 0.0
+
+    @property
+    def ill_conditioned(self) -> NDArray[np.int64]:
+        """Numbers of the trials that failed their audit; ``jump.audit`` says what that means."""
+        good = self.audits["well_conditioned"].to_numpy(dtype=bool)
+        trials: NDArray[np.int64] = self.audits["trial"].to_numpy(dtype=np.int64)[~good]
+        return trials
+
+    @property
+    def reference_point(self) -> ReferencePoint:
+        """Corner from which the study's hypervolume is measured."""
+        return self.study.reference_point
+
+    def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
+        """The non-dominated feasible trials by the first objective, from its least value to its greatest.
+
+        Args:
+            objectives: other measures than the study's own, under which trials dominate each other.
+            include_ill_conditioned: whether trials that failed their audit may be on the front. Without them, trials
+                that they dominate may enter.
+        """
+        eligible = (self.trials["state"] == "feasible").to_numpy()
+        if not include_ill_conditioned:
+            eligible = eligible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()
+        chosen = objectives or self.study.objectives
+        mask = front_mask(self.trials[list(chosen.names)].to_numpy(dtype=np.float64), chosen, eligible)
+        return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
+
+
+def read_study(db: StudyPlace) -> StudyData:
+    """Read a study database, finished or still growing, and check it against its running hash.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    with undamaged(db):
+        return _read_study(db)
+
+
+def _read_study(db: StudyPlace) -> StudyData:
+    with reading(db) as connection:
+        sealed = has_seals(connection)
+        rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
+        cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+        trials = trial_frame([entry[0] for entry in cursor.description], cursor, db)
+        seals = read_seals(connection, db) if sealed else None
+    meta = meta_of_rows(rows["meta"], db)
+    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
+    try:
+        _, generation, evaluations, state = rows["checkpoint"][0]
+        checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=parsed_json(state))
+        audits = [
+            {"trial": int(trial), "well_conditioned": bool(good)} | parsed_json(measures)
+            for trial, good, measures in rows["audits"]
+        ]
+        history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
+        if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
+            raise ValueError("a hypervolume or time of its history is not finite")
+    except (IndexError, KeyError, TypeError, ValueError, RecursionError) as error:
+        raise DatabaseError(
+            f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
+        ) from None
+    named = with_agility(with_motors(trials, study, meta, db))
+    if seals is not None and (findings := _seal_findings(seals, trials, rows)):
+        raise damaged(db, findings)
+    links = 0 if seals is None else seals.links
+    return StudyData(
+        db=db,
+        study=study,
+        meta=meta,
+        trials=named,
+        history=history,
+        audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
+        checkpoint=checkpoint,
+        sealed=sealed,
+        links=links,
+    )
+
+
+def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
+    """What does not match the running hash of a study of which everything was read; ``rows`` as by ``seals.ROWS``."""
+    numbers = trials["trial"].to_numpy()
+    findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
+    if len(numbers) < seals.trials:
+        findings.append(f"{seals.trials - len(numbers)} trials are missing")
+    return findings + [line for table in rows for line in seals.row_findings(table, rows[table])]

@@ -1,0 +1,245 @@
+"""The running hash of a study: every transaction stores digests of the rows that it wrote, chained to all before.
+
+A row's digest is the first 16 hexadecimal digits of SHA-256 over its values, enough to tell damage from chance (one in
+1.8e19). A link of the chain holds the digests of one transaction and SHA-256 over them and the previous link's hash. So
+a few rows can be checked without reading the others: first the links, then the rows against the digests in them.
+
+The hash finds damage and careless edits. It is no signature: who edits a study on purpose can compute it anew.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from pareto_monoped.config import parsed_json
+from pareto_monoped.design import DEFAULTS
+from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage.columns import COLUMNS
+from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.place import StudyPlace
+
+SEALS = """
+CREATE TABLE monoped_seals (
+    link INTEGER PRIMARY KEY, first INTEGER NOT NULL, columns TEXT NOT NULL, trials TEXT NOT NULL,
+    written TEXT NOT NULL, hash TEXT NOT NULL
+);
+"""
+"""One row per transaction: number of its ``first`` trial; digests of its ``trials``, one after the other; the
+``columns`` that these are over (empty: as in the link before); digests of the rows ``written`` into the other tables,
+by table and key; the chained hash."""
+
+ROWS = {
+    "meta": "SELECT key, value FROM monoped_meta ORDER BY key",
+    "checkpoint": "SELECT id, generation, told, state FROM monoped_checkpoint ORDER BY id",
+    "history": "SELECT generation, evaluations, hypervolume, seconds FROM monoped_history ORDER BY generation",
+    "audits": "SELECT trial, well_conditioned, measures FROM monoped_audits ORDER BY trial",
+    "front": "SELECT id, trials, feasible, infeasible, failed, used FROM monoped_front ORDER BY id",
+}
+"""What is sealed besides the trials; the first value of a row is its key.
+
+Besides, ``optuna`` has the digest of all rows of a link's trials in Optuna's tables, by the number of the first trial,
+and ``optuna_first`` Optuna's own number of that trial where it is another one."""
+
+BY_OPTUNA = ""
+"""In place of the digest of a generation that Optuna has written for us, in a form that only Optuna knows."""
+
+OPTUNA_STUDY = "optuna_study"
+"""What is sealed of Optuna's tables on the study itself when it is created, see ``optuna_tables.study_digests``."""
+
+UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed; it gets one when it goes on"
+"""What is said of a study of version 0.2.0 or earlier."""
+
+_DIGITS = 16
+_BLOCK = 20_000
+"""Trials that are checked at once, which takes as much memory as they do. Our own choice."""
+_KNOWN = frozenset(column.name for column in COLUMNS)
+_TEXTS = frozenset(column.name for column in COLUMNS if column.dtype == "str")
+_BEFORE_ALL = ""
+
+Written = Mapping[str, Mapping[str, str]]
+"""Table -> key of a row -> its digest."""
+
+
+def row_digest(values: Sequence[Any]) -> str:
+    """Digest of a row of numbers and text as SQLite returns them."""
+    return hashlib.sha256(json.dumps(list(values)).encode()).hexdigest()[:_DIGITS]
+
+
+def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
+    """Digests of trials, the same for trials in memory and as read again.
+
+    Args:
+        names: of the columns to digest.
+        values: column -> its values, one per trial; None and NaN are the same, and so are None and an empty text.
+    """
+    numbers = [name for name in names if name not in _TEXTS]
+    # SQLite keeps neither the sign of zero nor the payload of a NaN.
+    matrix = np.array([np.asarray(values[name], dtype=np.float64) for name in numbers]).T + 0.0
+    matrix[np.isnan(matrix)] = np.nan
+    content = np.ascontiguousarray(matrix, dtype="<f8").tobytes()
+    width = 8 * len(numbers)
+    words = zip(*(["" if word is None else str(word) for word in values[n]] for n in names if n in _TEXTS), strict=True)
+    return [
+        hashlib.sha256("\x1f".join(row).encode() + b"\x1e" + content[k * width : (k + 1) * width]).hexdigest()[:_DIGITS]
+        for k, row in enumerate(words)
+    ]
+
+
+def row_digests(rows: Iterable[Sequence[Any]]) -> dict[str, str]:
+    """Key -> digest of rows of a table of ``ROWS``."""
+    return {str(row[0]): row_digest(row) for row in rows}
+
+
+def _link_hash(previous: str, first: int, columns: str, trials: str, written: str) -> str:
+    return hashlib.sha256("\n".join((previous, str(first), columns, trials, written)).encode()).hexdigest()
+
+
+class Sealer:
+    """Adds links to the chain, each within the transaction whose rows it seals."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._names: list[str] = []
+        self._names_link = -1
+        self.links = 0
+
+    def add(self, written: Written, first: int = 0, names: Sequence[str] = (), values: Any = None) -> None:
+        """Add a link; ``links`` then counts it.
+
+        Args:
+            written: digests of the rows written into other tables than that of the trials.
+            first: number of the first new trial.
+            names: columns of the new trials, as for ``trial_digests``; none without new trials.
+            values: their values.
+        """
+        last = self._connection.execute("SELECT link, hash FROM monoped_seals ORDER BY link DESC LIMIT 1").fetchone()
+        link, previous = (last[0] + 1, last[1]) if last else (0, _BEFORE_ALL)
+        columns = trials = ""
+        if names:
+            trials = "".join(trial_digests(names, values))
+            # A transaction that was rolled back takes its link with it, and the columns that it named.
+            if list(names) != self._names or self._names_link >= link:
+                columns = json.dumps(list(names))
+                self._names, self._names_link = list(names), link
+        text = json.dumps({table: dict(rows) for table, rows in written.items()})
+        digest = _link_hash(previous, first, columns, trials, text)
+        self._connection.execute(
+            "INSERT INTO monoped_seals VALUES (?, ?, ?, ?, ?, ?)", (link, first, columns, trials, text, digest)
+        )
+        self.links = link + 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Seals:
+    """The digests of all rows of a study."""
+
+    db: StudyPlace  #: the study's database
+    links: int  #: number of links in the chain
+    #: Number of the first trial, columns and digests of the trials of each link that has trials
+    parts: tuple[tuple[int, tuple[str, ...], str], ...]
+    #: The latest digests of the rows of all other tables
+    written: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    @property
+    def trials(self) -> int:
+        """Number of trials that have a digest."""
+        return sum(len(digests) for _, _, digests in self.parts) // _DIGITS
+
+    def trial_findings(self, values: Mapping[str, Any], numbers: Sequence[int]) -> list[str]:
+        """What does not match among some trials, ascending by number; ``values`` has their columns."""
+        findings = []
+        places = np.asarray(numbers, dtype=np.int64)
+        known = np.zeros(len(places), dtype=bool)
+        for first, names, digests in self.parts:
+            begin, end = np.searchsorted(places, (first, first + len(digests) // _DIGITS))
+            known[begin:end] = True
+            if begin < end and (lost := [name for name in names if name not in values]):
+                return [f"its trials lack the column {lost[0]!r}"]
+            for chosen in (slice(k, min(k + _BLOCK, end)) for k in range(begin, end, _BLOCK)):
+                numbers_there = places[chosen]
+                part = {name: np.asarray(column[chosen]) for name, column in values.items()}
+                found = trial_digests(names, part)
+                wrong = {
+                    int(number)
+                    for number, digest in zip(numbers_there, found, strict=True)
+                    if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
+                }
+                without = _KNOWN & set(values) - set(names)
+                wrong.update(numbers_there[_not_default(part, without, len(numbers_there))].tolist())
+                findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
+        return findings + [f"trial {number} has no hash" for number in places[~known]]
+
+    def row_findings(self, table: str, rows: Iterable[Sequence[Any]]) -> list[str]:
+        """What does not match among all rows of a table of ``ROWS``, as they are read there."""
+        sealed = self.written.get(table, {})
+        found = row_digests(rows)
+        findings = [
+            f"row {key} of its {table} " + ("does not match its hash" if key in sealed else "has no hash")
+            for key, digest in found.items()
+            if sealed.get(key) != digest
+        ]
+        return findings + [f"row {key} of its {table} is missing" for key in sealed if key not in found]
+
+
+def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) -> Any:
+    """Which of these trials have a value in a column that came after them, where they can only have its default."""
+    wrong = np.zeros(count, dtype=bool)
+    for name in names:
+        if name in _TEXTS:
+            wrong |= np.array([bool(word) for word in values[name]], dtype=bool)
+            continue
+        numbers, default = np.asarray(values[name], dtype=np.float64), DEFAULTS.get(name)
+        wrong |= ~np.isnan(numbers) if default is None else numbers != default
+    return wrong
+
+
+def has_seals(connection: Connection) -> bool:
+    """Whether a study has a running hash; studies of versions up to 0.2.0 have none until they go on."""
+    row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
+    return row is not None and row[0] != "1"
+
+
+def read_seals(connection: Connection, db: StudyPlace) -> Seals:
+    """Read the chain and check that its links follow from each other.
+
+    Raises:
+        DatabaseError: they do not.
+    """
+    parts: list[tuple[int, tuple[str, ...], list[str]]] = []
+    names: tuple[str, ...] = ()
+    written: dict[str, dict[str, str]] = {}
+    previous, links, trials = _BEFORE_ALL, 0, 0
+    for row in connection.execute("SELECT * FROM monoped_seals ORDER BY link"):
+        link, first, columns, digests, text, digest = row
+        whole = all(isinstance(part, str) for part in (columns, digests, text))
+        if not whole or link != links or _link_hash(previous, first, columns, digests, text) != digest:
+            raise damaged(db, [f"link {links} of its running hash does not follow from those before"])
+        previous, links = digest, links + 1
+        if columns:
+            names = tuple(parsed_json(columns))
+        if digests and (columns or not parts or first != trials):
+            parts.append((first, names, []))
+        if digests:
+            parts[-1][2].append(digests)
+            trials = first + len(digests) // _DIGITS
+        for table, digests_of_rows in parsed_json(text).items():
+            written.setdefault(table, {}).update(digests_of_rows)
+    if links == 0:
+        raise damaged(db, ["its running hash is empty"])
+    joined = tuple((first, names, "".join(digests)) for first, names, digests in parts)
+    return Seals(db=db, links=links, parts=joined, written=written)
+
+
+_SHOWN = 3
+
+
+def damaged(db: StudyPlace, findings: Sequence[str]) -> DatabaseError:
+    """The error for rows that do not match their hash."""
+    more = f" and {len(findings) - _SHOWN} others" if len(findings) > _SHOWN else ""
+    return DatabaseError(
+        f"study database {str(db)!r}: is damaged ({'; '.join(findings[:_SHOWN])}{more}); restore a copy"
+    )

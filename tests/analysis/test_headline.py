@@ -1,0 +1,54 @@
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+
+from pareto_monoped.actuator.ratiomap import joint_maps
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.analysis.choices import headline
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.single import simulate
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    """Case C as the study below simulates it."""
+    return simulate(PAPER_CASES["C"].design, map_for("U8"), load_calibration("ideal")).measures
+
+
+def study(*front, motors=("U8",)):
+    """A study with this front of trial, height and energy, all with the last motor."""
+    table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"]).assign(motor=motors[-1])
+    return SimpleNamespace(
+        front=lambda: table,
+        study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, kits=[(name, name) for name in motors]),
+        case_kit=joint_maps(map_for("U8")),
+        calibration=load_calibration("ideal"),
+    )
+
+
+def test_the_papers_design_stands_beside_the_fronts(simulated):
+    height = simulated["height_m"]
+    rows = headline(study((7, 0.7, 10.0), (5, 0.85, 20.0), (3, height + 0.01, 30.0), (9, height + 0.1, 50.0)), 7)
+    assert [(row.label, row.height_m, row.energy_j) for row in rows] == [
+        ("paper's Case C, as published", 0.8, 15.36),
+        ("paper's Case C, simulated here", height, simulated["energy_j"]),
+        ("front: at least that height, trial 3", height + 0.01, 30.0),
+        ("front: knee, trial 7", 0.7, 10.0),
+    ]
+
+
+def test_a_front_below_the_papers_height_has_no_design_for_it():
+    labels = [row.label for row in headline(study((7, 0.7, 10.0)), 7)]
+    assert labels[2:] == ["front: knee, trial 7"]
+
+
+def test_with_several_motors_every_design_names_its_own(simulated):
+    labels = [row.label for row in headline(study((7, 0.7, 10.0), motors=("U8", "U10")), 7)]
+    assert labels == [
+        "paper's Case C, as published",
+        "paper's Case C, simulated here with U8",
+        "front: knee, trial 7, U10",
+    ]

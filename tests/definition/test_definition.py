@@ -1,0 +1,213 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pareto_monoped.definition.algorithms import ALGORITHMS
+from pareto_monoped.definition.study import Study, load_study, study_from_dict
+from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
+from pareto_monoped.errors import InputError, StudyError
+from pareto_monoped.jump import calibration_defaults
+from tests.study.support import assert_refused
+from tests.study.support import study_of as made
+
+SHIPPED = sorted((Path(__file__).parents[2] / "studies").glob("*.toml"))
+
+
+def test_the_defaults_are_case_c_with_the_papers_bounds():
+    study = made()
+    assert study.free == PAPER_NAMES
+    assert np.array_equal(study.lower[: len(LOWER)], LOWER)
+    assert np.array_equal(study.upper[: len(UPPER)], UPPER)
+    assert study.constraints.value("min_height_m") == 0.55
+    assert study.algorithm.name == "surrogate"
+    assert (study.motor, study.calibration) == ("VT8020", "reference")
+    assert study.reference_point.as_dict() == {"height_m": 0.55, "energy_j": 100.0}
+    assert (study.stop.wall_time_s, study.stop.plateau_evaluations, study.stop.plateau_growth) == (None, None, 0.001)
+    assert study.audit is True
+
+
+def test_the_defaults_of_the_algorithms():
+    evolution = made(algorithm={"name": "sms_emoa"}).algorithm
+    assert evolution.population == 40
+    assert (evolution.crossover_probability, evolution.crossover_eta, evolution.mutation_eta) == (0.9, 15.0, 20.0)
+    weighted = made(algorithm={"name": "weighted_cmaes"}).algorithm
+    assert (weighted.population, weighted.sigma, weighted.iterations) == (8, 0.1, 200)
+    assert made(algorithm={"name": "random"}).algorithm.population == 40
+    assert [made(algorithm={"name": f"optuna_{kind}"}).algorithm.batch for kind in ("nsga2", "tpe")] == [50, 8]
+
+
+@pytest.mark.parametrize(
+    ("case", "fixed"),
+    [
+        ("A", {"thigh_length_m": 0.4, "shank_length_m": 0.4}),
+        ("B", {"knee_ratio": 6.0, "hip_ratio": 6.0}),
+        ("C", {}),
+    ],
+)
+def test_a_case_fixes_what_the_paper_fixed(case, fixed):
+    study = made(case=case)
+    assert {name: v for name, v in study.variables.items() if not isinstance(v, Bounds)} == fixed | DEFAULTS
+    assert study.free == tuple(name for name in PAPER_NAMES if name not in fixed)
+
+
+def test_bounds_and_fixed_values_override_the_case():
+    study = made(case="A", variables={"thigh_length_m": {"lower": 0.35, "upper": 0.45}, "hip_ratio": 4})
+    assert study.variables["thigh_length_m"] == Bounds(lower=0.35, upper=0.45)
+    assert study.variables["hip_ratio"] == 4.0
+    assert study.variables["shank_length_m"] == 0.4
+
+
+def test_limits_that_are_off_and_came_later_are_not_stored():
+    """A study without them keeps the hash that it had before there were any."""
+    assert set(made().as_dict()["constraints"]) == {
+        "min_height_m",
+        "max_energy_j",
+        "max_mass_kg",
+        "min_foot_clearance_m",
+    }
+    limited = made(constraints={"max_drift_m": 0.1})
+    assert limited.as_dict()["constraints"]["max_drift_m"] == 0.1
+    assert study_from_dict(limited.as_dict(), source="db") == limited
+
+
+def test_the_rules_paper_are_not_stored_and_others_are():
+    """A study stored before there were rules is one of the rules ``paper``, and keeps its hash."""
+    assert made().rules == "paper"
+    assert "rules" not in made().as_dict()
+    assert made(rules="paper") == made()
+    rated = made(rules="iso6336")
+    assert rated.as_dict()["rules"] == "iso6336"
+    assert study_from_dict(json.loads(json.dumps(rated.as_dict())), source="db") == rated
+
+
+def test_a_file_without_rules_takes_the_default_but_a_stored_study_does_not(tmp_path, monkeypatch):
+    """What happens when the default changes: the calibration ``paper`` keeps its rules, as stored studies do."""
+    monkeypatch.setattr(calibration_defaults, "DEFAULT_RULES", "iso6336")
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\n')
+    assert load_study(path).rules == "iso6336"
+    path.write_text('name = "s"\nevaluations = 5\ncalibration = "paper"\n')
+    assert load_study(path).rules == "paper"
+    assert made().rules == "paper"
+
+
+@pytest.mark.parametrize("name", ALGORITHMS)
+def test_plain_values_and_back(name):
+    study = made(
+        case="B", algorithm={"name": name}, seed=2**60, stop={"wall_time_s": 3.5}, variables={"hip_ratio": 5.0}
+    )
+    assert study_from_dict(json.loads(json.dumps(study.as_dict())), source="db") == study
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"evaluation": 3}, ["'evaluation'", "did you mean 'evaluations'"]),
+        ({"evaluations": 0}, ["evaluations = 0", "must be at least 1"]),
+        ({"evaluations": "many"}, ["evaluations = 'many'", "whole number"]),
+        ({"name": ""}, ["name = ''", "at least one letter"]),
+        ({"case": "D"}, ["case = 'D'", "'A', 'B' or 'C'"]),
+        ({"seed": -1}, ["seed = -1"]),
+        ({"rules": "agma"}, ["rules = 'agma'", "'paper' or 'iso6336'"]),
+        ({"rules": "iso6336", "calibration": "paper"}, ["rules = 'iso6336'", "'paper' with the calibration"]),
+        ({"variables": {"K": 5}}, ["'K'", "stiffness_n_per_m"]),
+        ({"variables": {"knee_ratio": "big"}}, ["variables.knee_ratio = 'big'", "1 to 100"]),
+        ({"variables": {"knee_ratio": (5, 7)}}, ["knee_ratio = (5, 7)", 'a range such as {"lower": 4, "upper": 8.7};']),
+        ({"variables": {"knee_ratio": True}}, ["variables.knee_ratio = True"]),
+        ({"variables": {"knee_ratio": float("nan")}}, ["variables.knee_ratio = nan"]),
+        ({"variables": {"knee_ratio": {"lower": 5.0}}}, ["variables.knee_ratio", "lower and upper"]),
+        ({"variables": {"knee_ratio": {"lower": 5.0, "upper": 5.0}}}, ["lower = 5, upper = 5", "below"]),
+        ({"variables": {"knee_ratio": {"lower": 0.5, "upper": 5.0}}}, ["variables.knee_ratio.lower = 0.5"]),
+        ({"variables": {"damping_n_s_per_m": -1.0}}, ["damping_n_s_per_m = -1.0", "from 0"]),
+        (
+            {"variables": {"thigh_length_m": 0.2, "shank_length_m": {"lower": 0.1, "upper": 0.3}}},
+            ["thigh_length_m + shank_length_m = 0.5", "0.5 m", "longer links"],
+        ),
+        ({"variables": dict.fromkeys(PAPER_NAMES, 5.0) | dict.fromkeys(LENGTHS, 0.4)}, ["all are fixed"]),
+        ({"objectives": {"height_m": "minimise"}}, ["objectives.height_m = 'minimise'", "'maximise'"]),
+        ({"constraints": {"min_height": 0.6}}, ["constraints.min_height"]),
+        ({"constraints": {"min_height_m": 0.2}}, ["constraints.min_height_m = 0.2", "0.5"]),
+        ({"stop": {"wall_time_s": 0}}, ["stop.wall_time_s = 0"]),
+        ({"algorithm": {"name": "nsga3"}}, ["algorithm.name = 'nsga3'", "nsga2", "weighted_cmaes"]),
+        ({"algorithm": {"population": 8}}, ["algorithm.name = None"]),
+        ({"algorithm": {"name": "nsga2", "pop": 8}}, ["'pop'", "population"]),
+        ({"algorithm": {"name": "nsga2", "population": 7}}, ["population = 7", "multiple of 2"]),
+        ({"algorithm": {"name": "nsga2", "sigma": 0.1}}, ["'sigma'"]),
+        ({"algorithm": {"name": "weighted_cmaes", "height_weights": []}}, ["height_weights"]),
+        ({"algorithm": {"name": "weighted_cmaes", "height_weights": [1.5]}}, ["height_weights.0 = 1.5"]),
+        ({"algorithm": {"name": "weighted_cmaes", "start": {"k": 1.0}}}, ["algorithm.start", "'k'"]),
+    ],
+)
+def test_what_cannot_be_names_its_key_and_what_is_allowed(change, words):
+    assert_refused(change, words)
+
+
+def test_missing_keys_are_named():
+    with pytest.raises(StudyError, match="evaluations is missing"):
+        study_from_dict({"name": "s"}, source="s")
+
+
+def test_a_file_that_is_no_toml_is_refused(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text("name = = 3")
+    with pytest.raises(StudyError, match="not valid TOML"):
+        load_study(path)
+    with pytest.raises(StudyError, match="no such file"):
+        load_study(tmp_path / "t.toml")
+
+
+def test_a_users_motor_file_is_found_beside_the_study(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\nmotor = "mine.toml"\n')
+    assert load_study(path).motor == str((tmp_path / "mine.toml").resolve())
+
+
+def test_budget_and_seed_can_be_given_in_place_of_the_files(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"\nevaluations = 5\n')
+    study = load_study(path, evaluations=7, seed=9)
+    assert (study.evaluations, study.seed) == (7, 9)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_studies_are_sound(path):
+    study = load_study(path)
+    assert study.name == path.stem
+    assert study.description
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"motor": "VT8021"}, "study: motor = 'VT8021': must be one of VT8020, .*did you mean 'VT8020'"),
+        ({"motor": ["U8", "U9"]}, "study: motor = 'U9'"),
+        ({"hip_motor": "U8", "knee_motor": "VT8021"}, "study: knee_motor = 'VT8021'"),
+        ({"calibration": "referense"}, "study: calibration = 'referense': .*did you mean 'reference'"),
+    ],
+)
+def test_unknown_names_are_refused_when_a_study_is_defined(changes, words):
+    """A motor that does not exist was refused only when the study ran."""
+    with pytest.raises(InputError, match=words):
+        Study.define(name="mine", evaluations=10, **changes)
+
+
+def test_files_and_names_of_a_program_are_found_only_when_a_study_runs():
+    study = Study.define(name="mine", evaluations=10, motor="not_yet.toml", calibration="own:mine")
+    assert (study.motor, study.calibration) == ("not_yet.toml", "own:mine")
+
+
+def test_a_stored_study_keeps_a_name_that_is_unknown_by_now():
+    values = Study.define(name="mine", evaluations=10).as_dict() | {"motor": "VT7000", "calibration": "older"}
+    assert study_from_dict(values, source="database").motor == "VT7000"
+
+
+def test_the_same_limit_with_a_dot_and_as_a_table_is_refused():
+    with pytest.raises(InputError, match=r"height_m\.p05: is given twice"):
+        Study.define(
+            name="mine",
+            evaluations=10,
+            constraints={"height_m.p05": {"min": 0.6}, "height_m": {"p05": {"min": 0.7}}},
+        )
