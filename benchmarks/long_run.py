@@ -25,9 +25,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
 from pareto_monoped.definition.study import Study
-from pareto_monoped.study.run import default_workers, run
+from pareto_monoped.study.run import run
 from pareto_monoped.study.session import Progress
 
 _PARTS = 10
@@ -91,7 +92,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--evaluations", type=int, default=10_000, help="of the study; at least ten generations")
     parser.add_argument("--algorithm", default=DEFAULT_ALGORITHM.name)
-    parser.add_argument("--workers", type=int, default=default_workers())
+    parser.add_argument("--workers", type=int, default=cores())
     parser.add_argument("--db", type=Path, help="keep the study here")
     arguments = parser.parse_args()
     evaluations, searched = arguments.evaluations, arguments.algorithm

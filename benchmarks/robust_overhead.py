@@ -20,9 +20,9 @@ from pathlib import Path
 import numpy as np
 
 from pareto_monoped.analysis.robustness import robust
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.design import NAMES
 from pareto_monoped.storage.reader import read_study
-from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, sobol_samples, variations
 from pareto_monoped.uncertainty.settings import load_uncertainty
@@ -40,7 +40,7 @@ def main(source: Path, count: int, rounds: int) -> None:
         front = data.front()
         rows = front.iloc[np.unique(np.linspace(0, len(front) - 1, count).astype(int))]
         trials = [int(trial) for trial in rows["trial"]]
-        evaluator = stored_simulator(data, workers=default_workers()).evaluator
+        evaluator = stored_simulator(data, workers=cores()).evaluator
         designs, kits = rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)
 
         found = robust(db, ranges, trials=trials[:_COMPARED])

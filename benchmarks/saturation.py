@@ -33,8 +33,7 @@ from search_overhead import Timed
 
 from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.compute.chunks import LEAST_TASK_S
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.staff import Member
+from pareto_monoped.compute.crew import Crew, Member, Staff
 from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.study import Study
 from pareto_monoped.jump.evaluate import Evaluator
@@ -138,10 +137,10 @@ def tasks(asked: argparse.Namespace) -> None:
             print(f"| {name} | {count} | {times} | {each[4]:,.0f} | {each[5]:,.0f} |", flush=True)
 
 
-class _Sleepers:
+class _Sleepers(Staff):
     """A staff of threads; their tasks only sleep, as those of other hosts do in this process."""
 
-    label, replaces, cure = "threads", False, "start again"
+    label, cure = "threads", "start again"
 
     def __init__(self, count: int) -> None:
         self._pools = [ThreadPoolExecutor(1) for _ in range(count)]
@@ -150,17 +149,6 @@ class _Sleepers:
     def present(self) -> Mapping[str, Member]:
         """All of them."""
         return self._members
-
-    def state(self) -> str:
-        """Never asked for: they are always there."""
-        return "is there"
-
-    def is_loss(self, problem: BaseException) -> bool:
-        """None is ever lost."""
-        return False
-
-    def dismiss(self, name: str) -> None:
-        """Nothing."""
 
     def close(self) -> None:
         """End them."""

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from search_reference import FOLDER, corner_of, read
 
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
@@ -36,7 +37,6 @@ from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.search.algorithm import Algorithm
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge, scores
-from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent
@@ -261,7 +261,7 @@ def main() -> None:
     if default_problem:
         problem["reference_point"] = corner_of(arguments.motor)
     first = study(problem, {"name": "random"}, 1, 1)
-    simulator = load_simulator(first, workers=default_workers())
+    simulator = load_simulator(first, workers=cores())
     words = [Path(arguments.motor).stem, Path(arguments.calibration).stem, *problem["objectives"]]
     kept = HERE.parent / "build" / f"search_algorithms-{'-'.join(words)}.json"
     kept.parent.mkdir(exist_ok=True)

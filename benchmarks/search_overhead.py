@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM, OwnSettings
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
@@ -39,7 +40,7 @@ from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.space import AnyCoordinates
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study import session
-from pareto_monoped.study.run import default_workers, run
+from pareto_monoped.study.run import run
 from pareto_monoped.study.simulator import Simulator, load_simulator
 from tests.jump.oracle import jump, motors_of
 
@@ -135,7 +136,7 @@ def main() -> None:
     parser.add_argument("--full", action="store_true", help="8,000 jumps instead of 4,000")
     parser.add_argument("--algorithm", default=DEFAULT_ALGORITHM.name)
     parser.add_argument("--rounds", type=int, default=3, help="interleaved rounds; the medians are printed")
-    parser.add_argument("--workers", type=int, default=default_workers())
+    parser.add_argument("--workers", type=int, default=cores())
     arguments = parser.parse_args()
     evaluations, searched = 8_000 if arguments.full else 4_000, arguments.algorithm
     study = Study.define(name="b", case="C", evaluations=evaluations, audit=False, algorithm=searched)

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from pareto_monoped.compute.chunks import AT_ONCE, in_turn
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
@@ -25,7 +26,6 @@ from pareto_monoped.storage.meta import strict_json
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
-from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, Samples, sobol_samples, variations
 from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Uncertainty
@@ -82,7 +82,7 @@ def robust(
         fresh = rows[~rows["trial"].isin(known)]
         done = len(rows) - len(fresh)
         if len(fresh):
-            threads = workers or default_workers()
+            threads = workers or cores()
             evaluator = stored_simulator(data, workers=threads, executor=executor).evaluator
             step, at_once = (_CHUNK, 1) if executor is None else (_SHARED, AT_ONCE)
             chunks = [fresh.iloc[first : first + step] for first in range(0, len(fresh), step)]

@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.analysis.robustness import refuse_other_jumps
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES, RATIOS, VARIABLES
 from pareto_monoped.errors import InputError, SelectionError, complaint
@@ -20,7 +21,6 @@ from pareto_monoped.storage.meta import strict_json
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
-from pareto_monoped.study.run import default_workers
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.uncertainty.samples import samples_at, variations
 from pareto_monoped.uncertainty.sensitivity import (
@@ -105,7 +105,7 @@ def sensitivity(
             if known is not None and known.settings == settings:
                 found[about] = known.result
                 continue
-            evaluator = stored_simulator(data, workers=workers or default_workers(), executor=executor).evaluator
+            evaluator = stored_simulator(data, workers=workers or cores(), executor=executor).evaluator
             refuse_other_jumps(data, row, evaluator)
             names = tuple(dict.fromkeys((*_ALWAYS, *map(nominal, data.study.objectives.names))))
             names = tuple(name for name in names if name in data.trials)

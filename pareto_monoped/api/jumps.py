@@ -14,6 +14,7 @@ from pareto_monoped.actuator.motors import motor_source, motor_values, stored_mo
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.api.given import one_design, own_calibration, with_motors
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.given import count_of
 from pareto_monoped.design import CONTROL, DEFAULT_RULES, NAMES, PAPER_MOTOR, Design, RuleSet, columns
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
@@ -212,9 +213,8 @@ def jumps_of(
     import pandas as pd
 
     from pareto_monoped.jump.evaluate import Evaluator
-    from pareto_monoped.study.run import default_workers
 
-    threads = count_of("workers", workers) or default_workers()
+    threads = count_of("workers", workers) or cores()
     result = Evaluator(kits[0], calibration, workers=threads, others=kits[1:])(values, motors)
     return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | result.as_columns())
 

@@ -45,13 +45,14 @@ _AT_ONCE = 6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ordered:
-    """Files that are being made; None for what is not wanted."""
+    """Files that are being made, their contents by path or name; None for what is not wanted."""
 
-    #: The STEP file of the assembly, and those of the parts by name
     solids: Future[tuple[bytes, dict[str, bytes]]] | None
-    pack: Future[dict[str, bytes]] | None  #: the assembly pack: content by path
-    sheets: Sequence[Future[dict[str, bytes]]]  #: the parts' drawings by name, some in each
-    pictures: Mapping[str, Future[bytes]]  #: PNG files by name
+    """The STEP file of the assembly, and those of the parts."""
+    pack: Future[dict[str, bytes]] | None
+    sheets: Sequence[Future[dict[str, bytes]]]
+    """The parts' drawings, some in each."""
+    pictures: Mapping[str, Future[bytes]]
 
     def write(self, folder: Path) -> None:
         """Do here what the kernel's process has not begun, wait for the rest, and write everything."""

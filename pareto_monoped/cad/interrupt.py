@@ -17,8 +17,6 @@ from pareto_monoped.cad.write.folder import without_unfinished
 
 GRACE_S = 1.4
 """From the signal until the guard ends the process. Our own choice: a user waits two seconds at most."""
-WORKER_GRACE_S = 0.7
-"""The same for a worker of a batch, whose parent waits for it."""
 EXIT_CODE = 130
 """128 and the number of SIGINT, as shells have it."""
 
@@ -41,7 +39,7 @@ def ending_at(number: signal.Signals, *, grace_s: float = GRACE_S) -> Iterator[N
 
     def end(number: int, frame: FrameType | None) -> None:
         signal.signal(number, signal.SIG_IGN)
-        guard = threading.Timer(grace_s, _end_process, [left])
+        guard = threading.Timer(grace_s, end_process, [left])
         guard.daemon = True
         guard.start()
         # If a library's callback swallows the exception, the guard ends the process: nobody needs to read of it.
@@ -67,15 +65,15 @@ def ending_at(number: signal.Signals, *, grace_s: float = GRACE_S) -> Iterator[N
             signal.signal(number, before)
 
 
-def _end_process(left: threading.Event) -> None:
-    """End this process without waiting for any of its threads.
+def end_process(reported: threading.Event | None = None) -> None:
+    """End this process without waiting for any of its threads; no half-written folder stays.
 
     Args:
-        left: set once the interrupt has reached whoever reports it.
+        reported: set once the interrupt has reached whoever reports it; None: another process does.
     """
     kernel.kill()
     with without_unfinished():
-        if not left.is_set():
+        if reported is not None and not reported.is_set():
             sys.stderr.write("interrupted\n")
             sys.stderr.flush()
         os._exit(EXIT_CODE)

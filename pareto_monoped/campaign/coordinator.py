@@ -1,14 +1,19 @@
 """Runs the studies of a campaign side by side over the cores, and sees to it that each ends or says why not."""
 
+import queue
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from concurrent.futures import Future
+from contextlib import suppress
+from dataclasses import dataclass, field, fields
 
 from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Stored, is_ended, stored_state
-from pareto_monoped.campaign.processes import GRACE_S, WorkerProcess, dismiss, speakers
-from pareto_monoped.campaign.worker import Advanced, Ended, Failed, Noted, Said, Task
+from pareto_monoped.campaign.worker import Advanced, Ended, Noted, run_study
+from pareto_monoped.compute.crew import LostError
+from pareto_monoped.compute.processes import GRACE_S, Processes
 from pareto_monoped.compute.threads import cores as cores_here
+from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.storage.lock import holder
 from pareto_monoped.study.interrupt import Interrupt
 
@@ -26,40 +31,34 @@ _HELD_S = 3.0
 
 @dataclass(slots=True, kw_only=True)
 class Standing:
-    """How one study stands."""
+    """How one study stands; the rate, the time left and the threads are of a running one."""
 
-    place: Place  #: the study and its database
-    state: State  #: ``failed`` studies have a ``reason``
-    #: evaluations, budget: number of trials stored, and how many there shall be
+    place: Place
+    state: State
     evaluations: int
+    """Number of trials stored; there shall be ``budget``."""
     budget: int
-    #: hypervolume, hypervolume_unit: of the front
     hypervolume: float
     hypervolume_unit: str
-    new_evaluations: int = 0  #: trials stored since the campaign was started
-    #: per_second, seconds_left: of a running study
+    new_evaluations: int = 0
+    """Trials stored since the campaign was started."""
     per_second: float = 0.0
     seconds_left: float | None = None
-    threads: int = 0  #: of a running study
-    seconds: float = 0.0  #: running time that is stored, over all sessions
-    front: int = 0  #: number of designs on the front
-    reason: str = ""  #: why it failed
-    deaths: int = 0  #: how often its process was killed
+    threads: int = 0
+    seconds: float = 0.0
+    """Running time that is stored, over all sessions."""
+    front: int = 0
+    """Number of designs on the front."""
+    reason: str = ""
+    """Why it failed."""
+    deaths: int = 0
+    """How often its process was killed."""
 
     @classmethod
     def of(cls, place: Place, stored: Stored) -> "Standing":
         """The standing of a study that no worker has yet."""
-        return cls(
-            place=place,
-            state=stored.state,
-            evaluations=stored.evaluations,
-            budget=stored.budget,
-            hypervolume=stored.hypervolume,
-            hypervolume_unit=stored.hypervolume_unit,
-            seconds=stored.seconds,
-            front=stored.front,
-            reason=stored.reason,
-        )
+        known = {each.name: getattr(stored, each.name) for each in fields(stored) if each.name != "summary"}
+        return cls(place=place, **known)
 
     @property
     def name(self) -> str:
@@ -73,7 +72,7 @@ class Standing:
 
 
 Changed = Callable[[Standing], object]
-"""Hears of a study whose standing has changed."""
+"""Called when a study's standing has changed."""
 
 
 def run_campaign(
@@ -100,7 +99,7 @@ def run_campaign(
         InputError: the address is none, or Dask is not installed.
         WorkerError: no scheduler answers there; no study has begun.
     """
-    to_run = [one for one in standings if _is_to_run(one)]
+    to_run = [one for one in standings if not is_ended(one.place, stored_state(one.place))]
     if scheduler is not None and to_run:
         from pareto_monoped.compute.cluster import threads_of
 
@@ -114,16 +113,12 @@ def standings_of(places: Sequence[Place]) -> list[Standing]:
     return [Standing.of(place, stored_state(place)) for place in places]
 
 
-def _is_to_run(standing: Standing) -> bool:
-    return not is_ended(standing.place, stored_state(standing.place))
-
-
 @dataclass(slots=True, kw_only=True)
 class _Job:
     """A study that a worker is at."""
 
     standing: Standing
-    worker: WorkerProcess
+    worker: Processes
     before: int
     seat: int
     again_with: int | None = None
@@ -138,7 +133,9 @@ class _Coordinator:
     notify: Callable[[str], None]
     waiting: deque[Standing] = field(default_factory=deque)
     jobs: list[_Job] = field(default_factory=list)
-    idle: list[WorkerProcess] = field(default_factory=list)
+    idle: list[Processes] = field(default_factory=list)
+    news: "queue.SimpleQueue[tuple[Processes, object]]" = field(default_factory=queue.SimpleQueue)
+    """What workers say, each with its worker, and their results as futures."""
     slots: int = 1
     told_s: dict[str, float] = field(default_factory=dict)
     """When a line about scheduler or workers was told."""
@@ -166,14 +163,17 @@ class _Coordinator:
                         self._widen()
                     elif time.monotonic() - stopped_s > GRACE_S:
                         break
-                    for worker in list(speakers([job.worker for job in self.jobs], _LISTEN_S)):
-                        self._hear(next(job for job in self.jobs if job.worker is worker))
+                    with suppress(queue.Empty):
+                        self._hear(*self.news.get(timeout=_LISTEN_S))
             return stopped_s is None
         finally:
             for job in self.jobs:
                 job.worker.kill()
+                self.idle.append(job.worker)
                 self._release(job, "unfinished")
-            dismiss(self.idle)
+            for wait in (False, True):  # all of them first, so that they end together
+                for worker in self.idle:
+                    worker.shutdown(wait)
 
     def _fill(self) -> None:
         """Begin waiting studies while there are cores: each has the same share of them, the first ones one more."""
@@ -198,18 +198,25 @@ class _Coordinator:
             chosen.again_with = fair
             chosen.worker.stop()
 
-    def _begin(self, standing: Standing, threads: int, worker: WorkerProcess | None = None) -> None:
-        worker = worker or (self.idle.pop() if self.idle else WorkerProcess())
+    def _begin(self, standing: Standing, threads: int, worker: Processes | None = None) -> None:
+        worker = worker or self._free_worker()
         standing.state, standing.threads = "running", threads
         seat = min(set(range(len(self.jobs) + 1)) - {job.seat for job in self.jobs})
         before = standing.evaluations - standing.new_evaluations
         self.jobs.append(_Job(standing=standing, worker=worker, before=before, seat=seat))
         place = standing.place
-        worker.begin(Task(study=place.study, db=place.db, threads=threads, scheduler=self.scheduler, seat=seat))
+        result = worker.submit(run_study, place.study, place.db, threads, self.scheduler, seat)
+        result.add_done_callback(lambda result: self.news.put((worker, result)))
         self.changed(standing)
 
-    def _hear(self, job: _Job) -> None:
-        said = job.worker.said()
+    def _free_worker(self) -> Processes:
+        if self.idle:
+            return self.idle.pop()
+        worker = Processes(hear=lambda said: self.news.put((worker, said)))
+        return worker
+
+    def _hear(self, worker: Processes, said: object) -> None:
+        job = next(job for job in self.jobs if job.worker is worker)
         standing = job.standing
         match said:
             case Advanced():
@@ -221,10 +228,14 @@ class _Coordinator:
                 self._tell_once(said.line)
             case Noted() if standing.evaluations < standing.budget:  # else of the audit, which the state tells
                 self.notify(f"{standing.name}: {said.line}")
-            case Ended() | Failed():
-                self._end(job, said)
-            case None:
-                self._bury(job)
+            case Future():
+                match said.exception():
+                    case None:
+                        self._end(job, said.result())
+                    case LostError() as death:
+                        self._bury(job, str(death))
+                    case problem:
+                        self._fail(job, problem)
 
     def _tell_once(self, line: str) -> None:
         """Tell what every study says of the same scheduler and workers, once."""
@@ -233,31 +244,33 @@ class _Coordinator:
             self.notify(line)
             self.told_s[line] = now_s
 
-    def _end(self, job: _Job, said: Said) -> None:
-        standing, again = job.standing, job.again_with
-        if isinstance(said, Failed):
-            standing.reason = said.line
-            self._release(job, "failed")
-        elif isinstance(said, Ended):
-            standing.evaluations, standing.hypervolume = said.evaluations, said.hypervolume
-            standing.new_evaluations, standing.front = said.evaluations - job.before, said.front_size
-            standing.seconds = stored_state(standing.place).seconds
-            if said.stop_reason == "interrupted":
-                self._release(job, "unfinished")
-                if again is not None:
-                    self._begin(standing, again, job.worker)
-                    return
-            elif said.front_size == 0:
-                standing.reason = said.remarks[0] if said.remarks else NO_FEASIBLE_DESIGN
-                self._release(job, "failed")
-            else:
-                self._release(job, "finished")
+    def _fail(self, job: _Job, problem: BaseException) -> None:
+        unexpected = "" if isinstance(problem, ParetoMonopedError) else f"unexpected {type(problem).__name__}: "
+        job.standing.reason = " ".join(f"{unexpected}{problem}".split())
+        self._release(job, "failed")
         self.idle.append(job.worker)
 
-    def _bury(self, job: _Job) -> None:
+    def _end(self, job: _Job, ended: Ended) -> None:
+        standing, again = job.standing, job.again_with
+        standing.evaluations, standing.hypervolume = ended.evaluations, ended.hypervolume
+        standing.new_evaluations, standing.front = ended.evaluations - job.before, ended.front_size
+        standing.seconds = stored_state(standing.place).seconds
+        if ended.stop_reason == "interrupted":
+            self._release(job, "unfinished")
+            if again is not None:
+                self._begin(standing, again, job.worker)
+                return
+        elif ended.front_size == 0:
+            standing.reason = ended.remarks[0] if ended.remarks else NO_FEASIBLE_DESIGN
+            self._release(job, "failed")
+        else:
+            self._release(job, "finished")
+        self.idle.append(job.worker)
+
+    def _bury(self, job: _Job, how: str) -> None:
         """A worker has died: its study goes on later, unless that has happened before."""
-        standing, how = job.standing, job.worker.death()
-        job.worker.kill()
+        standing = job.standing
+        job.worker.shutdown()
         standing.deaths += 1
         if standing.deaths < MOST_DEATHS:
             self._release(job, "unfinished")

@@ -234,7 +234,7 @@ def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
     from rich.progress import Progress as Bar
 
     from pareto_monoped.cad.batch import run_all
-    from pareto_monoped.compute.staff import EXPORT_LIMITS
+    from pareto_monoped.compute.crew import EXPORT_LIMITS
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Bar(*columns, console=new_console(stderr=True)) as bar:

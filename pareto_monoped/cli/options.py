@@ -9,9 +9,9 @@ What the shell completes besides commands, options and files: names of motors, v
 A name is looked up when the shell asks for it; nothing that takes longer than a key press is imported for that.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ from pareto_monoped.storage.server.address import is_address
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from pareto_monoped.compute.staff import Limits
+    from pareto_monoped.compute.crew import Limits
 
 
 class Local(click.Path):
@@ -254,10 +254,10 @@ def chosen_motors(motor: str | None, hip_motor: str | None, knee_motor: str | No
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Where:
-    """Where the work is done: at most one of them is given; on threads if none is."""
+    """Where the work is done: in a number of processes, or at a Dask scheduler's address; on threads if neither."""
 
-    processes: int | None = None  #: number of processes of this machine
-    scheduler: str | None = None  #: address of a Dask scheduler
+    processes: int | None = None
+    scheduler: str | None = None
 
 
 scheduler_option = click.option(
@@ -282,8 +282,9 @@ def where(processes: int | None, scheduler: str | None, workers: int | None) -> 
     return Where(processes=processes, scheduler=scheduler)
 
 
-@contextmanager
-def executor_at(place: Where, *, limits: "Limits | None" = None, extra: str | None = None) -> Iterator[Executor | None]:
+def executor_at(
+    place: Where, *, limits: "Limits | None" = None, extra: str | None = None
+) -> AbstractContextManager[Executor | None]:
     """The executor for a place, None for threads; what happens to its workers is said on standard error.
 
     Args:
@@ -292,16 +293,12 @@ def executor_at(place: Where, *, limits: "Limits | None" = None, extra: str | No
         extra: whose packages other hosts must have in the same versions, too.
     """
     if place.processes is None and place.scheduler is None:
-        yield None
-        return
+        return nullcontext()
     from pareto_monoped.jump.peers import cluster, processes
 
     def tell(line: str) -> None:
         echo(line, err=True)
 
     if place.scheduler is not None:
-        with cluster(place.scheduler, tell=tell, limits=limits, extra=extra) as crew:
-            yield crew
-    else:
-        with processes(place.processes, tell=tell, limits=limits) as crew:
-            yield crew
+        return cluster(place.scheduler, tell=tell, limits=limits, extra=extra)
+    return processes(place.processes, tell=tell, limits=limits)

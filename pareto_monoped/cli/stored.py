@@ -50,15 +50,15 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
     """
     from pareto_monoped.analysis.verify import require_sound
     from pareto_monoped.analysis.verify import verify as verify_study
+    from pareto_monoped.compute.threads import cores
     from pareto_monoped.storage.front_reader import foreign_note
     from pareto_monoped.storage.seals import UNSEALED
-    from pareto_monoped.study.run import default_workers
 
     place = where(processes, scheduler, workers)
     if place != Where() and not simulate:
         raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
     with executor_at(place) as executor:
-        result = verify_study(db, simulate=simulate, workers=workers or default_workers(), executor=executor)
+        result = verify_study(db, simulate=simulate, workers=workers or cores(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
     if result.foreign:

@@ -12,7 +12,7 @@ from contextlib import closing, suppress
 from ssl import SSLError
 from typing import TYPE_CHECKING, Any
 
-from pareto_monoped.compute.staff import Member
+from pareto_monoped.compute.crew import Member, Staff
 from pareto_monoped.errors import InputError, WorkerError, require_extra
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _CONNECT_S = 10.0
 _NO_WORKER = "has no worker"
 
 
-class DaskWorkers:
+class DaskWorkers(Staff):
     """Workers that a scheduler knows, as they come and go.
 
     Args:
@@ -40,7 +40,6 @@ class DaskWorkers:
         WorkerError: no scheduler answers.
     """
 
-    replaces = False
     cure = "start scheduler and workers, then give the same command again"
 
     def __init__(self, address: str) -> None:
@@ -86,9 +85,6 @@ class DaskWorkers:
 
         lost = (FutureCancelledError, FuturesCancelledError, KilledWorker, NoValidWorkerError, CommClosedError)
         return isinstance(problem, (CancelledError, *lost))
-
-    def dismiss(self, name: str) -> None:
-        """Nothing: workers belong to the scheduler."""
 
     def close(self) -> None:
         """Leave the scheduler; its workers stay."""

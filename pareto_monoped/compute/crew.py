@@ -2,22 +2,22 @@
 
 A ``Crew`` hands each task to one worker at a time and does it again elsewhere if that worker is lost. A task has one
 result, the first that comes; tasks must therefore be pure functions. Who the workers are and whether they are still
-there is known to a ``Staff``: processes of this machine (``compute.local``) or the workers of a Dask scheduler
+there is known to a ``Staff``: processes of this machine (``compute.processes``) or the workers of a Dask scheduler
 (``compute.cluster``).
 """
 
 import queue
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Executor, Future, InvalidStateError
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from pareto_monoped.compute.staff import Limits, Member, Staff
 from pareto_monoped.errors import WorkerError
 
 _TICK_S = 0.1
@@ -34,11 +34,80 @@ _LATE = 4.0
 """A task that takes so many times as long as usual is also given to a worker that has nothing to do."""
 
 
+class LostError(Exception):
+    """A worker could not take a task, or has ended under it; the message says how."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """A worker; an ``executor`` that does tasks on this worker and nowhere else."""
+
+    name: str
+    """As the user knows it, such as ``worker tcp://10.0.0.7:40001``."""
+    executor: Executor
+    threads: int = 1
+    """That a task of it may use."""
+    slots: int = 1
+    """Tasks that it does at a time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more."""
+
+    task_s: float = 60.0
+    """Least time after which a worker that does not answer counts as hung."""
+    times: float = 20.0
+    """The same as a multiple of the longest task so far."""
+    first_s: float = 300.0
+    """The same for a worker's first task, for which it may have to compile."""
+    absent_s: float = 60.0
+    """How long to wait for scheduler and workers before giving up."""
+
+
+EXPORT_LIMITS = Limits(task_s=900.0)
+"""For tasks that are exports: each takes ten seconds to a minute, on a busy machine several. Our own choice."""
+
+
+class Staff(ABC):
+    """Workers that come and go."""
+
+    label: str
+    """Of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``."""
+    cure: str
+    """What the user can do if nobody is there."""
+    replaces = False
+    """Whether a worker that is dismissed is ended and replaced."""
+
+    @abstractmethod
+    def present(self) -> Mapping[str, Member]:
+        """Who is there now, by name; returns at once."""
+
+    def state(self) -> str:
+        """Why nobody may be there, in a few words."""
+        return "has no worker"
+
+    def is_loss(self, problem: BaseException) -> bool:
+        """Whether a task failed because its worker was lost, and not by itself."""
+        return False
+
+    def dismiss(self, name: str) -> None:  # noqa: B027 - nothing, where workers belong to somebody else
+        """Forget a worker."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let all of them go."""
+
+
 @dataclass(eq=False, slots=True)
-class _Task:
+class Task:
+    """A function of a module, by whose name another process finds it, with its arguments."""
+
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
-    future: Future[Any]
+    future: Future[Any] = field(default_factory=Future)
+    number: int = 0
+    """Among the tasks of its executor."""
     losses: int = 0
     holders: set[str] = field(default_factory=set)
 
@@ -56,11 +125,10 @@ class _Post:
 
 @dataclass(eq=False, slots=True)
 class _Given:
-    """A task in the hands of a worker since ``since_s``, and the worker's answer."""
+    """A task in the hands of a worker since ``since_s``."""
 
-    task: _Task
+    task: Task
     since_s: float
-    answer: Future[Any]
 
 
 Check = Callable[[Any], str | None]
@@ -93,7 +161,7 @@ class Crew(Executor):
         self._seat = seat
         self._staff, self._greeting, self._check, self._tell = staff, greeting, check, tell
         self._limits = limits or Limits()
-        self._waiting: deque[_Task] = deque()
+        self._waiting: deque[Task] = deque()
         self._posts: dict[str, _Post] = {}
         self._refused: dict[str, str] = {}
         self._longest_s = self._usual_s = 0.0
@@ -102,7 +170,7 @@ class Crew(Executor):
         self._said_alone = False
         self._news: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._door = threading.Lock()
-        self._closed = self._ended = False
+        self._closed, self._ended = False, threading.Event()
         self._thread = threading.Thread(target=self._work, name="crew", daemon=True)
         self._thread.start()
 
@@ -110,7 +178,7 @@ class Crew(Executor):
         """Have a task done; see ``concurrent.futures.Executor``. Named arguments are not taken."""
         if named:
             raise TypeError("tasks of a crew take positional arguments only")
-        task = _Task(function, arguments, Future())
+        task = Task(function, arguments)
         with self._door:
             if self._closed:
                 raise RuntimeError("cannot schedule new futures after shutdown")
@@ -122,22 +190,19 @@ class Crew(Executor):
         with self._door:
             self._closed = True
         # Behind the last task in the queue, so that each task is known when what is open is called off.
-        self._news.put(self._end)
+        self._news.put(self._ended.set)
         if self._thread is not threading.current_thread():
             self._thread.join()
         self._staff.close()
 
     # Everything below runs in the crew's thread.
 
-    def _end(self) -> None:
-        self._ended = True
-
     def _work(self) -> None:
-        while not self._ended:
+        while not self._ended.is_set():
             try:
                 with suppress(queue.Empty):
                     self._news.get(timeout=_TICK_S)()
-                    while not self._ended:
+                    while not self._ended.is_set():
                         self._news.get_nowait()()
                 self._meet()
                 self._watch()
@@ -158,22 +223,17 @@ class Crew(Executor):
         for name, member in present.items():
             if name not in self._posts and name not in self._refused:
                 post = self._posts[name] = _Post(member)
-                task = _Task(self._greeting, (member.threads,), Future())
+                task = Task(self._greeting, (member.threads,))
                 task.future.add_done_callback(partial(self._greeted, name))
                 self._send(post, task)
-        for name in [name for name in self._refused if name not in present]:
-            del self._refused[name]
+        self._refused = {name: why for name, why in self._refused.items() if name in present}
 
     def _greeted(self, name: str, answer: "Future[Any]") -> None:
         if (post := self._posts.get(name)) is None or answer.cancelled():
             return
-        problem, text = answer.exception(), None
-        if problem is None:
-            try:
-                text = self._check(answer.result())
-            except Exception as error:  # the answer of another version may have another form
-                problem = error
-        if problem is not None:
+        try:
+            text = self._check(answer.result())
+        except Exception as problem:  # the answer of another version may have another form
             text = f"{type(problem).__name__}: {problem}"
         if text is None:
             post.accepted, self._stillborn = True, 0
@@ -183,20 +243,21 @@ class Crew(Executor):
         del self._posts[name]
         self._tell(f"{name} is refused: {text}")
 
-    def _send(self, post: _Post, task: _Task) -> None:
+    def _send(self, post: _Post, task: Task) -> None:
         try:
             answer = post.member.executor.submit(task.function, *task.arguments)
         except Exception as problem:  # a broken pool or a closed client refuses tasks in many ways
             answer = Future()
             answer.set_exception(LostError(str(problem)))
         task.holders.add(post.member.name)
-        given = _Given(task, time.monotonic(), answer)
+        given = _Given(task, time.monotonic())
         post.given.append(given)
-        answer.add_done_callback(lambda _: self._news.put(lambda: self._answered(post, given)))
+        answer.add_done_callback(lambda answer: self._news.put(lambda: self._answered(post, given, answer)))
 
-    def _answered(self, post: _Post, given: _Given) -> None:
-        task, answer, now = given.task, given.answer, time.monotonic()
-        if answer.cancelled() or self._is_lost(answer):
+    def _answered(self, post: _Post, given: _Given, answer: "Future[Any]") -> None:
+        task, now = given.task, time.monotonic()
+        problem = None if answer.cancelled() else answer.exception()
+        if answer.cancelled() or isinstance(problem, LostError) or (problem and self._staff.is_loss(problem)):
             if given in post.given and self._posts.get(post.member.name) is post:
                 self._lose(post.member.name, "was lost", say=self._staff.replaces)
             return
@@ -212,14 +273,10 @@ class Crew(Executor):
             self._tell(f"{post.member.name} answers again")
         if task.future.done():  # another worker was first
             return
-        if (problem := answer.exception()) is not None:
+        if problem is not None:
             task.future.set_exception(problem)
         else:
             task.future.set_result(answer.result())
-
-    def _is_lost(self, answer: "Future[Any]") -> bool:
-        problem = answer.exception()
-        return isinstance(problem, LostError) or (problem is not None and self._staff.is_loss(problem))
 
     def _lose(self, name: str, how: str, *, say: bool = True) -> None:
         """Take back what a worker was given, and forget the worker; if it is still there, it is greeted anew."""
@@ -284,7 +341,7 @@ class Crew(Executor):
             if (late := self._late(idle)) is not None:
                 self._send(idle, late)
 
-    def _late(self, idle: _Post) -> _Task | None:
+    def _late(self, idle: _Post) -> Task | None:
         limit_s = max(1.0, _LATE * self._usual_s)
         now = time.monotonic()
         for post in self._posts.values():
@@ -303,35 +360,32 @@ class Crew(Executor):
             self._alone_since_s, self._said_alone = time.monotonic(), False
         if not self._waiting:
             return
-        coming = [post for post in self._posts.values() if not post.suspended]
-        waited_s, label = time.monotonic() - self._alone_since_s, self._staff.label
+        coming = any(not post.suspended for post in self._posts.values())
+        waited_s, label, (why, cure) = time.monotonic() - self._alone_since_s, self._staff.label, self._absence()
         if self._refused and not self._posts:
-            why = next(iter(self._refused.values()))
-            self._fail(
-                WorkerError(
-                    f"{label}: none of its {len(self._refused)} workers may be used ({why}); install the same versions "
-                    "there, or leave the option out"
-                )
+            complaint = next(iter(self._refused.values()))
+            why, cure = (
+                f"none of its {len(self._refused)} workers may be used ({complaint})",
+                "install the same versions there, or leave the option out",
             )
         elif self._stillborn >= _STILLBORN:
-            self._fail(WorkerError(f"{label}: {self._stillborn} ended before they did anything; {self._staff.cure}"))
+            why, cure = f"{self._stillborn} ended before they did anything", self._staff.cure
         elif waited_s > self._limits.absent_s and not coming:
-            self._fail(WorkerError(f"{label}: {self._absence()}, for {self._limits.absent_s:.0f} s; {self._cure()}"))
-        elif waited_s > _PATIENT_S and not coming and not self._said_alone:
-            self._said_alone = True
-            self._tell(f"{label}: {self._absence()}; waiting up to {self._limits.absent_s:.0f} s")
+            why = f"{why}, for {self._limits.absent_s:.0f} s"
+        else:
+            if waited_s > _PATIENT_S and not coming and not self._said_alone:
+                self._said_alone = True
+                self._tell(f"{label}: {why}; waiting up to {self._limits.absent_s:.0f} s")
+            return
+        self._fail(WorkerError(f"{label}: {why}; {cure}"))
 
-    def _absence(self) -> str:
-        """Why nobody works although nobody is coming: those who are there do not answer, or nobody is there."""
+    def _absence(self) -> tuple[str, str]:
+        """Why no worker is available, and what the user can do."""
         count = len(self._posts)
         if not count:
-            return self._staff.state()
-        return "its only worker does not answer" if count == 1 else f"none of its {count} workers answers"
-
-    def _cure(self) -> str:
-        if not self._posts:
-            return self._staff.cure
-        return "end what hangs and start it again, then give the same command again"
+            return self._staff.state(), self._staff.cure
+        why = "its only worker does not answer" if count == 1 else f"none of its {count} workers answers"
+        return why, "end what hangs and start it again, then give the same command again"
 
     def _fail(self, problem: Exception) -> None:
         for task in self._open():
@@ -341,11 +395,7 @@ class Crew(Executor):
         self._stillborn = 0
         self._alone_since_s = None
 
-    def _open(self) -> list[_Task]:
+    def _open(self) -> list[Task]:
         """Tasks without a result."""
         tasks = [*self._waiting, *(given.task for post in self._posts.values() for given in post.given)]
         return [task for task in dict.fromkeys(tasks) if not task.future.done() and task.function is not self._greeting]
-
-
-class LostError(Exception):
-    """A worker could not take a task."""

@@ -4,8 +4,7 @@ import hashlib
 import os
 import platform
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
@@ -16,9 +15,8 @@ from threadpoolctl import threadpool_info
 from pareto_monoped import __version__
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.compute.cluster import DaskWorkers
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.local import LocalProcesses
-from pareto_monoped.compute.staff import Limits, Staff
+from pareto_monoped.compute.crew import Crew, Limits, Staff
+from pareto_monoped.compute.processes import LocalProcesses
 from pareto_monoped.compute.threads import cores, set_task_threads
 from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_MOTOR, UPPER, complete
 from pareto_monoped.errors import EXTRAS, InputError
@@ -34,14 +32,15 @@ _DRAWN = 12
 class Facts:
     """What decides the numbers of a worker."""
 
-    versions: dict[str, str]  #: of this package and of those that compute
-    #: system, machine: operating system and processor
+    versions: dict[str, str]
+    """Of this package and of those that compute."""
     system: str
     machine: str
-    numbers: str  #: digest of every measure of the probe designs under every shipped calibration, to the last bit
-    #: Kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is not compared, but
-    #: is the likeliest reason of other numbers between hosts.
+    numbers: str
+    """Digest of every measure of the probe designs under every shipped calibration, to the last bit."""
     linear_algebra: str
+    """Kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is not compared, but
+    is the likeliest reason of other numbers between hosts."""
 
 
 _lock = threading.Lock()
@@ -129,7 +128,6 @@ def complaint(theirs: Facts, extra: str | None = None) -> str | None:
     return None
 
 
-@contextmanager
 def crew_of(
     staff: Staff,
     *,
@@ -137,8 +135,8 @@ def crew_of(
     limits: Limits | None = None,
     seat: int = 0,
     extra: str | None = None,
-) -> Iterator[Crew]:
-    """An executor over the workers of a staff who compute the same numbers; closed with the block.
+) -> Crew:
+    """An executor over the workers of a staff who compute the same numbers; a context that closes both.
 
     Args:
         staff: the workers.
@@ -151,23 +149,21 @@ def crew_of(
     crew = Crew(staff, greeting=greet, check=check, tell=tell, limits=limits, seat=seat)
     try:
         facts()  # while the workers do the same
-        yield crew
-    finally:
+    except BaseException:
         crew.shutdown()
+        raise
+    return crew
 
 
-@contextmanager
 def processes(
     count: int | None = None, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
-) -> Iterator[Crew]:
-    """An executor over fresh processes of this machine, which share its cores.
-
-    The script that calls it must be importable: its work starts under ``if __name__ == "__main__"``.
+) -> Crew:
+    """An executor over fresh processes of this machine, which share its cores; see ``crew_of``.
 
     Args:
         count: number of processes, one per core if None.
-        tell: called with a line for the user when a worker is lost or refused.
-        limits: how long to wait for tasks and workers.
+        tell: see ``crew_of``.
+        limits: see ``crew_of``.
 
     Raises:
         InputError: no process.
@@ -175,11 +171,9 @@ def processes(
     if count is not None and count < 1:
         raise InputError(complaint_of("processes", count, "a whole number from 1", "give None for one per core"))
     number = count or cores()
-    with crew_of(LocalProcesses(number, max(cores() // number, 1)), tell=tell, limits=limits) as crew:
-        yield crew
+    return crew_of(LocalProcesses(number, max(cores() // number, 1)), tell=tell, limits=limits)
 
 
-@contextmanager
 def cluster(
     address: str,
     *,
@@ -187,15 +181,15 @@ def cluster(
     limits: Limits | None = None,
     seat: int | None = None,
     extra: str | None = None,
-) -> Iterator[Crew]:
-    """An executor over the workers of a Dask scheduler; needs the extra ``cluster``.
+) -> Crew:
+    """An executor over the workers of a Dask scheduler, see ``crew_of``; needs the extra ``cluster``.
 
     Dask sends tasks by pickle: only among hosts that trust each other.
 
     Args:
         address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
-        tell: called with a line for the user when a worker is lost or refused.
-        limits: how long to wait for tasks and workers.
+        tell: see ``crew_of``.
+        limits: see ``crew_of``.
         seat: see ``Crew``; by default the number of this process.
         extra: whose packages must be the same on every worker, too: ``cad`` for exports.
 
@@ -204,5 +198,4 @@ def cluster(
         WorkerError: no scheduler answers.
     """
     seat = os.getpid() if seat is None else seat
-    with crew_of(DaskWorkers(address), tell=tell, limits=limits, seat=seat, extra=extra) as crew:
-        yield crew
+    return crew_of(DaskWorkers(address), tell=tell, limits=limits, seat=seat, extra=extra)

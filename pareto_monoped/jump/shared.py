@@ -71,12 +71,7 @@ def jumps_of(text: str, designs: Floats, motors: NDArray[np.intp], variations: V
 
 
 class SharedEvaluator(Evaluator):
-    """An ``Evaluator`` whose jumps an executor shares out. The results are the same to the last bit.
-
-    Attributes:
-        executor: does the jumps.
-        pace: how long one takes.
-    """
+    """An ``Evaluator`` whose jumps an executor shares out at its pace. The results are the same to the last bit."""
 
     def __init__(
         self,

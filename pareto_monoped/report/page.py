@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from pareto_monoped import __version__
 from pareto_monoped.analysis.choices import WORDS
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
@@ -49,7 +50,6 @@ from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.seals import UNSEALED
-from pareto_monoped.study.run import default_workers
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.ratiomap import ActuatorMap
@@ -232,7 +232,7 @@ def payload_of(
         note(UNSEALED)
     models = read_models(exports, studies, note=note) if exports is not None else [{} for _ in studies]
     frames = frames_for(sum(len(data.front()) for data in studies))
-    again = [resimulate(data, most_jumps=most_jumps, frames=frames, workers=default_workers()) for data in studies]
+    again = [resimulate(data, most_jumps=most_jumps, frames=frames, workers=cores()) for data in studies]
     sources = [
         Source(
             data=data,

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from pymoo.core.problem import Problem
 
+from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.given import count_of
 from pareto_monoped.definition.study import Study
 from pareto_monoped.search.algorithm import Floats
 from pareto_monoped.study.outside import JumpFunction
 from pareto_monoped.study.own_functions import OwnFunction
-from pareto_monoped.study.run import default_workers
 
 
 class MonopedProblem(Problem):  # type: ignore[misc]  # pymoo has no types
@@ -47,7 +47,7 @@ class MonopedProblem(Problem):  # type: ignore[misc]  # pymoo has no types
         constraints: OwnFunction | Sequence[OwnFunction] = (),
         workers: int | None = None,
     ) -> None:
-        threads = count_of("workers", workers) or default_workers()
+        threads = count_of("workers", workers) or cores()
         self.jump = JumpFunction(study, objectives=objectives, constraints=constraints, workers=threads)
         lower, upper = self.jump.space.edges
         super().__init__(

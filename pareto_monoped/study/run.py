@@ -84,11 +84,6 @@ def _silent(_: Any) -> None:
     """Ignore a report."""
 
 
-def default_workers() -> int:
-    """Number of cores that this process may use."""
-    return cores()
-
-
 def run(
     study: Study,
     db: StudyPlace,
@@ -125,7 +120,7 @@ def run(
     if isinstance(db, Server) and db.schema is None:
         db = db.of_schema(schema_for(study.name))
     with locked(db) as lock:
-        threads = workers or default_workers()
+        threads = workers or cores()
         if is_vacant(db):
             lock.acknowledge(0)
             study = shared_anew(study, evaluations)
@@ -178,7 +173,7 @@ def resume(
     read_study(db)
     with locked(db) as lock:
         data = _checked(db, lock)
-        simulator = stored_simulator(data, workers=workers or default_workers(), executor=executor)
+        simulator = stored_simulator(data, workers=workers or cores(), executor=executor)
         _refuse_changes(data, data.study, simulator, db)
         _refuse_fewer(data, evaluations, db)
         budget = evaluations or data.meta.budget

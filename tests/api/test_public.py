@@ -26,6 +26,17 @@ def folder(tmp_path_factory):
     return folder
 
 
+def test_one_jump_loads_no_storage_and_no_search():
+    """The number of cores came from the module that runs studies, and 49 modules and sqlite3 with it."""
+    code = (
+        "import sys, pareto_monoped as pm; pm.simulate(pm.PAPER_CASES['C'].design)\n"
+        "names = ('sqlite3', 'optuna', 'pymoo', 'pareto_monoped.study.run', 'pareto_monoped.storage.store')\n"
+        "print([name for name in names if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 def test_importing_the_package_imports_nothing_else():
     code = (
         "import sys; before = set(sys.modules); import pareto_monoped; dir(pareto_monoped)\n"

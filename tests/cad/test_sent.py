@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from pareto_monoped.cad import batch, jobs, sent
+from pareto_monoped.cad import batch, jobs
 from pareto_monoped.cad.records import is_made
 from pareto_monoped.errors import CheckError, OutputError
 
@@ -58,7 +58,7 @@ def test_a_failure_names_the_folder_of_the_job_and_leaves_nothing(here, tmp_path
     def fail(*arguments, **named):
         raise CheckError(f"export of {arguments[3]}: fails; nothing was written")
 
-    monkeypatch.setattr(sent, "export_design", fail)
+    monkeypatch.setattr(batch, "export_design", fail)
     job = replace(here, folder=tmp_path / "mine")
     with Counting(1) as pool, pytest.raises(CheckError) as caught:
         batch.run_all([job], workers=1, executor=pool)
@@ -102,15 +102,17 @@ def test_a_worker_makes_what_the_job_asks_for(asked, tmp_path, monkeypatch):
     seen = []
 
     def record(design, maps, calibration, folder, **named):
+        del named["progress"]
         seen.append((design, calibration, named))
         folder.mkdir()
         (folder / "a").write_bytes(b"x")
 
-    monkeypatch.setattr(sent, "export_design", record)
+    monkeypatch.setattr(batch, "export_design", record)
     source = {"trial": 7}
-    job = replace(asked, folder=tmp_path / "mine", source=source, strength=True, hip_rad=0.1, knee_rad=-0.2)
-    assert sent.made_files(job, "mine") == {"a": b"x"}
-    wanted = {"formats": job.formats, "source": source, "strength": True, "hip_rad": 0.1, "knee_rad": -0.2}
+    job = replace(asked, folder=tmp_path / "mine", source=source, strength=True, hip_rad=0.1, knee_rad=-0.2, force=True)
+    assert batch.made_files(job, "mine") == {"a": b"x"}
+    wanted = {"formats": job.formats, "force": False, "source": source, "strength": True}
+    wanted |= {"hip_rad": 0.1, "knee_rad": -0.2}
     assert seen == [(job.design, job.calibration, wanted)]
     assert list(tmp_path.iterdir()) == []
 
@@ -126,9 +128,9 @@ def test_a_process_makes_one_export_at_a_time(asked, monkeypatch):
         at_work.pop()
         arguments[3].mkdir()
 
-    monkeypatch.setattr(sent, "export_design", busy)
+    monkeypatch.setattr(batch, "export_design", busy)
     with ThreadPoolExecutor(4) as pool:
-        assert list(pool.map(sent.made_files, [asked] * 4, ["x"] * 4)) == [{}] * 4
+        assert list(pool.map(batch.made_files, [asked] * 4, ["x"] * 4)) == [{}] * 4
     assert most == [1] * 4
 
 
@@ -141,11 +143,11 @@ def test_after_a_failure_exports_that_have_not_begun_are_called_off(asked, tmp_p
             told.wait(60.0)
         raise CheckError("fails")
 
-    monkeypatch.setattr(sent, "export_design", fail)
+    monkeypatch.setattr(batch, "export_design", fail)
     many = [replace(asked, folder=tmp_path / str(number)) for number in range(6)]
     with ThreadPoolExecutor(1) as pool:
         with pytest.raises(CheckError):
-            list(sent.exported(many, pool))
+            list(batch.sent(many, pool))
         told.set()
     assert len(begun) <= 2
 
@@ -156,8 +158,8 @@ def test_an_earlier_export_is_replaced_only_by_force(here, tmp_path, force):
     shutil.copytree(here.folder, job.folder)
     other = contents(here.folder) | {"own.txt": b"new"}
     if force:
-        assert list(sent.exported([job], Answering(other))) == [job]
+        assert list(batch.sent([job], Answering(other))) == [job]
     else:
         with pytest.raises(OutputError, match=r"is not empty; .* or --force"):
-            list(sent.exported([job], Answering(other)))
+            list(batch.sent([job], Answering(other)))
     assert (job.folder / "own.txt").exists() is force

@@ -59,7 +59,7 @@ class Running:
             text=True,
             check=False,
         )
-        return [int(line.split()[0]) for line in said.stdout.splitlines() if "spawn_main" in line]
+        return [int(line.split()[0]) for line in said.stdout.splitlines() if "serve(int" in line]
 
     def until(self, condition, seconds=120.0):
         """Wait until something holds, or the command has ended."""

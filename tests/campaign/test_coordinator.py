@@ -1,6 +1,5 @@
 """Studies side by side in processes of their own: equal to those run alone, whatever happens to the processes."""
 
-import multiprocessing
 import os
 import signal
 
@@ -12,7 +11,9 @@ from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
+from tests.campaign.killed import gone
 from tests.campaign.test_grid import written
+from tests.compute.tasks import ids_of
 
 SMALL = 'name = "grid"\n[study]\nevaluations = 40\naudit = false\nalgorithm = { name = "nsga2", population = 10 }\n'
 
@@ -48,10 +49,11 @@ def test_equal_to_studies_run_alone_also_with_other_shares_and_after_being_stopp
         assert (one.evaluations, one.new_evaluations) == (len(expected.trials), len(expected.trials))
 
 
-def test_what_fails_says_why_and_stops_nothing_else(tmp_path):
+def test_what_fails_says_why_and_stops_nothing_else(tmp_path, monkeypatch):
     head = SMALL.replace("evaluations = 40", "evaluations = 20")
     axes = 'motors = ["Nope.toml", "U8"]\nconstraints = [{}, { mass_kg = { max = 0.1 } }]'
     several = standings(tmp_path, axes, head)
+    pids = Killer(monkeypatch, 0).pids
     assert run_campaign(several, cores=2, changed=lambda _: None, notify=lambda _: None)
     by_state = {}
     for one in several:
@@ -61,7 +63,7 @@ def test_what_fails_says_why_and_stops_nothing_else(tmp_path):
     assert reasons.keys() == {"Nope_study", "Nope_mass_kg-max-0.1", "U8_mass_kg-max-0.1"}
     assert "no such file; check the path" in reasons["Nope_study"]
     assert "mass" in reasons["U8_mass_kg-max-0.1"]
-    assert multiprocessing.active_children() == []  # idle workers are let go
+    assert all(map(gone, pids))  # idle workers are let go
     # Ended is ended: only what could not be run is tried again.
     seen = []
     again = standings(tmp_path, axes, head)
@@ -77,12 +79,12 @@ class Killer:
         self.left, self.pids, self.lines = times, [], []
         killer = self
 
-        class Watched(coordinator.WorkerProcess):
-            def __init__(self):
-                super().__init__()
-                killer.pids.append(self.process_id)
+        class Watched(coordinator.Processes):
+            def __init__(self, hear):
+                super().__init__(hear=hear)
+                killer.pids += ids_of(self)
 
-        monkeypatch.setattr(coordinator, "WorkerProcess", Watched)
+        monkeypatch.setattr(coordinator, "Processes", Watched)
 
     def __call__(self, one):
         if self.left and one.state == "running" and one.per_second:

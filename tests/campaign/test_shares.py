@@ -2,7 +2,7 @@
 
 import os
 import signal
-import time
+from concurrent.futures import Future
 
 import pytest
 from hypothesis import given
@@ -11,14 +11,21 @@ from hypothesis import strategies as st
 from pareto_monoped.campaign import coordinator as module
 from pareto_monoped.campaign.coordinator import WORTH_S, _Coordinator, _Job
 from pareto_monoped.campaign.worker import Advanced, Ended, Noted
+from pareto_monoped.compute.crew import LostError
 from tests.campaign.test_coordinator import standings
 
 
 class Stopping:
-    """A worker that is told to stop, and says what it is given to say."""
+    """A worker that is told to stop, and remembers what it was given."""
 
-    stopped = killed = 0
-    words = None
+    stopped = killed = shut = 0
+
+    def __init__(self, hear=None):
+        self.given = []
+
+    def submit(self, function, *arguments):
+        self.given.append(arguments)
+        return Future()
 
     def stop(self):
         self.stopped += 1
@@ -26,11 +33,18 @@ class Stopping:
     def kill(self):
         self.killed += 1
 
-    def said(self):
-        return self.words
+    def shutdown(self, wait=True):
+        self.shut += 1
 
-    def death(self):
-        return "its process was ended by SIGKILL"
+
+def ending(result=None, problem=None):
+    """What is heard when a study has ended."""
+    future = Future()
+    if problem is None:
+        future.set_result(result)
+    else:
+        future.set_exception(problem)
+    return future
 
 
 class Recording(_Coordinator):
@@ -77,20 +91,15 @@ def test_with_a_scheduler_as_many_studies_run_as_there_are_cores(several, cores,
 
 def test_studies_side_by_side_have_seats_of_their_own(several, monkeypatch):
     """So that they give their tasks to different workers of a scheduler; a seat that has become free is taken again."""
-    told = []
-
-    class Listening(Stopping):
-        def begin(self, task):
-            told.append(task.seat)
-
-    monkeypatch.setattr("pareto_monoped.campaign.coordinator.WorkerProcess", Listening)
+    made_workers = []
+    monkeypatch.setattr(module, "Processes", lambda hear: made_workers.append(Stopping()) or made_workers[-1])
     made = _Coordinator(3, "tcp://x:1", lambda _: None, lambda _: None)
     made.waiting.extend(several)
     made.slots = 3
     made._fill()
     made._release(made.jobs[1], "finished")
     made._fill()
-    assert told == [0, 1, 2, 1]
+    assert [arguments[-1] for worker in made_workers for arguments in worker.given] == [0, 1, 2, 1]
 
 
 @pytest.mark.parametrize(
@@ -128,7 +137,7 @@ def test_a_study_does_not_widen_over_a_scheduler_or_while_others_wait(several, s
 
 
 def ended(**other):
-    fields = {"evaluations": 60, "new_evaluations": 30, "front_size": 4, "hypervolume": 1.0, "remarks": ()}
+    fields = {"evaluations": 60, "front_size": 4, "hypervolume": 1.0, "remarks": ()}
     return Ended(**fields, **{"stop_reason": "interrupted"} | other)
 
 
@@ -152,11 +161,9 @@ def test_trials_of_earlier_sessions_are_not_new(several):
     made._fill()
     (job,) = made.jobs
     job.before = 30
-    job.worker.words = Advanced(evaluations=50, per_second=1.0, seconds_left=1.0, hypervolume=0.5)
-    made._hear(job)
+    made._hear(job.worker, Advanced(evaluations=50, per_second=1.0, seconds_left=1.0, hypervolume=0.5))
     assert (job.standing.evaluations, job.standing.new_evaluations) == (50, 20)
-    job.worker.words = ended(stop_reason="budget")
-    made._hear(job)
+    made._hear(job.worker, ending(ended(stop_reason="budget")))
     assert (job.standing.evaluations, job.standing.new_evaluations) == (60, 30)
 
 
@@ -166,26 +173,18 @@ def test_notes_of_a_study_name_it_and_those_of_its_audit_are_left_out(several):
     made.waiting.append(several[0])
     made._fill()
     (job,) = made.jobs
-    job.worker.words = Noted(line="worker a has gone")
+    gone = Noted(line="worker a has gone")
     job.standing.evaluations = job.standing.budget - 1
-    made._hear(job)
+    made._hear(job.worker, gone)
     assert told == [f"{several[0].name}: worker a has gone"]
     job.standing.evaluations = job.standing.budget
-    made._hear(job)
+    made._hear(job.worker, gone)
     assert len(told) == 1
 
 
 def test_a_worker_whose_study_has_ended_gets_the_next_one_and_a_dead_one_is_buried(several, monkeypatch):
     made_workers = []
-
-    class Listening(Stopping):
-        def __init__(self):
-            made_workers.append(self)
-
-        def begin(self, task):
-            pass
-
-    monkeypatch.setattr(module, "WorkerProcess", Listening)
+    monkeypatch.setattr(module, "Processes", lambda hear: made_workers.append(Stopping()) or made_workers[-1])
     made = _Coordinator(1, None, lambda _: None, lambda _: None)
     made.waiting.extend(several[:2])
     for one in several[:2]:
@@ -194,8 +193,8 @@ def test_a_worker_whose_study_has_ended_gets_the_next_one_and_a_dead_one_is_buri
     made._end(made.jobs[0], ended(stop_reason="budget"))
     made._fill()
     assert len(made_workers) == 1
-    made._hear(made.jobs[0])
-    assert made_workers[0].killed == 1
+    made._hear(made_workers[0], ending(problem=LostError("its process was ended by SIGKILL")))
+    assert made_workers[0].shut == 1
     assert made.idle == []
     made._fill()
     assert len(made_workers) == 2
@@ -203,23 +202,18 @@ def test_a_worker_whose_study_has_ended_gets_the_next_one_and_a_dead_one_is_buri
 
 def test_a_worker_that_does_not_stop_after_an_interrupt_is_killed(several, monkeypatch):
     """A generation that takes minutes does not keep the user waiting."""
-    made_workers, looks = [], []
+    made_workers = []
 
     class Deaf(Stopping):
-        def __init__(self):
+        def __init__(self, hear):
+            super().__init__()
             made_workers.append(self)
 
-        def begin(self, task):
+        def submit(self, function, *arguments):
             os.kill(os.getpid(), signal.SIGINT)
+            return Future()
 
-    def nobody(workers, timeout_s):
-        looks.append(timeout_s)
-        assert len(looks) < 500, "waits for ever"
-        time.sleep(0.01)
-        return iter(())
-
-    monkeypatch.setattr(module, "WorkerProcess", Deaf)
-    monkeypatch.setattr(module, "speakers", nobody)
+    monkeypatch.setattr(module, "Processes", Deaf)
     monkeypatch.setattr(module, "GRACE_S", 0.1)
     several[0].deaths, several[0].evaluations = 0, 0
     told = []
@@ -229,16 +223,6 @@ def test_a_worker_that_does_not_stop_after_an_interrupt_is_killed(several, monke
     assert told == ["interrupted: ending after these generations; press Ctrl-C again to end at once"]
 
 
-class Saying:
-    """A worker that says one thing after the other."""
-
-    def __init__(self, *said):
-        self.left = list(said)
-
-    def said(self):
-        return self.left.pop(0)
-
-
 def test_what_befalls_the_workers_of_a_scheduler_is_told_once_and_during_audits_too(several, monkeypatch):
     """Each study said so of the same worker, and none once it had all its trials."""
     told, now_s = [], [100.0]
@@ -246,19 +230,17 @@ def test_what_befalls_the_workers_of_a_scheduler_is_told_once_and_during_audits_
     made = _Coordinator(2, "tcp://x:1", lambda _: None, told.append)
     auditing = Noted(line="auditing 9 designs of the front")
     gone = Noted(line="worker a has gone", shared=True)
-    jobs = [
-        _Job(standing=one, worker=Saying(gone, auditing, gone, Noted(line="of this study")), before=0, seat=0)
-        for one in several[:2]
-    ]
-    monkeypatch.setattr(jobs[0].standing, "evaluations", jobs[0].standing.budget)
-    monkeypatch.setattr(jobs[1].standing, "evaluations", 0)
+    made.jobs = [_Job(standing=one, worker=Stopping(), before=0, seat=0) for one in several[:2]]
+    jobs = [(job.worker, iter((gone, auditing, gone, Noted(line="of this study")))) for job in made.jobs]
+    monkeypatch.setattr(made.jobs[0].standing, "evaluations", made.jobs[0].standing.budget)
+    monkeypatch.setattr(made.jobs[1].standing, "evaluations", 0)
     for _ in range(2):
-        for job in jobs:
-            made._hear(job)
+        for worker, words in jobs:
+            made._hear(worker, next(words))
     assert told == ["worker a has gone", f"{several[1].name}: auditing 9 designs of the front"]
     told.clear()
     now_s[0] += 100.0
     for _ in range(2):
-        for job in jobs:
-            made._hear(job)
+        for worker, words in jobs:
+            made._hear(worker, next(words))
     assert told == ["worker a has gone", f"{several[1].name}: of this study"]

@@ -9,8 +9,7 @@ import pytest
 
 from pareto_monoped import cli
 from pareto_monoped.cli.options import Where, executor_at, where
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.staff import Limits
+from pareto_monoped.compute.crew import Crew, Limits
 from tests.cli.support import STORED
 from tests.compute import tasks
 from tests.compute.dask_here import ROOT, DaskHere, until

@@ -2,8 +2,7 @@
 
 from concurrent.futures import Executor, Future
 
-from pareto_monoped.compute.crew import LostError
-from pareto_monoped.compute.staff import Member
+from pareto_monoped.compute.crew import LostError, Member
 
 
 class Worker(Executor):

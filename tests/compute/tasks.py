@@ -6,6 +6,11 @@ import time
 from pathlib import Path
 
 
+def ids_of(processes):
+    """Of the operating system, of an executor's processes."""
+    return [line.process.pid for line in processes._lines]
+
+
 def greeting(threads):
     return os.getpid()
 

@@ -13,8 +13,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.compute.cluster import DaskWorkers, threads_of
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.staff import Limits
+from pareto_monoped.compute.crew import Crew, Limits
 from pareto_monoped.errors import InputError, WorkerError
 from pareto_monoped.jump.peers import cluster
 from tests.compute import tasks

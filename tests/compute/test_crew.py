@@ -10,9 +10,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.local import LocalProcesses
-from pareto_monoped.compute.staff import Limits
+from pareto_monoped.compute.crew import Crew, Limits
+from pareto_monoped.compute.processes import LocalProcesses
 from pareto_monoped.errors import WorkerError
 from tests.compute import tasks
 from tests.compute.dask_here import ROOT, until
@@ -152,7 +151,7 @@ def test_ctrl_c_is_for_the_parent_alone(sound):
 
 SCRIPT = """
 from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.local import LocalProcesses
+from pareto_monoped.compute.processes import LocalProcesses
 from tests.compute import tasks
 
 def work():
@@ -202,14 +201,18 @@ def test_processes_end_with_a_parent_that_is_killed(tmp_path):
         until(lambda: ended(process), 60)
 
 
-def test_a_script_without_a_guard_is_told_what_it_lacks(tmp_path):
-    """Each of its processes begins the whole script again, and ends with an error."""
+def test_a_script_needs_no_guard(tmp_path):
+    """Each process began the whole script again, and ended with an error."""
     with script(tmp_path, "work()\n") as program:
-        out, err = program.communicate(timeout=120)
-    assert (program.returncode, out) == (1, "")
-    words = (
-        "WorkerError: 1 processes: 6 ended before they did anything; call it from a file that starts its work under "
-        "\"if __name__ == '__main__'\""
-    )
-    # Among what the processes say of themselves.
-    assert any(words in line for line in err.splitlines())
+        out, err = program.communicate("\n", timeout=120)
+    assert (program.returncode, err) == (0, "")
+    assert int(out)
+
+
+def test_processes_that_end_before_they_did_anything_are_given_up(monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with crew(1) as (made, told):
+        problem = made.submit(tasks.square, 3).exception(timeout=60)
+    assert isinstance(problem, WorkerError)
+    assert str(problem) == "1 processes: 6 ended before they did anything; use fewer processes"
+    assert told == []

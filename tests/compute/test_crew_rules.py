@@ -7,8 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from pareto_monoped.compute.crew import Crew
-from pareto_monoped.compute.staff import Limits
+from pareto_monoped.compute.crew import Crew, Limits
 from pareto_monoped.errors import WorkerError
 from tests.compute.dask_here import until
 from tests.compute.staff_here import StaffHere, Worker

@@ -1,13 +1,6 @@
-"""The process that holds the CAD kernel: answers the questions of ``client`` until its input ends."""
+"""What the process that holds the CAD kernel answers to the questions of ``client``."""
 
-import gc
-import os
-import pickle
-import signal
-import sys
-from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, BinaryIO
 
 import numpy as np
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
@@ -16,7 +9,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from pareto_monoped.cad.kernel import step
-from pareto_monoped.cad.kernel.client import COLLECT_AFTER, SolidFacts, StepAssembly
+from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly
 from pareto_monoped.cad.kernel.solids import solid_from, solid_of, solids_in
 from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
@@ -63,40 +56,3 @@ def _facts(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bev
         centre_mm=np.array([centre.X(), centre.Y(), centre.Z()]),
         inertia_mm5=np.array([[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)]),
     )
-
-
-_ANSWERS: dict[str, Callable[[Any], Any]] = {"solid_facts": solid_facts, "step_files": step_files}
-
-
-def serve(questions: BinaryIO, answers: BinaryIO) -> None:
-    """Answer questions until their stream ends; an exception is sent back as the answer."""
-    while True:
-        try:
-            question, arguments = pickle.load(questions)  # noqa: S301 - from the process that started this one
-        except EOFError:
-            return
-        try:
-            answer = (_ANSWERS[question] if isinstance(question, str) else question)(*arguments)
-        except Exception as problem:
-            answer = problem
-        pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)
-        answers.flush()
-
-
-def main() -> None:
-    """Serve the process that started this one."""
-    gc.set_threshold(COLLECT_AFTER)
-    # The parent handles interrupts and then closes our input.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # The kernel may print; send that to stderr, away from the answers.
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    try:
-        serve(sys.stdin.buffer, answers)
-    except BrokenPipeError:
-        # The parent has gone.
-        os._exit(0)
-
-
-if __name__ == "__main__":
-    main()

@@ -31,6 +31,12 @@ PLATE = Part(
 )
 
 
+def program():
+    """The kernel's process."""
+    (line,) = kernel._process()._lines
+    return line.process
+
+
 def test_facts_of_a_plate_with_a_hole():
     (facts,) = kernel.solid_facts([PLATE]).result()
     volume = 20.0 * 10.0 * 3.0 - np.pi * 4.0 * 3.0
@@ -52,7 +58,7 @@ def test_what_goes_wrong_there_is_raised_here_and_the_next_question_is_answered(
 
 
 def test_any_function_is_called_there_and_its_exception_raised_here():
-    assert kernel.do(os.getpid).result() == kernel._process().process.pid
+    assert kernel.do(os.getpid).result() == program().pid
     assert kernel.do(max, 3, 7).result() == 7
     with pytest.raises(ZeroDivisionError, match="division"):
         kernel.do(divmod, 1, 0).result()
@@ -61,17 +67,17 @@ def test_any_function_is_called_there_and_its_exception_raised_here():
 
 def test_a_kernel_that_dies_is_replaced():
     kernel.start()
-    first = kernel._process().process
+    first = program()
     first.kill()
     with pytest.raises(RuntimeError, match=r"the CAD kernel's process ended \(exit code -9\)"):
         kernel.solid_facts([PLATE]).result()
     assert kernel.solid_facts([PLATE]).result()[0].valid
-    assert kernel._process().process is not first
+    assert program() is not first
 
 
 def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting():
     kernel.start()
-    first = kernel._process().process
+    first = program()
     first.send_signal(signal.SIGSTOP)
     owed = kernel.solid_facts([PLATE])
     kernel.give_up()
@@ -82,12 +88,12 @@ def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting():
 
 
 def test_what_a_busy_kernel_has_not_begun_is_done_here_from_the_last():
-    kernel.start()
-    process = kernel._process().process
+    assert kernel.solid_facts([PLATE]).result()[0].valid
+    process = program()
     process.send_signal(signal.SIGSTOP)
     try:
         begun, owed = kernel.do(os.getpid), kernel.solid_facts([PLATE])
-        while len(kernel._process().waiting) > 1:  # until the first is asked
+        while len(kernel._process()._waiting) > 1:  # until the first is asked
             time.sleep(0.01)
         others = [
             kernel.do(os.getpid),
@@ -109,11 +115,10 @@ def test_what_a_busy_kernel_has_not_begun_is_done_here_from_the_last():
 
 
 def test_nobody_is_started_to_help():
-    kernel.start()
-    kernel._process().close()
-    kernel._process.cache_clear()
+    kernel.solid_facts([PLATE])
+    kernel.give_up()
     kernel.help_out()
-    assert kernel._process.cache_info().currsize == 0
+    assert kernel._kernel is None
 
 
 def test_an_idle_kernel_is_kept():
