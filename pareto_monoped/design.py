@@ -18,7 +18,7 @@ Example:
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import wraps
 from numbers import Real
 from typing import Literal, TypeVar, get_args
@@ -44,6 +44,11 @@ class Variable:
     meaning: str  #: what it is, in a few words
     #: Value of an optional variable where a study does not name it; None for the paper's seven
     default: float | None = None
+    label: str = field(repr=False)  #: what it is called in reports
+    shown_unit: str = field(repr=False)  #: unit in reports
+    decimals: int = field(repr=False)  #: decimals in reports, in the shown unit
+    scale: float = field(repr=False)  #: factor from ``unit`` to the shown one
+    factor: str = field(repr=False)  #: what a sensitivity calls it among what moves a design
 
 
 BASE_START_HEIGHT_M = 0.5
@@ -51,55 +56,63 @@ BASE_START_HEIGHT_M = 0.5
 REST_LENGTH_M = 10.0
 """l0, rest length of the virtual spring, in a passage that the paper's final text lost."""
 
+
+def _variable(
+    name: str,
+    symbol: str,
+    unit: str,
+    bounds: tuple[float, float],
+    meaning: str,
+    label: str,
+    decimals: int,
+    *,
+    shown: tuple[str, float] | None = None,
+    factor: str = "",
+    default: float | None = None,
+) -> Variable:
+    """Describe a variable, which is shown in its own unit unless ``shown`` gives another unit and the factor to it."""
+    (lower, upper), (shown_unit, scale) = bounds, shown or (unit, 1.0)
+    return Variable(
+        name=name,
+        symbol=symbol,
+        unit=unit,
+        lower=lower,
+        upper=upper,
+        meaning=meaning,
+        default=default,
+        label=label,
+        shown_unit=shown_unit,
+        decimals=decimals,
+        scale=scale,
+        factor=factor or label,
+    )
+
+
+_MM, _TO_ONE = ("mm", 1000.0), (": 1", 1.0)
+
+# fmt: off
 VARIABLES: tuple[Variable, ...] = (
-    Variable(
-        name="thigh_length_m", symbol="l1", unit="m", lower=0.3, upper=0.5, meaning="thigh, hip axis to knee axis"
-    ),
-    Variable(
-        name="shank_length_m", symbol="l2", unit="m", lower=0.3, upper=0.5, meaning="shank, knee axis to foot centre"
-    ),
-    Variable(
-        name="knee_ratio", symbol="g_k", unit="1", lower=4.0, upper=8.7, meaning="gear ratio of the knee actuator"
-    ),
-    Variable(name="hip_ratio", symbol="g_h", unit="1", lower=4.0, upper=8.7, meaning="gear ratio of the hip actuator"),
-    Variable(name="stiffness_n_per_m", symbol="K", unit="N/m", lower=5.0, upper=200.0, meaning="virtual spring"),
-    Variable(name="damping_n_s_per_m", symbol="C", unit="N s/m", lower=0.0, upper=10.0, meaning="virtual damper"),
-    Variable(
-        name="torsional_stiffness_n_m_per_rad",
-        symbol="T",
-        unit="N m/rad",
-        lower=0.0,
-        upper=50.0,
-        meaning="virtual torsional spring",
-    ),
-    Variable(
-        name="knee_release_rad",
-        symbol="r_k",
-        unit="rad",
-        lower=0.0,
-        upper=1.0,
-        meaning="angle before the knee's stop over which its torque fades to zero",
-        default=0.0,
-    ),
-    Variable(
-        name="rest_length_m",
-        symbol="l0",
-        unit="m",
-        lower=1.0,
-        upper=20.0,
-        meaning="rest length of the virtual spring",
-        default=REST_LENGTH_M,
-    ),
-    Variable(
-        name="start_height_m",
-        symbol="z0",
-        unit="m",
-        lower=0.35,
-        upper=0.7,
-        meaning="height of the base above the floor at rest",
-        default=BASE_START_HEIGHT_M,
-    ),
+    _variable("thigh_length_m", "l1", "m", (0.3, 0.5), "thigh, hip axis to knee axis", "thigh length", 1, shown=_MM,
+        factor="length of the thigh"),
+    _variable("shank_length_m", "l2", "m", (0.3, 0.5), "shank, knee axis to foot centre", "shank length", 1, shown=_MM,
+        factor="length of the shank"),
+    _variable("knee_ratio", "g_k", "1", (4.0, 8.7), "gear ratio of the knee actuator", "knee ratio", 2, shown=_TO_ONE,
+        factor="gearbox of the knee"),
+    _variable("hip_ratio", "g_h", "1", (4.0, 8.7), "gear ratio of the hip actuator", "hip ratio", 2, shown=_TO_ONE,
+        factor="gearbox of the hip"),
+    _variable("stiffness_n_per_m", "K", "N/m", (5.0, 200.0), "virtual spring", "stiffness", 1, factor="stiffness K"),
+    _variable("damping_n_s_per_m", "C", "N s/m", (0.0, 10.0), "virtual damper", "damping", 2, factor="damping C"),
+    _variable("torsional_stiffness_n_m_per_rad", "T", "N m/rad", (0.0, 50.0), "virtual torsional spring",
+        "torsional stiffness", 2, factor="torsion T"),
+    _variable("knee_release_rad", "r_k", "rad", (0.0, 1.0),
+        "angle before the knee's stop over which its torque fades to zero", "knee release", 3,
+        factor="release of the knee", default=0.0),
+    _variable("rest_length_m", "l0", "m", (1.0, 20.0), "rest length of the virtual spring", "rest length", 2,
+        default=REST_LENGTH_M),
+    _variable("start_height_m", "z0", "m", (0.35, 0.7), "height of the base above the floor at rest", "start height", 0,
+        shown=_MM, default=BASE_START_HEIGHT_M),
 )
+# fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
 """The names of all variables; the order of the columns of every array of designs."""

@@ -1,7 +1,8 @@
 """The measures of a jump and of its audit: name, unit, meaning, direction, and how each is shown.
 
-This is the only table of measures. ``jump.evaluate.Evaluations`` and ``jump.audit.Audits`` have one field per measure,
-the database has one column per measure, and the report takes its labels from here.
+This is the only list of measures: each is one annotated field of ``JumpMeasures``, ``AuditMeasures`` or
+``ScreenMeasures``. Results have these fields, the database has one column per measure, and the report takes what it
+lists, and how, from here.
 
 ``MEASURES`` is a tuple of ``Measure`` records, one for each measure of a jump.
 
@@ -15,11 +16,16 @@ Example:
 import difflib
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass, field, fields, replace
+from functools import partial
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M
 
+Floats = NDArray[np.float64]
 Direction = Literal["maximise", "minimise"]
 
 
@@ -40,6 +46,14 @@ class Measure:
     #: of 4,000 random ones, rounded up generously), for the others 0; for the height it is 0.55 m, a jump of 5 cm.
     reference: float | None = None
     short: str = ""  #: what the measure is called where there is little room
+    #: Order among the measures that the page compares designs by, or shows of an audit; None: not among them
+    place: int | None = field(default=None, repr=False)
+    #: Whether the page shows and asks for it beside the objectives of every study
+    leading: bool = field(default=False, repr=False)
+    full: str = field(default="", repr=False)  #: what the page calls it, where other energies stand beside it
+    axis: str = field(default="", repr=False)  #: what it is called beside an axis of the page's front
+    #: What m g (H - start height) is called as a share of this energy; empty if it is no energy of a jump
+    work_share: str = field(default="", repr=False)
 
     @property
     def words(self) -> str:
@@ -51,25 +65,24 @@ class Measure:
         return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}".removesuffix(" 1")
 
 
-def _measure(
-    name: str,
+def _row(
     unit: str,
-    direction: Direction | None,
-    meaning: str,
-    label: str,
     decimals: int,
-    shown: tuple[str, float] | None = None,
+    label: str,
+    meaning: str,
     *,
-    reference: float | None = None,
+    direction: Direction | None = None,
+    shown: tuple[str, float] | None = None,
     short: str = "",
+    **more: Any,
 ) -> Measure:
-    """A measure shown in the unit it is stored in, unless ``shown`` gives another unit and the factor to it.
+    """Describe a measure, which is shown in its stored unit unless ``shown`` gives another unit and the factor to it.
 
-    Without ``short``, the label is short enough.
+    ``_described`` gives it the name of its field. Without ``short``, the label is short enough.
     """
     shown_unit, scale = shown or (unit, 1.0)
     return Measure(
-        name=name,
+        name="",
         unit=unit,
         meaning=meaning,
         direction=direction,
@@ -77,521 +90,232 @@ def _measure(
         shown_unit=shown_unit,
         decimals=decimals,
         scale=scale,
-        reference=reference,
         short=short or label,
+        **more,
     )
 
 
-def _safety(name: str, of: str, label: str, short: str) -> Measure:
-    """The measure of a group of the strength check."""
+_less, _more = partial(_row, direction="minimise"), partial(_row, direction="maximise")
+
+
+def _safety(of: str, label: str, short: str, place: int | None = None) -> Measure:
+    """Describe the measure of a group of the strength check."""
     meaning = f"least safety factor over the required one of {of}; holds from 1 up"
-    return _measure(name, "1", "maximise", meaning, label, 2, reference=0.0, short=short)
+    return _more("1", 2, label, meaning, reference=0.0, short=short, place=place)
+
+
+def _described(results: type) -> tuple[Measure, ...]:
+    """Collect the measures that annotate the fields of a class of results."""
+    described = ((one.name, about) for one in fields(results) for about in get_args(one.type)[1:])
+    return tuple(replace(about, name=name) for name, about in described if isinstance(about, Measure))
 
 
 _PERCENT = ("%", 100.0)
 _MM = ("mm", 1000.0)
 _EFFICIENCY = f"m g (H - {BASE_START_HEIGHT_M:g} m) / E"
 
-MEASURES: tuple[Measure, ...] = (
-    _measure("height_m", "m", "maximise", "highest position of the base above the floor", "height", 3, reference=0.55),
-    _measure(
-        "energy_j",
-        "J",
-        "minimise",
-        "sum of max(torque * speed, 0) dt over both motors up to the apex (paper, section III-B)",
-        "energy",
-        2,
-        reference=100.0,
-    ),
-    _measure(
-        "energy_hip_j",
-        "J",
-        "minimise",
-        "the hip motor's part of energy_j",
-        "energy of the hip",
-        2,
-        reference=100.0,
-        short="E hip",
-    ),
-    _measure(
-        "energy_knee_j",
-        "J",
-        "minimise",
-        "the knee motor's part of energy_j",
-        "energy of the knee",
-        2,
-        reference=100.0,
-        short="E knee",
-    ),
-    _measure(
-        "absorbed_j",
-        "J",
-        "minimise",
-        "work that the joints do on the motors",
-        "work absorbed by the motors",
-        2,
-        reference=20.0,
-        short="absorbed",
-    ),
-    _measure(
-        "drive_loss_j",
-        "J",
-        "minimise",
-        "energy lost in gearboxes and chain",
-        "lost in gears and chain",
-        2,
-        reference=10.0,
-        short="losses",
-    ),
-    _measure(
-        "joule_heat_j",
-        "J",
-        "minimise",
-        "heat in both windings: sum of R (torque / (ratio k_t))^2 dt; not part of energy_j",
-        "heat in the windings",
-        2,
-        reference=200.0,
-        short="heat",
-    ),
-    _measure(
-        "foot_clearance_m",
-        "m",
-        "maximise",
-        "gap between foot and floor at the apex",
-        "foot clearance at the apex",
-        0,
-        _MM,
-        reference=0.0,
-        short="clear.",
-    ),
-    _measure("lift_off_s", "s", None, "time of the last contact with the floor, from the start", "lift-off", 3),
-    _measure("apex_s", "s", None, "time of the apex, from the start", "apex", 3),
-    _measure("mass_kg", "kg", "minimise", "mass of the whole robot", "mass", 3, reference=10.0),
-    _measure(
-        "peak_torque_hip_n_m",
-        "N m",
-        "minimise",
-        "largest torque at the hip before losses",
-        "peak torque, hip",
-        1,
-        reference=50.0,
-        short="T hip",
-    ),
-    _measure(
-        "peak_torque_knee_n_m",
-        "N m",
-        "minimise",
-        "largest torque at the knee before losses",
-        "peak torque, knee",
-        1,
-        reference=100.0,
-        short="T knee",
-    ),
-    _measure(
-        "peak_speed_hip_rad_per_s",
-        "rad/s",
-        "minimise",
-        "largest speed of the hip joint",
-        "peak speed, hip",
-        1,
-        reference=50.0,
-        short="w hip",
-    ),
-    _measure(
-        "peak_speed_knee_rad_per_s",
-        "rad/s",
-        "minimise",
-        "largest speed of the knee joint",
-        "peak speed, knee",
-        1,
-        reference=100.0,
-        short="w knee",
-    ),
-    _measure(
-        "peak_power_hip_w",
-        "W",
-        "minimise",
-        "largest power at the hip before losses",
-        "peak power, hip",
-        0,
-        reference=500.0,
-        short="P hip",
-    ),
-    _measure(
-        "peak_power_knee_w",
-        "W",
-        "minimise",
-        "largest power at the knee before losses",
-        "peak power, knee",
-        0,
-        reference=2000.0,
-        short="P knee",
-    ),
-    _measure(
-        "saturation_hip",
-        "1",
-        "minimise",
-        "share of the controlled time that the hip spends at a torque limit",
-        "time at the torque limit, hip",
-        1,
-        _PERCENT,
-        reference=1.0,
-        short="sat. hip",
-    ),
-    _measure(
-        "saturation_knee",
-        "1",
-        "minimise",
-        "share of the controlled time that the knee spends at a torque limit",
-        "time at the torque limit, knee",
-        1,
-        _PERCENT,
-        reference=1.0,
-        short="sat. knee",
-    ),
-    _measure(
-        "efficiency",
-        "1",
-        "maximise",
-        _EFFICIENCY,
-        f"efficiency, {_EFFICIENCY}",
-        1,
-        _PERCENT,
-        reference=0.0,
-        short="effic.",
-    ),
-    _measure(
-        "electrical_energy_j",
-        "J",
-        "minimise",
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JumpMeasures:
+    """What n jumps measure, each of shape (n,): one field per measure, in the order of the database columns.
+
+    A measure is NaN where the jump failed, except for the mass of a robot that could be built. ``status`` is one of
+    ``jump.evaluate.STATUSES``; ``reason`` says why it is not ``ok``, and is empty where it is.
+    """
+
+    # fmt: off
+    status: NDArray[np.str_]
+    reason: tuple[str, ...]
+    height_m: Annotated[Floats, _more("m", 3, "height", "highest position of the base above the floor", reference=0.55,
+        place=10, axis="jump height of the base")]
+    energy_j: Annotated[Floats, _less("J", 2, "energy",
+        "sum of max(torque * speed, 0) dt over both motors up to the apex (paper, section III-B)", reference=100.0,
+        place=20, leading=True, axis="mechanical energy from start to apex", full="mechanical energy",
+        work_share="mechanical efficiency")]
+    energy_hip_j: Annotated[Floats, _less("J", 2, "energy of the hip", "the hip motor's part of energy_j",
+        reference=100.0, short="E hip")]
+    energy_knee_j: Annotated[Floats, _less("J", 2, "energy of the knee", "the knee motor's part of energy_j",
+        reference=100.0, short="E knee")]
+    absorbed_j: Annotated[Floats, _less("J", 2, "work absorbed by the motors", "work that the joints do on the motors",
+        reference=20.0, short="absorbed")]
+    drive_loss_j: Annotated[Floats, _less("J", 2, "lost in gears and chain", "energy lost in gearboxes and chain",
+        reference=10.0, short="losses")]
+    joule_heat_j: Annotated[Floats, _less("J", 2, "heat in the windings",
+        "heat in both windings: sum of R (torque / (ratio k_t))^2 dt; not part of energy_j", reference=200.0,
+        short="heat")]
+    foot_clearance_m: Annotated[Floats, _more("m", 0, "foot clearance at the apex",
+        "gap between foot and floor at the apex", shown=_MM, reference=0.0, short="clear.")]
+    lift_off_s: Annotated[Floats, _row("s", 3, "lift-off", "time of the last contact with the floor, from the start")]
+    apex_s: Annotated[Floats, _row("s", 3, "apex", "time of the apex, from the start")]
+    mass_kg: Annotated[Floats, _less("kg", 3, "mass", "mass of the whole robot", reference=10.0, place=40,
+        leading=True)]
+    peak_torque_hip_n_m: Annotated[Floats, _less("N m", 1, "peak torque, hip",
+        "largest torque at the hip before losses", reference=50.0, short="T hip")]
+    peak_torque_knee_n_m: Annotated[Floats, _less("N m", 1, "peak torque, knee",
+        "largest torque at the knee before losses", reference=100.0, short="T knee")]
+    peak_speed_hip_rad_per_s: Annotated[Floats, _less("rad/s", 1, "peak speed, hip", "largest speed of the hip joint",
+        reference=50.0, short="w hip")]
+    peak_speed_knee_rad_per_s: Annotated[Floats, _less("rad/s", 1, "peak speed, knee",
+        "largest speed of the knee joint", reference=100.0, short="w knee")]
+    peak_power_hip_w: Annotated[Floats, _less("W", 0, "peak power, hip", "largest power at the hip before losses",
+        reference=500.0, short="P hip")]
+    peak_power_knee_w: Annotated[Floats, _less("W", 0, "peak power, knee", "largest power at the knee before losses",
+        reference=2000.0, short="P knee")]
+    saturation_hip: Annotated[Floats, _less("1", 1, "time at the torque limit, hip",
+        "share of the controlled time that the hip spends at a torque limit", shown=_PERCENT, reference=1.0,
+        short="sat. hip")]
+    saturation_knee: Annotated[Floats, _less("1", 1, "time at the torque limit, knee",
+        "share of the controlled time that the knee spends at a torque limit", shown=_PERCENT, reference=1.0,
+        short="sat. knee")]
+    efficiency: Annotated[Floats, _more("1", 1, f"efficiency, {_EFFICIENCY}", _EFFICIENCY, shown=_PERCENT,
+        reference=0.0, short="effic.", full=f"mechanical efficiency, {_EFFICIENCY}")]
+    electrical_energy_j: Annotated[Floats, _less("J", 2, "energy from the battery",
         "energy taken from the battery: sum over both motors of max(power + heat in the winding, 0) dt, and standby",
-        "energy from the battery",
-        2,
-        reference=200.0,
-        short="battery",
-    ),
-    _measure(
-        "sustained_jumps_per_minute",
-        "1/min",
-        "maximise",
+        reference=200.0, short="battery", place=30, leading=True, work_share="efficiency from the battery")]
+    sustained_jumps_per_minute: Annotated[Floats, _more("1/min", 1, "jumps per minute sustained",
         "jumps per minute whose winding heat the hotter motor can shed: its continuous loss over its heat of one jump",
-        "jumps per minute sustained",
-        1,
-        reference=0.0,
-        short="jumps",
-    ),
-    _measure(
-        "peak_gear_torque_hip_n_m",
-        "N m",
-        "minimise",
-        "largest torque that the hip's gearbox transmits, at its output",
-        "peak gear torque, hip",
-        1,
-        reference=200.0,
-        short="gear hip",
-    ),
-    _measure(
-        "peak_gear_torque_knee_n_m",
-        "N m",
-        "minimise",
-        "largest torque that the knee's gearbox transmits, at its output",
-        "peak gear torque, knee",
-        1,
-        reference=500.0,
-        short="gear knee",
-    ),
-    _measure(
-        "peak_chain_tension_n",
-        "N",
-        "minimise",
-        "largest pull in the chain",
-        "peak chain tension",
-        0,
-        reference=20000.0,
-        short="chain",
-    ),
-    _measure(
-        "peak_stop_torque_n_m",
-        "N m",
-        "minimise",
-        "largest torque of an end stop",
-        "peak torque of an end stop",
-        1,
-        reference=500.0,
-        short="stop",
-    ),
-    _measure(
-        "stop_energy_j",
-        "J",
-        "minimise",
-        "energy that the end stops take",
-        "energy into the end stops",
-        2,
-        reference=100.0,
-        short="stop",
-    ),
-    _measure(
-        "peak_foot_force_n",
-        "N",
-        "minimise",
-        "largest force of the floor on the foot",
-        "peak foot force",
-        0,
-        reference=500.0,
-        short="foot",
-    ),
-    _measure(
-        "drift_m",
-        "m",
-        "minimise",
-        "sideways distance of the base from its start at the apex",
-        "sideways drift",
-        0,
-        _MM,
-        reference=0.5,
-        short="drift",
-    ),
-    _measure(
-        "peak_stop_torque_hip_n_m",
-        "N m",
-        "minimise",
-        "largest torque of the hip's end stops",
-        "peak torque of an end stop, hip",
-        1,
-        reference=500.0,
-        short="stop hip",
-    ),
-    _measure(
-        "peak_stop_torque_knee_n_m",
-        "N m",
-        "minimise",
-        "largest torque of the knee's end stops",
-        "peak torque of an end stop, knee",
-        1,
-        reference=500.0,
-        short="stop knee",
-    ),
-    _measure(
-        "stop_compression_hip",
-        "1",
-        "minimise",
-        "largest compression of the hip's bumpers, as a share of their travel",
-        "bumper compressed, hip",
-        0,
-        _PERCENT,
-        reference=2.0,
-        short="comp. hip",
-    ),
-    _measure(
-        "stop_compression_knee",
-        "1",
-        "minimise",
-        "largest compression of the knee's bumpers, as a share of their travel",
-        "bumper compressed, knee",
-        0,
-        _PERCENT,
-        reference=2.0,
-        short="comp. knee",
-    ),
-    _measure(
-        "peak_knee_force_n",
-        "N",
-        "minimise",
-        "largest force between thigh and shank: bearings, chain and end stop together",
-        "peak force at the knee",
-        0,
-        reference=5000.0,
-        short="F knee",
-    ),
-    _safety("gear_safety", "gears under the jump's largest torque", "strength of the gears", "gears ok"),
-    _safety("chain_safety", "the chain and its turnbuckles", "strength of the chain", "chain ok"),
-    _safety("stop_safety", "bumpers, seats and strikers of the end stops", "strength of the end stops", "stops ok"),
-    _safety("joint_safety", "screws, pins, fits and shafts", "strength of the joints", "joints ok"),
-    _safety("link_safety", "plates, cores and rods", "strength of the links", "links ok"),
-    _safety(
-        "gear_strike_safety",
+        reference=0.0, short="jumps", place=60)]
+    peak_gear_torque_hip_n_m: Annotated[Floats, _less("N m", 1, "peak gear torque, hip",
+        "largest torque that the hip's gearbox transmits, at its output", reference=200.0, short="gear hip", place=70)]
+    peak_gear_torque_knee_n_m: Annotated[Floats, _less("N m", 1, "peak gear torque, knee",
+        "largest torque that the knee's gearbox transmits, at its output", reference=500.0, short="gear knee",
+        place=80)]
+    peak_chain_tension_n: Annotated[Floats, _less("N", 0, "peak chain tension", "largest pull in the chain",
+        reference=20000.0, short="chain", place=90)]
+    peak_stop_torque_n_m: Annotated[Floats, _less("N m", 1, "peak torque of an end stop",
+        "largest torque of an end stop", reference=500.0, short="stop")]
+    stop_energy_j: Annotated[Floats, _less("J", 2, "energy into the end stops", "energy that the end stops take",
+        reference=100.0, short="stop")]
+    peak_foot_force_n: Annotated[Floats, _less("N", 0, "peak foot force", "largest force of the floor on the foot",
+        reference=500.0, short="foot", place=130)]
+    drift_m: Annotated[Floats, _less("m", 0, "sideways drift",
+        "sideways distance of the base from its start at the apex", shown=_MM, reference=0.5, short="drift")]
+    peak_stop_torque_hip_n_m: Annotated[Floats, _less("N m", 1, "peak torque of an end stop, hip",
+        "largest torque of the hip's end stops", reference=500.0, short="stop hip", place=100)]
+    peak_stop_torque_knee_n_m: Annotated[Floats, _less("N m", 1, "peak torque of an end stop, knee",
+        "largest torque of the knee's end stops", reference=500.0, short="stop knee", place=110)]
+    stop_compression_hip: Annotated[Floats, _less("1", 0, "bumper compressed, hip",
+        "largest compression of the hip's bumpers, as a share of their travel", shown=_PERCENT, reference=2.0,
+        short="comp. hip")]
+    stop_compression_knee: Annotated[Floats, _less("1", 0, "bumper compressed, knee",
+        "largest compression of the knee's bumpers, as a share of their travel", shown=_PERCENT, reference=2.0,
+        short="comp. knee", place=120)]
+    peak_knee_force_n: Annotated[Floats, _less("N", 0, "peak force at the knee",
+        "largest force between thigh and shank: bearings, chain and end stop together", reference=5000.0,
+        short="F knee", place=140)]
+    gear_safety: Annotated[Floats, _safety("gears under the jump's largest torque", "strength of the gears", "gears ok",
+        place=150)]
+    chain_safety: Annotated[Floats, _safety("the chain and its turnbuckles", "strength of the chain", "chain ok",
+        place=160)]
+    stop_safety: Annotated[Floats, _safety("bumpers, seats and strikers of the end stops", "strength of the end stops",
+        "stops ok", place=170)]
+    joint_safety: Annotated[Floats, _safety("screws, pins, fits and shafts", "strength of the joints", "joints ok",
+        place=180)]
+    link_safety: Annotated[Floats, _safety("plates, cores and rods", "strength of the links", "links ok", place=190)]
+    gear_strike_safety: Annotated[Floats, _safety(
         "gears that the largest torque strikes in every jump of their duty (it informs: nothing requires it by itself)",
-        "gears struck in every jump",
-        "strikes",
-    ),
+        "gears struck in every jump", "strikes")]
     # D. W. Haldane, M. M. Plecnik, J. K. Yim, R. S. Fearing, "Robotic vertical jumping agility via series-elastic power
     # modulation", Science Robotics 1(1), 2016. Here the push starts with the jump.
-    _measure(
-        "agility_m_per_s",
-        "m/s",
-        "maximise",
-        "vertical jumping agility: height gained over the time from the start of the push to the apex",
-        "vertical jumping agility",
-        2,
-        reference=0.0,
-        short="agility",
-    ),
-)
+    agility_m_per_s: Annotated[Floats, _more("m/s", 2, "vertical jumping agility",
+        "vertical jumping agility: height gained over the time from the start of the push to the apex", reference=0.0,
+        short="agility", place=50)]
+    # fmt: on
+
+
+MEASURES: tuple[Measure, ...] = _described(JumpMeasures)
 """Every measure of a jump, with its name, unit, meaning and which way is better.
 
 They stand in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns.
 """
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
+ENERGIES: tuple[str, ...] = tuple(measure.name for measure in MEASURES if measure.work_share)
+"""What a jump costs: the energies that are never less than the work against gravity, m g (H - start height)."""
 
 _PERTURBED = "links moved by 1e-6"
 
-AUDIT_MEASURES: tuple[Measure, ...] = (
-    _measure(
-        "energy_balance_error",
-        "1",
-        "minimise",
-        "what the energy balance leaves open, as a share of the joint work",
-        "energy balance open by",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "half_step_height_m", "m", "minimise", "change of height with half the step", "height, step halved", 2, _MM
-    ),
-    _measure(
-        "half_step_energy",
-        "1",
-        "minimise",
-        "relative change of energy with half the step",
-        "energy, step halved",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "quarter_step_height_m",
-        "m",
-        "minimise",
-        "change of height with a quarter of the step",
-        "height, step quartered",
-        2,
-        _MM,
-    ),
-    _measure(
-        "quarter_step_energy",
-        "1",
-        "minimise",
-        "relative change of energy with a quarter of the step",
-        "energy, step quartered",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "spread_height_m",
-        "m",
-        "minimise",
-        "90th percentile of the change of height over perturbed designs",
-        f"height, {_PERTURBED} (90th percentile)",
-        2,
-        _MM,
-    ),
-    _measure(
-        "spread_energy",
-        "1",
-        "minimise",
-        "90th percentile of the relative change of energy over perturbed designs",
-        f"energy, {_PERTURBED} (90th percentile)",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "worst_height_m",
-        "m",
-        "minimise",
-        "largest change of height over perturbed designs",
-        f"height, {_PERTURBED} (worst)",
-        2,
-        _MM,
-    ),
-    _measure(
-        "worst_energy",
-        "1",
-        "minimise",
-        "largest relative change of energy over perturbed designs",
-        f"energy, {_PERTURBED} (worst)",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "control_period_height_m",
-        "m",
-        "minimise",
-        "change of height with a quarter of the control period",
-        "height, control period quartered",
-        2,
-        _MM,
-    ),
-    _measure(
-        "control_period_energy",
-        "1",
-        "minimise",
-        "relative change of energy with a quarter of the control period",
-        "energy, control period quartered",
-        2,
-        _PERCENT,
-    ),
-)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AuditMeasures:
+    """What the audits of n designs measure, each of shape (n,).
+
+    ``status``, ``height_m`` and ``energy_j`` are those of the jump. A measure is NaN for a design without a jump, and
+    where a brief audit leaves it out; it is infinite where a jump is lost by a finer step, a perturbation or a shorter
+    control period. ``reason`` says why the jump is not well-conditioned, and is empty where it is.
+    """
+
+    # fmt: off
+    status: NDArray[np.str_]
+    height_m: Floats
+    energy_j: Floats
+    energy_balance_error: Annotated[Floats, _less("1", 2, "energy balance open by",
+        "what the energy balance leaves open, as a share of the joint work", shown=_PERCENT, place=10)]
+    half_step_height_m: Annotated[Floats, _less("m", 2, "height, step halved", "change of height with half the step",
+        shown=_MM, place=40)]
+    half_step_energy: Annotated[Floats, _less("1", 2, "energy, step halved",
+        "relative change of energy with half the step", shown=_PERCENT, place=50)]
+    quarter_step_height_m: Annotated[Floats, _less("m", 2, "height, step quartered",
+        "change of height with a quarter of the step", shown=_MM)]
+    quarter_step_energy: Annotated[Floats, _less("1", 2, "energy, step quartered",
+        "relative change of energy with a quarter of the step", shown=_PERCENT)]
+    spread_height_m: Annotated[Floats, _less("m", 2, f"height, {_PERTURBED} (90th percentile)",
+        "90th percentile of the change of height over perturbed designs", shown=_MM, place=20)]
+    spread_energy: Annotated[Floats, _less("1", 2, f"energy, {_PERTURBED} (90th percentile)",
+        "90th percentile of the relative change of energy over perturbed designs", shown=_PERCENT, place=30)]
+    worst_height_m: Annotated[Floats, _less("m", 2, f"height, {_PERTURBED} (worst)",
+        "largest change of height over perturbed designs", shown=_MM)]
+    worst_energy: Annotated[Floats, _less("1", 2, f"energy, {_PERTURBED} (worst)",
+        "largest relative change of energy over perturbed designs", shown=_PERCENT)]
+    control_period_height_m: Annotated[Floats, _less("m", 2, "height, control period quartered",
+        "change of height with a quarter of the control period", shown=_MM, place=60)]
+    control_period_energy: Annotated[Floats, _less("1", 2, "energy, control period quartered",
+        "relative change of energy with a quarter of the control period", shown=_PERCENT, place=70)]
+    reason: tuple[str, ...] = ()
+    # fmt: on
+
+
+AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)
 """Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
 
 _COARSE = f"step doubled and {_PERTURBED}"
 
-SCREEN_MEASURES: tuple[Measure, ...] = (
-    _measure(
-        "double_step_height_m",
-        "m",
-        "minimise",
-        "change of height with twice the step, of a perturbed design",
-        f"height, {_COARSE}",
-        2,
-        _MM,
-    ),
-    _measure(
-        "double_step_energy",
-        "1",
-        "minimise",
-        "relative change of energy with twice the step, of a perturbed design",
-        f"energy, {_COARSE}",
-        2,
-        _PERCENT,
-    ),
-    _measure(
-        "double_step_balance_error",
-        "1",
-        "minimise",
-        "what the energy balance of that jump leaves open, as a share of the joint work",
-        "energy balance open by, step doubled",
-        2,
-        _PERCENT,
-    ),
-)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScreenMeasures:
+    """What coarse jumps say of n designs, each of shape (n,).
+
+    The changes are infinite where the coarse jump failed, and NaN where there was none.
+    """
+
+    # fmt: off
+    double_step_height_m: Annotated[Floats, _less("m", 2, f"height, {_COARSE}",
+        "change of height with twice the step, of a perturbed design", shown=_MM, place=80)]
+    double_step_energy: Annotated[Floats, _less("1", 2, f"energy, {_COARSE}",
+        "relative change of energy with twice the step, of a perturbed design", shown=_PERCENT, place=90)]
+    double_step_balance_error: Annotated[Floats, _less("1", 2, "energy balance open by, step doubled",
+        "what the energy balance of that jump leaves open, as a share of the joint work", shown=_PERCENT, place=100)]
+    # fmt: on
+
+
+SCREEN_MEASURES: tuple[Measure, ...] = _described(ScreenMeasures)
 """Every measure of the screen before an audit, in the order of the fields of ``jump.screen.Screened``."""
 
 STATISTICS: dict[str, str] = {"mean": "mean", "p05": "5th percentile", "p95": "95th percentile"}
 """What can be asked of a measure under uncertainty: key behind the measure's name, as in "height_m.p05", and words."""
 
-SHARE_MEASURES: tuple[Measure, ...] = (
-    _measure(
-        "failed_share",
-        "1",
-        "minimise",
-        "share of the jumps under uncertainty that do not reach an apex",
-        "jumps that fail",
-        1,
-        _PERCENT,
-        reference=1.0,
-        short="fail",
-    ),
-    _measure(
-        "overloaded_share",
-        "1",
-        "minimise",
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Shares:
+    # fmt: off
+    failed_share: Annotated[float, _less("1", 1, "jumps that fail",
+        "share of the jumps under uncertainty that do not reach an apex", shown=_PERCENT, reference=1.0, short="fail")]
+    overloaded_share: Annotated[float, _less("1", 1, "jumps that overload a part",
         "share of the jumps under uncertainty that exceed what some joint or part carries with its required safety",
-        "jumps that overload a part",
-        1,
-        _PERCENT,
-        reference=1.0,
-        short="overload",
-    ),
-)
+        shown=_PERCENT, reference=1.0, short="overload")]
+    # fmt: on
+
+
+SHARE_MEASURES: tuple[Measure, ...] = _described(_Shares)
 """Measures of many jumps of one design, each with other values of what is uncertain."""
 
 
@@ -603,6 +327,11 @@ def _statistic_of(base: Measure, key: str) -> Measure:
         meaning=f"{words} under uncertainty of: {base.meaning}",
         label=f"{base.words} ({words})",
         short=f"{base.short} {key}",
+        place=None,
+        leading=False,
+        full="",
+        axis="",
+        work_share="",
     )
 
 

@@ -1,13 +1,24 @@
 """One table of measures, which the results of a jump, of an audit and the report's labels follow."""
 
 from dataclasses import fields
+from typing import get_args, get_type_hints
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from pareto_monoped.jump.audit import Audits
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.jump.screen import Screened
-from pareto_monoped.measures import AUDIT_MEASURES, MEASURE_NAMES, MEASURES, SCREEN_MEASURES, measure
+from pareto_monoped.measures import (
+    AUDIT_MEASURES,
+    ENERGIES,
+    MEASURE_NAMES,
+    MEASURES,
+    ROBUST_MEASURES,
+    SCREEN_MEASURES,
+    measure,
+)
 from pareto_monoped.report.quantities import QUANTITIES, label_of
 
 UNITS = {
@@ -24,17 +35,42 @@ UNITS = {
 }
 
 
-def test_evaluations_have_one_field_per_measure():
-    assert [f.name for f in fields(Evaluations)] == ["status", "reason", *MEASURE_NAMES]
+OF_THE_JUMP = {"status", "reason", "height_m", "energy_j"}
 
 
-def test_audits_have_one_field_per_measure():
-    names = [entry.name for entry in AUDIT_MEASURES]
-    assert [f.name for f in fields(Audits)] == ["status", "height_m", "energy_j", *names, "reason"]
+@pytest.mark.parametrize(
+    ("results", "table"), [(Evaluations, MEASURES), (Audits, AUDIT_MEASURES), (Screened, SCREEN_MEASURES)]
+)
+def test_no_field_of_results_lacks_its_description(results, table):
+    names = [f.name for f in fields(results)]
+    assert [name for name in names if name not in OF_THE_JUMP] == [m.name for m in table if m.name not in OF_THE_JUMP]
 
 
-def test_screens_have_one_field_per_measure():
-    assert [f.name for f in fields(Screened)] == [entry.name for entry in SCREEN_MEASURES]
+@pytest.mark.parametrize("table", [MEASURES, (*AUDIT_MEASURES, *SCREEN_MEASURES)])
+def test_no_two_measures_have_one_place_on_the_page(table):
+    places = [entry.place for entry in table if entry.place is not None]
+    assert len(set(places)) == len(places) > 0
+
+
+def test_a_statistic_is_no_choice_of_the_page_by_itself():
+    """Of a measure under uncertainty, the page shows what a study asks for."""
+    for entry in ROBUST_MEASURES:
+        assert entry.place is None, entry.name
+        assert not any((entry.leading, entry.full, entry.axis, entry.work_share)), entry.name
+
+
+def test_the_energies_of_a_jump_are_work_of_the_motors_or_of_the_battery():
+    assert ENERGIES == ("energy_j", "electrical_energy_j")
+    assert set(ENERGIES) <= {entry.name for entry in MEASURES if entry.unit == "J" and entry.direction == "minimise"}
+
+
+def test_editors_know_the_fields():
+    """Each is an array to whoever reads the class, with its description beside it."""
+    hints = get_type_hints(Evaluations, include_extras=True)
+    for entry in MEASURES:
+        kind, about = get_args(hints[entry.name])
+        assert kind == NDArray[np.float64]
+        assert about.meaning == entry.meaning
 
 
 @pytest.mark.parametrize("entry", [*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES], ids=lambda entry: entry.name)

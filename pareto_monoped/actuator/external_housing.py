@@ -5,6 +5,7 @@ from pareto_monoped.actuator.features import (
     SPIGOT_MM,
     casing_dowel_holes,
     casing_holes,
+    housing_screw,
     motor_holes,
     slab,
     spigot,
@@ -18,7 +19,7 @@ from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
-from pareto_monoped.geometry.screws import M3, screw_part, tapped
+from pareto_monoped.geometry.screws import M3, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
 
@@ -155,35 +156,26 @@ def _casing_and_backplate(
 
 def _housing_screws(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """From the ring housing into the casing, and from the backplate into the casing."""
-    casing, steel = settings.parts.casing, settings.materials.steel
-    mount_bolts = settings.parts.interface.mount_bolt_count
+    casing = settings.parts.casing
     return (
-        screw_part(
+        housing_screw(
             "casing_screw",
-            M3,
+            settings,
             head="hexagon",
             seat_mm=shell.z_flange + casing.flange_mm,
             grip_mm=casing.flange_mm,
-            room_mm=casing.flange_mm,
             direction=-1.0,
-            material=steel,
-            count=mount_bolts,
             pitch_radius_mm=shell.r_bolts,
-            group=Group.HOUSING,
             note="from the ring housing into the casing",
         ),
-        screw_part(
+        housing_screw(
             "backplate_screw",
-            M3,
+            settings,
             head="cap",
             seat_mm=shell.z_end,
             grip_mm=casing.plate_mm,
-            room_mm=casing.flange_mm,
             direction=1.0,
-            material=steel,
-            count=mount_bolts,
             pitch_radius_mm=at.r_bolts,
-            group=Group.HOUSING,
             note="into the casing",
         ),
     )

@@ -11,6 +11,8 @@ Both joints have the same actuator. At the knee, sensor and cable stand in the j
 How the teeth of gears and splines are made: what their rating takes for granted, for drawings and parts list.
 """
 
+from typing import Any
+
 import numpy as np
 
 from pareto_monoped.actuator.bearings import Bearing
@@ -23,7 +25,7 @@ from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.making import ToothMaking
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
-from pareto_monoped.geometry.screws import M3
+from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.materials import ALLOYS, MATERIALS, GearGrade, Material
 
@@ -119,6 +121,13 @@ def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
 def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
     """Bolt pattern of the mounting face, and of the backplate on the casing."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
+
+
+def housing_screw(name: str, settings: ActuatorSettings, **own: Any) -> Part:
+    """Describe the screws of a joint of the housing, as many as hold the actuator; ``own`` is as for ``screw_part``."""
+    parts, steel = settings.parts, settings.materials.steel
+    count, room_mm = parts.interface.mount_bolt_count, parts.casing.flange_mm
+    return screw_part(name, M3, room_mm=room_mm, material=steel, count=count, group=Group.HOUSING, **own)
 
 
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:

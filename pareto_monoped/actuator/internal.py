@@ -13,6 +13,7 @@ from pareto_monoped.actuator.features import (
     gear_accuracy,
     gear_grade,
     gear_note,
+    housing_screw,
     made,
     motor_holes,
     note_with,
@@ -321,34 +322,25 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
 def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Of ring housing, backplate and coupling."""
     casing, coupling, steel = settings.parts.casing, settings.parts.coupling, settings.materials.steel
-    mount_bolts = settings.parts.interface.mount_bolt_count
     return (
-        screw_part(
+        housing_screw(
             "ring_housing_screw",
-            M3,
+            settings,
             head="countersunk",
             seat_mm=0.0,
             grip_mm=casing.plate_mm,
-            room_mm=casing.flange_mm,
             direction=-1.0,
-            material=steel,
-            count=mount_bolts,
             pitch_radius_mm=shell.r_flange_bolts,
-            group=Group.HOUSING,
             note="flush with the mounting face",
         ),
-        screw_part(
+        housing_screw(
             "backplate_screw",
-            M3,
+            settings,
             head="cap",
             seat_mm=shell.z_end,
             grip_mm=casing.wall_mm,
-            room_mm=casing.flange_mm,
             direction=1.0,
-            material=steel,
-            count=mount_bolts,
             pitch_radius_mm=at.r_bolts,
-            group=Group.HOUSING,
             note="into the casing",
         ),
         screw_part(

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from pareto_monoped.analysis.robustness import refuse_other_jumps
 from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.variables import Bounds
-from pareto_monoped.design import NAMES, RATIOS, VARIABLES
+from pareto_monoped.design import NAMES, RATIOS, VARIABLES, Variable
 from pareto_monoped.errors import InputError, SelectionError, complaint
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.measures import nominal
+from pareto_monoped.measures import ENERGIES, nominal
 from pareto_monoped.search.space import gear_list
 from pareto_monoped.storage.extra_rows import SENSITIVITY, key_of, read_sensitivity
 from pareto_monoped.storage.lock import locked
@@ -41,19 +41,7 @@ Floats = NDArray[np.float64]
 WITHIN = 0.02
 """How far a variable moves to either side, as a share of its range. Our own choice: 2 percent is 4 mm of a link, as far
 apart as two designs may be that nobody would call different robots."""
-_ALWAYS = ("height_m", "energy_j", "electrical_energy_j")
-_LABELS = {
-    "thigh_length_m": "length of the thigh",
-    "shank_length_m": "length of the shank",
-    "knee_ratio": "gearbox of the knee",
-    "hip_ratio": "gearbox of the hip",
-    "stiffness_n_per_m": "stiffness K",
-    "damping_n_s_per_m": "damping C",
-    "torsional_stiffness_n_m_per_rad": "torsion T",
-    "knee_release_rad": "release of the knee",
-    "rest_length_m": "rest length",
-    "start_height_m": "start height",
-}
+_ALWAYS = ("height_m", *ENERGIES)
 
 
 def sensitivity(
@@ -162,19 +150,19 @@ def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tup
     """A free variable as a factor; for a gearbox also the ratios that it goes through."""
     value, bounds = float(row[name].iloc[0]), data.study.variables[name]
     assert isinstance(bounds, Bounds)
-    unit = next(variable.unit for variable in VARIABLES if variable.name == name)
+    variable = VARIABLES[NAMES.index(name)]
     if name in RATIOS and data.study.gear_list:
         kit = data.kit_of_trial(int(row["trial"].iloc[0]))
         ratios = np.array([gear.ratio for gear in gear_list(kit.of(name.removesuffix("_ratio")), bounds)])
         place = int(np.abs(ratios - value).argmin())
         listed = ratios[max(place - 1, 0) : place + 2]
-        return _factor(name, float(listed[0]), float(listed[-1]), unit), listed
+        return _factor(variable, float(listed[0]), float(listed[-1])), listed
     step = within * (bounds.upper - bounds.lower)
-    return _factor(name, max(value - step, bounds.lower), min(value + step, bounds.upper), unit), None
+    return _factor(variable, max(value - step, bounds.lower), min(value + step, bounds.upper)), None
 
 
-def _factor(name: str, lower: float, upper: float, unit: str) -> Factor:
-    return Factor(name=name, label=_LABELS[name], lower=lower, upper=upper, unit=unit)
+def _factor(variable: Variable, lower: float, upper: float) -> Factor:
+    return Factor(name=variable.name, label=variable.factor, lower=lower, upper=upper, unit=variable.unit)
 
 
 def _kits(data: StudyData, row: pd.DataFrame, count: int) -> NDArray[np.intp]:

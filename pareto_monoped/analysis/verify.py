@@ -12,7 +12,7 @@ import pandas as pd
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.measures import ENERGIES, MEASURE_NAMES
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.database import reading
@@ -54,7 +54,7 @@ def _trial_findings(data: StudyData) -> Iterator[str]:
     for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *data.study.objectives.names)):
         values = trials[name].to_numpy(dtype=np.float64)
         yield from _first(trials, feasible & ~np.isfinite(values), f"is feasible, but its {name} is no finite number")
-    for name in (name for name in trials if name == "height_m" or name in _ENERGIES):
+    for name in (name for name in trials if name == "height_m" or name in ENERGIES):
         values = trials[name].to_numpy(dtype=np.float64)
         yield from _first(trials, feasible & (values < 0.0), f"is feasible, but its {name} is negative")
     high = trials["height_m"].to_numpy() > HIGHEST_JUMP_M
@@ -65,9 +65,6 @@ def _trial_findings(data: StudyData) -> Iterator[str]:
         yield from _first(trials, ~inside, f"has a {name} beyond {lower:g} to {upper:g}")
     violation = trials["violation"].to_numpy(dtype=np.float64)
     yield from _first(trials, ~np.isfinite(violation) | (feasible != (violation == 0.0)), "has an impossible violation")
-
-
-_ENERGIES = frozenset({"energy_j", "electrical_energy_j"})
 
 
 def _first(trials: pd.DataFrame, wrong: "np.typing.NDArray[np.bool_]", what: str) -> Iterator[str]:

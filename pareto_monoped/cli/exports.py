@@ -1,7 +1,6 @@
 """``export``: CAD and model files of one design, or of the whole front."""
 
 import math
-import os
 import signal
 from dataclasses import replace
 from pathlib import Path
@@ -114,6 +113,7 @@ def export(
         from pareto_monoped.analysis.remarks import refuse_empty
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
+        from pareto_monoped.compute.threads import cores
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
@@ -139,7 +139,7 @@ def export(
             data = _read(_given(db))
             refuse_empty(data.front(), data)
             jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
-            _many([_without(dropped, job) for job in jobs], workers or os.cpu_count() or 1, place)
+            _many([_without(dropped, job) for job in jobs], workers or cores(), place)
         else:
             from pareto_monoped.analysis.choices import with_numbered
             from pareto_monoped.pareto.pick import pick

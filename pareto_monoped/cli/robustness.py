@@ -237,11 +237,10 @@ def sensitivity(
 
 def _shown(study: "Study") -> "list[Measure]":
     """The height, and the energy that is an objective of the study."""
-    from pareto_monoped.measures import measure, nominal
+    from pareto_monoped.measures import ENERGIES, measure, nominal
 
     objectives = [nominal(name) for name in study.objectives.names]
-    energies = ("energy_j", "electrical_energy_j")
-    return [measure("height_m"), measure(next((name for name in energies if name in objectives), energies[0]))]
+    return [measure("height_m"), measure(next((name for name in ENERGIES if name in objectives), ENERGIES[0]))]
 
 
 def _unit(entry: "Measure") -> str:

@@ -155,16 +155,15 @@ def _round_moments(area: Numbers, polar: Numbers) -> Moments:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExternalGear:
-    """A spur gear without its bore: sun or planet."""
+class _Teeth:
+    """What a spur gear and the toothed hole of a ring gear have in common."""
 
-    teeth: Numbers  #: number of teeth
-    module_mm: Numbers  #: reference module
-    backlash_mm: Numbers = 0.0  #: how much thinner each tooth is on the pitch circle
-    phase_rad: Numbers = 0.0  #: angle of the middle of one tooth from the x axis
+    teeth: Numbers
+    module_mm: Numbers  # reference module
+    backlash_mm: Numbers = 0.0  # how much thinner each tooth, or wider each space of a ring, is on the pitch circle
+    phase_rad: Numbers = 0.0  # angle of the middle of one tooth, or of one space of a ring, from the x axis
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
-    shift: Numbers = 0.0  #: profile shift x over module, positive outwards
-    tip_shortening: Numbers = 0.0  #: by how much the tips are cut short, over module
+    shift: Numbers = 0.0  # profile shift x over module, positive outwards
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -176,6 +175,13 @@ class ExternalGear:
         """Circle the involutes start from."""
         radius_mm: Numbers = self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
         return radius_mm
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExternalGear(_Teeth):
+    """A spur gear without its bore: sun or planet."""
+
+    tip_shortening: Numbers = 0.0  # by how much the tips are cut short, over module
 
     @property
     def tip_radius_mm(self) -> Numbers:
@@ -220,31 +226,12 @@ class ExternalGear:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class InternalGear:
+class InternalGear(_Teeth):
     """The toothed hole of a ring gear: to be taken out of the ring's disc.
 
-    The hole has the outline of an external gear whose teeth are the ring's spaces: tip and root change places.
+    The hole has the outline of an external gear whose teeth are the ring's spaces: tip and root change places. The
+    profile shift is that of this gear; ISO 21771 counts it negative.
     """
-
-    teeth: Numbers  #: number of teeth
-    module_mm: Numbers  #: reference module
-    backlash_mm: Numbers = 0.0  #: how much wider each space is on the pitch circle
-    phase_rad: Numbers = 0.0  #: angle of the middle of one space of the ring from the x axis
-    pressure_angle_rad: float = PRESSURE_ANGLE_RAD
-    #: Profile shift over module, positive outwards: that of the gear whose teeth are the spaces. ISO 21771 counts it
-    #: negative.
-    shift: Numbers = 0.0
-
-    @property
-    def pitch_radius_mm(self) -> Numbers:
-        """Reference circle."""
-        return 0.5 * self.module_mm * self.teeth
-
-    @property
-    def base_radius_mm(self) -> Numbers:
-        """Circle the involutes start from."""
-        radius_mm: Numbers = self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
-        return radius_mm
 
     @property
     def tip_radius_mm(self) -> Numbers:

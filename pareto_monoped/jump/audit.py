@@ -10,7 +10,7 @@ few perturbed copies, no more of them jump.
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,10 +20,11 @@ from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
 from pareto_monoped.jump.balance import balance_errors
-from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
-from pareto_monoped.measures import measure
+from pareto_monoped.measures import AuditMeasures, measure
 from pareto_monoped.robot.population import robot_arrays
 
 Floats = NDArray[np.float64]
@@ -97,31 +98,8 @@ class Jumps:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Audits:
-    """The audits of n designs; ``measures.AUDIT_MEASURES`` says what each measure means.
-
-    Attributes:
-        energy_balance_error, ...: the measures of the audit, each of shape (n,). NaN for a design without a jump, and
-            where a brief audit leaves a measure out; infinity where a jump is lost by a finer step, a perturbation or a
-            shorter control period.
-    """
-
-    status: NDArray[np.str_]  #: of the jump, as in ``Evaluations``, shape (n,)
-    #: height_m, energy_j: as evaluated, shape (n,)
-    height_m: Floats
-    energy_j: Floats
-    energy_balance_error: Floats
-    half_step_height_m: Floats
-    half_step_energy: Floats
-    quarter_step_height_m: Floats
-    quarter_step_energy: Floats
-    spread_height_m: Floats
-    spread_energy: Floats
-    worst_height_m: Floats
-    worst_energy: Floats
-    control_period_height_m: Floats
-    control_period_energy: Floats
-    reason: tuple[str, ...] = field(default=())  #: why the jump is not well-conditioned; empty where it is
+class Audits(AuditMeasures):
+    """The audits of n designs; ``measures.AUDIT_MEASURES`` says what each measure means."""
 
     @property
     def well_conditioned(self) -> NDArray[np.bool_]:

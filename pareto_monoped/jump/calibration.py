@@ -19,6 +19,7 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.config import checked, read_toml
 from pareto_monoped.errors import CalibrationError, InputError, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
+from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.robot.population import MassOptions
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -29,8 +30,6 @@ _STRICT = ConfigDict(extra="forbid")
 
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
-# As many commands as the controller keeps under way, see ``controller.MOST_DELAY``.
-MOST_DELAY = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,7 +28,8 @@ from numba import types
 from pareto_monoped.compute.compiled import c_function
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import controller
-from pareto_monoped.jump.controller import RECORD, RECORD_NUMBERS, control
+from pareto_monoped.jump.controller import control
+from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 
 _lock = threading.Lock()
 _users = 0
@@ -114,8 +115,8 @@ def _compiled() -> Any:
 
 
 def _origin(source: Path) -> int:
-    """A number for what the callback depends on outside this file: the controller's source and MuJoCo's version."""
-    return zlib.crc32(source.read_bytes() + mujoco.__version__.encode())
+    """A number for what the callback depends on outside this file: controller's source, record, MuJoCo's version."""
+    return zlib.crc32(source.read_bytes() + f"{RECORD.descr}{mujoco.__version__}".encode())
 
 
 def _library() -> Path:

@@ -23,7 +23,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.variations import Variations, joined, take, varied_control, varied_robots
-from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.measures import MEASURE_NAMES, JumpMeasures
 from pareto_monoped.robot.population import JointStops, RobotArrays, robot_arrays
 from pareto_monoped.robot.units import JOINTS
 from pareto_monoped.strength.factors import safeties, strength_factors
@@ -33,64 +33,13 @@ Floats = NDArray[np.float64]
 
 STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
 """How a jump can end. Every status but ``ok`` comes with a reason, and without height and energy."""
-# Measures that the controller's records hold under their own names.
-_LOADS = ("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "drift_m", "peak_knee_force_n")
 # Jumps stepped together: enough to hide the cost of a call, few enough to stay in the processor's cache.
 _CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Evaluations:
-    """Results of n jumps: one field per measure, with what it means in ``measures.MEASURES``.
-
-    Attributes:
-        height_m, ...: the measures, each of shape (n,); NaN where the jump failed, except for the mass of a robot that
-            could be built.
-    """
-
-    status: NDArray[np.str_]  #: one of ``STATUSES``, shape (n,)
-    reason: tuple[str, ...]  #: why the status is not ``ok``; empty where it is
-    height_m: Floats
-    energy_j: Floats
-    energy_hip_j: Floats
-    energy_knee_j: Floats
-    absorbed_j: Floats
-    drive_loss_j: Floats
-    joule_heat_j: Floats
-    foot_clearance_m: Floats
-    lift_off_s: Floats
-    apex_s: Floats
-    mass_kg: Floats
-    peak_torque_hip_n_m: Floats
-    peak_torque_knee_n_m: Floats
-    peak_speed_hip_rad_per_s: Floats
-    peak_speed_knee_rad_per_s: Floats
-    peak_power_hip_w: Floats
-    peak_power_knee_w: Floats
-    saturation_hip: Floats
-    saturation_knee: Floats
-    efficiency: Floats
-    electrical_energy_j: Floats
-    sustained_jumps_per_minute: Floats
-    peak_gear_torque_hip_n_m: Floats
-    peak_gear_torque_knee_n_m: Floats
-    peak_chain_tension_n: Floats
-    peak_stop_torque_n_m: Floats
-    stop_energy_j: Floats
-    peak_foot_force_n: Floats
-    drift_m: Floats
-    peak_stop_torque_hip_n_m: Floats
-    peak_stop_torque_knee_n_m: Floats
-    stop_compression_hip: Floats
-    stop_compression_knee: Floats
-    peak_knee_force_n: Floats
-    gear_safety: Floats
-    chain_safety: Floats
-    stop_safety: Floats
-    joint_safety: Floats
-    link_safety: Floats
-    gear_strike_safety: Floats
-    agility_m_per_s: Floats
+class Evaluations(JumpMeasures):
+    """Results of n jumps: one field per measure, with what it means in ``measures.MEASURES``."""
 
     def __len__(self) -> int:
         return len(self.height_m)
@@ -285,27 +234,18 @@ def _collect(
     rise = records["height_m"] - robots.start_height_m
     active = np.maximum(records["active_steps"], 1.0)
     saturated = records["saturated_steps"] / active[:, None]
-    measures = {
-        "height_m": records["height_m"],
+    measures = _as_recorded(records) | {
         "energy_j": energy,
-        **_by_joint("energy_{}_j", records["energy_j"]),
         "absorbed_j": records["absorbed_j"][:, HIP] + records["absorbed_j"][:, KNEE],
         "drive_loss_j": records["drive_loss_j"][:, HIP] + records["drive_loss_j"][:, KNEE],
-        "joule_heat_j": records["joule_heat_j"],
         "foot_clearance_m": records["clearance_m"],
         "lift_off_s": (records["lift_off_step"] - 1) * step,
         "apex_s": (records["steps"] - 1) * step,
-        **_by_joint("peak_torque_{}_n_m", records["peak_torque_n_m"]),
-        **_by_joint("peak_speed_{}_rad_per_s", records["peak_speed_rad_per_s"]),
-        **_by_joint("peak_power_{}_w", records["peak_power_w"]),
         **_by_joint("saturation_{}", saturated),
         "efficiency": mass * GRAVITY_M_PER_S2 * rise / np.where(ok, energy, np.nan),
         "electrical_energy_j": records["electrical_energy_j"] + drive.standby_power_w * (records["steps"] - 1) * step,
         "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
-        **_by_joint("peak_gear_torque_{}_n_m", records["peak_gear_torque_n_m"]),
-        **{name: records[name] for name in _LOADS},
         "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
-        **_by_joint("peak_stop_torque_{}_n_m", records["peak_stop_torque_n_m"]),
         **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / _travels_rad(robots)),
         "agility_m_per_s": rise / np.where(ok, (records["steps"] - 1) * step, np.nan),
     }
@@ -323,6 +263,16 @@ def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Fl
     allowed_w = records["heat_w_per_n2_m2"] * np.square(continuous_torque_n_m)
     with np.errstate(divide="ignore"):
         return np.asarray((60.0 * allowed_w / records["winding_heat_j"]).min(axis=1))
+
+
+def _as_recorded(records: Records) -> dict[str, Floats]:
+    """The measures that the controller's records hold under their own names, with "hip" or "knee" left out of pairs."""
+    recorded = records.dtype.names or ()
+    found = {name: records[name] for name in MEASURE_NAMES if name in recorded}
+    for k, joint in enumerate(JOINTS):
+        pairs = {name: name.replace(f"_{joint}", "", 1) for name in MEASURE_NAMES if f"_{joint}" in name}
+        found |= {name: records[pair][:, k] for name, pair in pairs.items() if pair in recorded}
+    return found
 
 
 def _by_joint(name: str, values: Floats) -> dict[str, Floats]:

@@ -124,7 +124,7 @@ def _course(population: Population) -> Floats:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Bodies:
-    """What does not change in n jumps, as in ``controller.RECORD``."""
+    """What does not change in n jumps, as in ``controller_record.RECORD``."""
 
     step_s: Floats
     mass_kg: Floats

@@ -12,6 +12,7 @@ from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.callback import quiet
+from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.model import StartPose, start_pose
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
@@ -43,8 +44,7 @@ class Population:
     """The jumps of n robots in progress."""
 
     batch: Any  #: their simulations
-    #: The controller's record of each, shape (n,) of ``controller.RECORD``; a view of the batch's user data
-    records: Records
+    records: Records  #: the controller's record of each, shape (n,) of ``RECORD``; a view of the batch's user data
     errors: dict[int, str] = field(default_factory=dict)  #: what MuJoCo raised, by jump
 
     def run(self) -> None:
@@ -110,8 +110,6 @@ def prepare(
     import mujoco
     from mujoco.batch import Batch
 
-    from pareto_monoped.jump.controller import RECORD
-
     stops = end_stops(robots, calibration.joints)
     batch = Batch(_template(calibration, stops), len(robots), nthread=threads)
     for name, values in model.model_fields(robots, calibration).items():
@@ -151,13 +149,11 @@ def _template(calibration: Calibration, stops: EndStops) -> Any:
     """A model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
     import mujoco
 
-    from pareto_monoped.jump.controller import RECORD_NUMBERS
-
     return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, stops, RECORD_NUMBERS))
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:
-    """The controller's records before the first step, one per jump, shape (n,) of ``controller.RECORD``.
+    """The controller's records before the first step, one per jump, shape (n,) of ``RECORD``.
 
     Args:
         robots: n robots.
@@ -167,7 +163,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     from pareto_monoped.jump import controller
 
     drive, gate, simulation = calibration.drive, calibration.gate, calibration.simulation
-    records = np.zeros(len(robots), dtype=controller.RECORD)
+    records = np.zeros(len(robots), dtype=RECORD)
     records["status"] = controller.RUNNING
     records["height_m"] = robots.start_height_m
 

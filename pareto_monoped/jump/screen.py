@@ -21,6 +21,7 @@ from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.shared import built, setup_text
 from pareto_monoped.jump.variations import joined, take
+from pareto_monoped.measures import ScreenMeasures
 from pareto_monoped.robot.population import robot_arrays
 
 CLEAR: dict[str, float] = {"half_step_height_m": 0.5, "half_step_energy": 1.5, "energy_balance_error": 0.5}
@@ -30,13 +31,8 @@ doubles, too, which changes the energy by half a percent and more, smoothly."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Screened:
-    """What coarse jumps say of n designs."""
-
-    #: Change of height, shape (n,); infinite where the coarse jump failed, NaN where there was none
-    double_step_height_m: Floats
-    double_step_energy: Floats  #: relative change of energy, shape (n,)
-    double_step_balance_error: Floats  #: what its energy balance leaves open, shape (n,)
+class Screened(ScreenMeasures):
+    """What coarse jumps say of n designs; ``measures.SCREEN_MEASURES`` says what each measure means."""
 
     @property
     def clear(self) -> NDArray[np.bool_]:

@@ -13,7 +13,6 @@ from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M5
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
-from pareto_monoped.leg.stops import knee_stop
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm along the strand.
@@ -47,12 +46,6 @@ def links_of(d: LegDimensions) -> int:
 def reach_mm(d: LegDimensions) -> float:
     """From a sprocket's axis to the last pins of its piece, with the knee in the middle of its range."""
     return _STRAIGHT * d.chain.pitch_mm
-
-
-def stroke_mm(d: LegDimensions) -> float:
-    """By which a strand moves from the end of the range of the knee's stops to the other, bumpers squeezed."""
-    stop = knee_stop(d)
-    return (stop.upper_rad - stop.lower_rad + 2.0 * stop.travel_rad) * d.chain.pitch_radius_mm
 
 
 def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.measures import Measure, measure, nominal
+from pareto_monoped.measures import ENERGIES, Measure, measure, nominal
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.pareto.selectors import (
     Among,
@@ -122,10 +122,6 @@ def _checked(option: str, weights: tuple[float, ...], objectives: Objectives) ->
     return values
 
 
-_ENERGIES = ("energy_j", "electrical_energy_j")
-"""The measures that ``MaxEnergy`` may mean; it takes the first that is an objective."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pick:
     """A picked trial, the reason in one sentence, and the conditions that it was picked under."""
@@ -193,7 +189,7 @@ def _condition(given: Condition | MaxEnergy, objectives: Objectives) -> Conditio
     if isinstance(given, Condition):
         own = _objective(given.name, objectives) if given.asked == "min-height" else None
         return given if own is None else replace(given, name=own)
-    for energy in _ENERGIES:
+    for energy in ENERGIES:
         if (name := _objective(energy, objectives)) is not None:
             return Condition(name=name, side="max", value=given.energy_j, asked="max-energy")
     raise SelectionError(

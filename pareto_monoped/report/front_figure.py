@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
-from pareto_monoped.measures import measure
+from pareto_monoped.measures import ENERGIES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.report.schema import Column, Payload, StudyCard
-from pareto_monoped.report.tables import ENERGIES
 
 # The page's colours (--c0 to --c5 of its light style), each with a marker of its own, so that studies can be told apart
 # without colour.

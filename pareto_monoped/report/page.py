@@ -22,14 +22,14 @@ from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_C
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.measures import MEASURES
+from pareto_monoped.measures import ENERGIES, MEASURES, measure
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
 from pareto_monoped.report.motors import leg_table, motor_tables
-from pareto_monoped.report.quantities import quantities_of
+from pareto_monoped.report.quantities import COMPARED, LEADING, quantities_of
 from pareto_monoped.report.resimulation import frames_for, resimulate
 from pareto_monoped.report.robust import names_of
 from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard
@@ -110,6 +110,9 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         goals=goals,
         directions=Objectives(names=goals).directions,
         measure_directions={m.name: m.direction for m in MEASURES if m.direction is not None},
+        leading=LEADING,
+        compared=COMPARED,
+        energies={name: measure(name).work_share for name in ENERGIES},
         constants=Constants(
             gravity_m_per_s2=GRAVITY_M_PER_S2,
             base_start_height_m=BASE_START_HEIGHT_M,

@@ -2,56 +2,49 @@
 
 from collections.abc import Sequence
 
-from pareto_monoped.measures import MEASURES, Measure, measure
+from pareto_monoped.design import VARIABLES
+from pareto_monoped.measures import AUDIT_MEASURES, MEASURES, SCREEN_MEASURES, Measure, is_robust, measure
 from pareto_monoped.report.schema import Quantity
-
-
-def _quantity(name: str, label: str, unit: str, decimals: int, scale: float = 1.0) -> Quantity:
-    return Quantity(name=name, label=label, unit=unit, decimals=decimals, scale=scale)
-
-
-_LABELS = {"energy_j": "mechanical energy", "efficiency": f"mechanical {measure('efficiency').label}"}
-"""Labels that say which energy is meant, beside the one from the battery."""
 
 
 def label_of(name: str) -> str:
     """What the page calls a measure."""
-    return _LABELS.get(name, measure(name).label)
+    entry = measure(name)
+    return entry.full or entry.label
 
 
 def _of(m: Measure) -> Quantity:
-    return _quantity(m.name, label_of(m.name), m.shown_unit, m.decimals, m.scale)
+    return Quantity(
+        name=m.name,
+        label=label_of(m.name),
+        unit=m.shown_unit,
+        decimals=m.decimals,
+        scale=m.scale,
+        axis=m.axis,
+        group="under uncertainty" if is_robust(m.name) else "other measures",
+    )
 
 
-_VARIABLES = (
-    _quantity("thigh_length_m", "thigh length", "mm", 1, 1000.0),
-    _quantity("shank_length_m", "shank length", "mm", 1, 1000.0),
-    _quantity("knee_ratio", "knee ratio", ": 1", 2),
-    _quantity("hip_ratio", "hip ratio", ": 1", 2),
-    _quantity("stiffness_n_per_m", "stiffness", "N/m", 1),
-    _quantity("damping_n_s_per_m", "damping", "N s/m", 2),
-    _quantity("torsional_stiffness_n_m_per_rad", "torsional stiffness", "N m/rad", 2),
-    _quantity("knee_release_rad", "knee release", "rad", 3),
-    _quantity("rest_length_m", "rest length", "m", 2),
-    _quantity("start_height_m", "start height", "mm", 0, 1000.0),
+_VARIABLES = tuple(
+    Quantity(name=v.name, label=v.label, unit=v.shown_unit, decimals=v.decimals, scale=v.scale, group="variables")
+    for v in VARIABLES
 )
+
+
+def _placed(table: Sequence[Measure]) -> tuple[str, ...]:
+    placed = [(one.place, one.name) for one in table if one.place is not None]
+    return tuple(name for _, name in sorted(placed, key=lambda entry: entry[0]))
+
+
+COMPARED = _placed(MEASURES)
+"""Measures by which the page compares designs side by side, beside the objectives."""
+LEADING = tuple(name for name in COMPARED if measure(name).leading)
+"""Measures that the page shows first, and asks for, beside the objectives."""
+AUDIT = _placed((*AUDIT_MEASURES, *SCREEN_MEASURES))
+"""Measures that the page shows of an audit, as far as it has them."""
 
 _OBJECTIVES = ("height_m", "energy_j")
 _FIRST = ("mass_kg", "efficiency")  # of the other measures: what readers look for before the rest
-
-AUDIT = (
-    "energy_balance_error",
-    "spread_height_m",
-    "spread_energy",
-    "half_step_height_m",
-    "half_step_energy",
-    "control_period_height_m",
-    "control_period_energy",
-    "double_step_height_m",
-    "double_step_energy",
-    "double_step_balance_error",
-)
-"""Measures that the page shows of an audit, as far as it has them."""
 
 EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial as plain numbers beside the objectives; the others are packed."""

@@ -20,6 +20,8 @@ class Quantity:
     unit: str
     decimals: int
     scale: float = 1.0
+    axis: str = ""  # what it is called beside an axis of the front; empty: the label
+    group: str = "other measures"  # among the choices of an axis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -304,6 +306,9 @@ class Payload:
     goals: Sequence[str]  #: the objectives of all studies, without repetition; the page has them of every trial
     directions: Mapping[str, str]  #: "maximise" or "minimise" of each goal
     measure_directions: Mapping[str, str]  #: the same of every measure that has one
+    leading: Sequence[str]  #: measures that the page shows first beside the objectives
+    compared: Sequence[str]  #: measures that it compares designs by, beside the objectives
+    energies: Mapping[str, str]  #: what a jump costs -> what the work against gravity is called as a share of it
     constants: Constants
     variables: Sequence[Mapping[str, Any]]
     quantities: Sequence[Quantity]

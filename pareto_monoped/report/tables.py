@@ -14,7 +14,7 @@ import numpy as np
 
 from pareto_monoped.measures import Measure, measure
 from pareto_monoped.report.packing import unpacked_column
-from pareto_monoped.report.quantities import label_of
+from pareto_monoped.report.quantities import LEADING, label_of
 from pareto_monoped.report.schema import Comparison, Number, Payload, Quantity, StudyCard
 
 
@@ -228,55 +228,13 @@ def provenance_tables(payload: Payload) -> str:
     return "\n".join(parts)
 
 
-ENERGIES = ("energy_j", "electrical_energy_j")
-"""Measures that are never less than the work against gravity, m g (H - start height): the floor of the front chart."""
-
-
-def kind(payload: Payload) -> str:
-    """What the page is about, in one line above its title."""
-    if tuple(payload.objectives) == ("height_m", "energy_j"):
-        return "Pareto report: jump height against energy of a monoped"
-    labels = [measure(name).label for name in payload.objectives]
-    return f"Pareto report: {', '.join(labels[:-1])} and {labels[-1]} of a monoped"
-
-
-def order(payload: Payload) -> str:
-    """The order of the designs on the front, for readers who hear the page."""
-    first = payload.objectives[0]
-    if first == "height_m":
-        return "Designs on the front, from the lowest jump to the highest"
-    return f"Designs on the front, from the least {measure(first).label} to the most"
-
-
-ASKED = ("energy_j", "electrical_energy_j", "mass_kg")
-"""Measures that the page asks for beside the first two objectives, if a study has them."""
-
-
-def ask_fields(payload: Payload) -> str:
-    """The number fields of the form: the first objective wanted, and what may be spent for it."""
-    there = {name for card in payload.studies for name in (*card.trials.columns, *card.trials.packed)}
-    names = dict.fromkeys((*payload.objectives[:2], *(name for name in ASKED if name in there)))
-    ids = ("ask-height", "ask-energy")
-    return "\n".join(_field(ids[i] if i < len(ids) else f"ask-{name}", measure(name)) for i, name in enumerate(names))
-
-
-def _field(name: str, entry: Measure) -> str:
-    word = "at least" if entry.direction == "maximise" else "at most"
-    label = f"{label_of(entry.name)} {word}"
-    return (
-        f'<label for="{name}">{safe(label[0].upper() + label[1:])}'
-        f' <span class="field"><input id="{name}" data-ask="{entry.name}" type="number" step="any" inputmode="decimal">'
-        f"<i>{safe(entry.shown_unit)}</i></span></label>"
-    )
-
-
 MOST_ROWS = 60
 """Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
 
 
 def designs_table(payload: Payload) -> str:
     """One table per study with a front: its designs, or some evenly along it."""
-    names = dict.fromkeys((*payload.goals, *ASKED, *(str(variable["name"]) for variable in payload.variables)))
+    names = dict.fromkeys((*payload.goals, *LEADING, *(str(variable["name"]) for variable in payload.variables)))
     quantities = {q.name: q for q in payload.quantities}
     parts = []
     for card in payload.studies:
@@ -317,3 +275,37 @@ def _text(value: Number, quantity: Quantity) -> str:
     if value is None or not np.isfinite(value):
         return "\N{EN DASH}"
     return f"{value * quantity.scale:.{quantity.decimals}f}"
+
+
+def kind(payload: Payload) -> str:
+    """What the page is about, in one line above its title."""
+    if tuple(payload.objectives) == ("height_m", "energy_j"):
+        return "Pareto report: jump height against energy of a monoped"
+    labels = [measure(name).label for name in payload.objectives]
+    return f"Pareto report: {', '.join(labels[:-1])} and {labels[-1]} of a monoped"
+
+
+def order(payload: Payload) -> str:
+    """The order of the designs on the front, for readers who hear the page."""
+    first = payload.objectives[0]
+    if first == "height_m":
+        return "Designs on the front, from the lowest jump to the highest"
+    return f"Designs on the front, from the least {measure(first).label} to the most"
+
+
+def ask_fields(payload: Payload) -> str:
+    """The number fields of the form: the first objective wanted, and what may be spent for it."""
+    there = {name for card in payload.studies for name in (*card.trials.columns, *card.trials.packed)}
+    names = dict.fromkeys((*payload.objectives[:2], *(name for name in LEADING if name in there)))
+    ids = ("ask-height", "ask-energy")
+    return "\n".join(_field(ids[i] if i < len(ids) else f"ask-{name}", measure(name)) for i, name in enumerate(names))
+
+
+def _field(name: str, entry: Measure) -> str:
+    word = "at least" if entry.direction == "maximise" else "at most"
+    label = f"{label_of(entry.name)} {word}"
+    return (
+        f'<label for="{name}">{safe(label[0].upper() + label[1:])}'
+        f' <span class="field"><input id="{name}" data-ask="{entry.name}" type="number" step="any" inputmode="decimal">'
+        f"<i>{safe(entry.shown_unit)}</i></span></label>"
+    )

@@ -22,27 +22,22 @@ Floats = NDArray[np.float64]
 class Loads:
     """Loads of n jumps, each of shape (n,); NaN where a jump failed or a stored study did not measure the load.
 
-    All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``.
+    All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``. The end stops and the
+    foot's impact are in the torque through a gearbox, and a housing reacts to no more than that.
     """
 
-    #: peak_torque_hip_n_m, peak_torque_knee_n_m: of the motors, at the joints, before losses
     peak_torque_hip_n_m: Floats
     peak_torque_knee_n_m: Floats
-    #: peak_gear_torque_hip_n_m, peak_gear_torque_knee_n_m: through the gearboxes, at their outputs; the end stops and
-    #: the foot's impact are in it. A housing reacts to no more than that.
     peak_gear_torque_hip_n_m: Floats
     peak_gear_torque_knee_n_m: Floats
-    peak_chain_tension_n: Floats  #: pull of the chain
-    #: peak_stop_torque_hip_n_m, peak_stop_torque_knee_n_m: of the joints' end stops
+    peak_chain_tension_n: Floats
     peak_stop_torque_hip_n_m: Floats
     peak_stop_torque_knee_n_m: Floats
-    #: stop_compression_hip, stop_compression_knee: of the bumpers, as shares of their travel
     stop_compression_hip: Floats
     stop_compression_knee: Floats
-    stop_energy_j: Floats  #: into all end stops
-    peak_foot_force_n: Floats  #: of the floor on the foot
-    peak_knee_force_n: Floats  #: between thigh and shank, by bearings, chain and end stop together
-    #: thigh_length_m, shank_length_m: of the links
+    stop_energy_j: Floats
+    peak_foot_force_n: Floats
+    peak_knee_force_n: Floats
     thigh_length_m: Floats
     shank_length_m: Floats
 

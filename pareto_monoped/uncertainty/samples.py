@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.compute.chunks import AT_ONCE, in_turn
 from pareto_monoped.design import complete
 from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.jump.calibration import MOST_DELAY, Calibration
+from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations
 from pareto_monoped.measures import is_robust

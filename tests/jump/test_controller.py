@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.jump import controller
+from pareto_monoped.jump.controller_record import RECORD
 
 THIGH, SHANK, RADIUS, WEIGHT = 0.4, 0.4, 0.03, 30.0
 STIFFNESS, DAMPING, TORSION = 20.0, 3.0, 15.0
@@ -15,7 +16,7 @@ NO_LOAD, CORNER = 80.0, 60.0
 def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02, loss=0.0, record=None, **more):
     """Torques (hip motor, knee motor, hip joint, knee joint), the status, and the record after one call."""
     if record is None:
-        record = np.zeros(1, dtype=controller.RECORD)[0]
+        record = np.zeros(1, dtype=RECORD)[0]
     values = {
         "rest_length_m": 10.0,
         "timestep_s": 0.001,

@@ -84,6 +84,11 @@ def test_failures_do_not_touch_their_neighbours(evaluator):
         assert set(result.as_columns()[name][1::2]) == {alone.as_columns()[name][0]}
 
 
+def test_every_measure_of_a_jump_is_computed(evaluator):
+    jump = evaluator(GOOD[None])
+    assert [name for name in MEASURE_NAMES if not np.isfinite(jump.of(name)).all()] == []
+
+
 def test_a_simulation_that_blows_up_is_diverged_and_alone():
     result = Evaluator(map_for("VT8020"), wild_calibration())(np.array([GOOD, GOOD]))
     assert list(result.status) == ["diverged"] * 2

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.controller import RECORD_NUMBERS
+from pareto_monoped.jump.controller_record import RECORD_NUMBERS
 from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.model import mjcf, start_pose
 from pareto_monoped.jump.population import prepare

@@ -301,11 +301,6 @@ def planet_turns(gears: GearSet) -> Numbers:
     return gears.ring_teeth / gears.planet_teeth
 
 
-def needle_life_h(gears: GearSet, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
-    """L10 of a planet's needles under the duty; ``force_n`` is that at the peak torque."""
-    return _life_h(planet_turns(gears), force_n, dynamic_rating_n, settings)
-
-
 def _life_h(turns: Numbers, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
     duty = settings.parts.duty
     life = life_turns([share * force_n for share in duty.torque_shares], dynamic_rating_n, LIFE_EXPONENT, duty)

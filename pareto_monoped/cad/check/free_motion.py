@@ -45,7 +45,8 @@ def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
     """Look for parts that meet, at the angles where stops meet, and at the clearance between shank and base."""
     by_body = _by_body(product)
     turns = _turns(product, by_body)
-    found, clearance_mm = _in_working_range(product, by_body, turns)
+    found = [overlap for turn in turns for overlap in _while_turning(turn)]
+    clearance_mm = _shank_clearance_mm(product, by_body)
     text = f"shank and base come {-clearance_mm:.1f} mm into each other's reach"
     return (
         deepest(FREE_MOTION, "hip and knee through their working ranges", found),
@@ -70,17 +71,6 @@ class _Turn:
         """Whether one part is a bumper and the other a striker."""
         names = {one.name, other.name}
         return bool(names & self.soft) and bool(names & self.strikers)
-
-
-def in_working_range(product: Product) -> tuple[list[Overlap], float]:
-    """Overlaps while hip and knee move through their working ranges, and the shank's distance from the base in mm."""
-    by_body = _by_body(product)
-    return _in_working_range(product, by_body, _turns(product, by_body))
-
-
-def _in_working_range(product: Product, by_body: Bodies, turns: Sequence[_Turn]) -> tuple[list[Overlap], float]:
-    overlaps = [overlap for turn in turns for overlap in _while_turning(turn)]
-    return overlaps, _shank_clearance_mm(product, by_body)
 
 
 def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:

@@ -4,13 +4,10 @@
 function motorTint(kit) { return MOTORS.indexOf(kit) % MARKS.length; }
 
 function optionsOf(names) {
-  const isVariable = (name) => page.variables.some((v) => v.name === name);
-  const first = new Set([...page.goals, "energy_j", "electrical_energy_j", "mass_kg"]);
-  const groups = [["objectives and energies", (n) => first.has(n)], ["under uncertainty", (n) => n.includes(".") || n.endsWith("_share")], ["variables", isVariable], ["other measures", () => true]];
-  const left = new Set(names);
-  return groups.flatMap(([label, fits]) => {
-    const own = [...left].filter(fits);
-    for (const name of own) left.delete(name);
+  const first = new Set([...page.goals, ...page.leading]);
+  const groupOf = (name) => (first.has(name) ? "objectives and energies" : quantity[name].group);
+  return ["objectives and energies", "under uncertainty", "variables", "other measures"].flatMap((label) => {
+    const own = names.filter((name) => groupOf(name) === label);
     return own.length ? [make("optgroup", { label }, ...own.map((name) => make("option", { value: name }, titled(name))))] : [];
   });
 }

@@ -2,19 +2,12 @@
 
 const race = { time: 0, playing: false, last: 0, request: 0, entries: [] };
 
-// Measures of the comparison beside the objectives, in this order, as far as some design has them.
-const COMPARED = [
-  "height_m", "energy_j", "electrical_energy_j", "mass_kg", "agility_m_per_s", "sustained_jumps_per_minute", "peak_gear_torque_hip_n_m", "peak_gear_torque_knee_n_m",
-  "peak_chain_tension_n", "peak_stop_torque_hip_n_m", "peak_stop_torque_knee_n_m", "stop_compression_knee", "peak_foot_force_n", "peak_knee_force_n",
-  "gear_safety", "chain_safety", "stop_safety", "joint_safety", "link_safety",
-];
-
 function comparedRows(designs) {
   const value = (name) => (chosen) => chosen.values[name] ?? valueAt(chosen.index, name, chosen.row);
-  const measured = [...new Set([...page.goals, ...COMPARED])].filter((name) => quantity[name] && designs.some((one) => value(name)(one) !== null));
+  const measured = [...new Set([...page.goals, ...page.compared])].filter((name) => designs.some((one) => value(name)(one) !== null));
   const line = (name) => ({ label: quantity[name].label, cells: designs.map((one) => shown(name, value(name)(one), false)), unit: quantity[name].unit, numbers: designs.map((one) => value(name)(one)), better: page.directions[name] });
   const gears = (side, label, of) => ({ label: `${side} ${label}`, unit: "", cells: designs.map((one) => (one[side] ? of(one[side]) : "–")) });
-  const bodies = ["base_kg", "thigh_kg", "shank_kg"].filter((name) => designs.some((one) => one.more[name] !== undefined))
+  const bodies = [...new Set(designs.flatMap((one) => Object.keys(one.more)))]
     .map((name) => ({ label: `mass of the ${name.replace("_kg", "")}`, unit: "kg", cells: designs.map((one) => (one.more[name] === undefined ? "–" : round(one.more[name]))) }));
   return [
     ["Variables", page.variables.map((variable) => line(variable.name))],

@@ -1,6 +1,6 @@
 // Numbers of the trials: columns that the page has as lists, and others that it has as text, four letters per value.
 
-// A value of a measure or variable, null where there is none.
+// A value of a measure or variable, null where there is none; an unknown name is an error.
 function valueAt(study, name, row) {
   const { columns, packed } = page.studies[study].trials;
   if (columns[name]) return columns[name][row] ?? null;
@@ -8,6 +8,7 @@ function valueAt(study, name, row) {
   // What is under uncertainty is there of some trials only.
   const robust = page.studies[study].robust;
   if (robust?.packed[name] !== undefined) [text, at] = [robust.packed[name], robust.rows.indexOf(row)];
+  if (text === undefined) void quantity[name.split(".")[0]];
   if (text === undefined || at < 0) return null;
   const bytes = atob(text.slice(4 * at, 4 * at + 4));
   return finite(floatOf(bytes.charCodeAt(0) | (bytes.charCodeAt(1) << 8) | (bytes.charCodeAt(2) << 16)));

@@ -12,14 +12,14 @@ function showSubject(chosen) {
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
   const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
   box.append(make("span", {}, `${motor}${chosen.why}`));
-  const heads = new Set([...page.goals, "energy_j", "electrical_energy_j", "mass_kg"]);
+  const heads = new Set([...page.goals, ...page.leading]);
   for (const name of heads) {
     if (chosen.measures[name] === undefined) continue;
     byId("headline").append(make("div", {}, make("b", {}, shown(name, chosen.measures[name])), quantity[name].label));
   }
   // The same work against gravity as a share of either energy.
   const { height_m: h, mass_kg: m } = chosen.measures;
-  for (const [name, label] of [["energy_j", "mechanical efficiency"], ["electrical_energy_j", "efficiency from the battery"]]) {
+  for (const [name, label] of Object.entries(page.energies)) {
     const e = chosen.measures[name];
     if (!(h && e && m)) continue;
     const share = m * GRAVITY * (h - START_HEIGHT) / e;
@@ -155,8 +155,9 @@ function showAudit(chosen) {
     box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : chosen ? "Only designs on the front are audited." : "Nothing is selected."));
     return;
   }
-  box.append(make("p", { class: `verdict${audit.good ? "" : " no"}` }, audit.good ? "Well-conditioned: neither rounding nor the time step decides its height and energy." : `Ill-conditioned: ${audit.reason}.`));
-  const rows = Object.entries(audit).filter(([name]) => quantity[name]).map(([name, value]) => [quantity[name].label, shown(name, value)]);
+  const { good, reason, ...found } = audit;
+  box.append(make("p", { class: `verdict${good ? "" : " no"}` }, good ? "Well-conditioned: neither rounding nor the time step decides its height and energy." : `Ill-conditioned: ${reason}.`));
+  const rows = Object.entries(found).map(([name, value]) => [quantity[name].label, shown(name, value)]);
   box.append(table(["what changes", "by"], rows));
 }
 

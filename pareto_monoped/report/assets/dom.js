@@ -3,7 +3,13 @@
 const SVG = "http://www.w3.org/2000/svg";
 const page = JSON.parse(document.getElementById("payload").textContent);
 const { gravity_m_per_s2: GRAVITY, base_start_height_m: START_HEIGHT } = page.constants;
-const quantity = Object.fromEntries(page.quantities.map((q) => [q.name, q]));
+// How each measure and variable is shown, by its name; asking for one that Python does not know is an error.
+const quantity = new Proxy(Object.fromEntries(page.quantities.map((q) => [q.name, q])), {
+  get(all, name) {
+    if (typeof name === "string" && !Object.hasOwn(all, name)) throw new Error(`unknown measure or variable: ${name}`);
+    return all[name];
+  },
+});
 const [FIRST, SECOND] = page.objectives;
 const PAPERS_OWN = FIRST === "height_m" && SECOND === "energy_j";
 

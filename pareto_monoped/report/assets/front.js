@@ -12,7 +12,7 @@ function ofCase(made, name) { return inShown(name, made[name] ?? made.measures[n
 function kindOf(side) { return state.axes[`log${side.toUpperCase()}`] ? "log" : "linear"; }
 
 // Work against gravity is a floor of these energies.
-function hasFloor() { return state.axes.y === "height_m" && ["energy_j", "electrical_energy_j"].includes(state.axes.x); }
+function hasFloor() { return state.axes.y === "height_m" && Object.hasOwn(page.energies, state.axes.x); }
 
 function papersAxes() { return state.axes.y === "height_m" && state.axes.x === "energy_j"; }
 
@@ -145,7 +145,7 @@ function frontLayers(study) {
   if (card.weighted.length) {
     const rows = card.weighted.map(([, row]) => row);
     list.push(designs("weighted", study, rows, { size: 12, symbol: "square-open", color: tint }, {
-      text: (i) => `weighted search, ${FIRST === "height_m" ? "height" : plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${hoverText(study, rows[i])}`,
+      text: (i) => `weighted search, ${plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${hoverText(study, rows[i])}`,
     }));
   }
   return [...robustLayers(study), ...list];
@@ -215,8 +215,8 @@ function drawFront() {
 }
 
 function axisTitle(name) {
-  if (name === "height_m") return "jump height of the base, m";
-  return name === "energy_j" ? "mechanical energy from start to apex, J" : titled(name);
+  const { axis, unit } = quantity[name];
+  return axis ? `${axis}, ${unit}` : titled(name);
 }
 
 function showNote() {

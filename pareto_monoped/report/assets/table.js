@@ -5,7 +5,7 @@ const ROW_PX = 30; // as in the style sheet
 const tab = { list: [], first: -1, frame: byId("rows"), body: byId("rows-body") };
 
 function tableColumns() {
-  return state.table.columns ?? [...new Set([...page.goals, "energy_j", "electrical_energy_j", "mass_kg", ...page.variables.map((v) => v.name)])].filter((name) => knownNames().includes(name));
+  return state.table.columns ?? [...new Set([...page.goals, ...page.leading, ...page.variables.map((v) => v.name)])].filter((name) => knownNames().includes(name));
 }
 
 const STATES = { f: "feasible", i: "infeasible", x: "failed" };

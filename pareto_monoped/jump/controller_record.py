@@ -1,0 +1,105 @@
+"""What the controller knows about one jump: settings, robot, memory and measures, as one record of numbers.
+
+A measure that the record holds under its own name, or with "hip" or "knee" left out of the name of a pair, is taken
+from here as it is (``jump.evaluate``). Importing this module does not import numba, unlike the controller.
+"""
+
+import numpy as np
+
+MOST_DELAY = 8
+"""Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
+
+_ONE, _BOTH, _STATE = np.float64, (np.float64, (2,)), (np.float64, (4,))
+_COMMANDS = (np.float64, (MOST_DELAY + 1, 4))
+RECORD = np.dtype(
+    [
+        ("status", _ONE),  # one of RUNNING ... TIMEOUT
+        # Settings, the same for all jumps under one calibration. Flags are 0 or 1.
+        ("rest_length_m", _ONE),
+        ("timestep_s", _ONE),
+        ("read_back_s", _ONE),  # by which positions belong to a later time than speeds; the controller looks back
+        ("period_steps", _ONE),  # steps of one control period, in which the motors' torques are held
+        ("delay_periods", _ONE),
+        ("step_limit", _ONE),
+        ("stages", _ONE),  # calls per step: 4 for a Runge-Kutta integrator
+        ("fade_length_m", _ONE),  # 0: torque only while the foot touches the floor
+        ("latch", _ONE),
+        ("loss_speed_rad_per_s", _ONE),
+        ("voltage_limit", _ONE),
+        ("lags", _ONE),
+        ("mean_speed", _ONE),
+        ("regeneration_share", _ONE),
+        # The robot.
+        ("thigh_length_m", _ONE),
+        ("shank_length_m", _ONE),
+        ("foot_radius_m", _ONE),
+        ("stiffness_n_per_m", _ONE),
+        ("damping_n_s_per_m", _ONE),
+        ("torsional_stiffness_n_m_per_rad", _ONE),
+        ("weight_n", _ONE),  # the term m g of F_z
+        ("torque_limit_n_m", _BOTH),
+        ("no_load_speed_rad_per_s", _BOTH),
+        ("corner_speed_rad_per_s", _BOTH),
+        ("loss", _BOTH),  # share of the torque lost in gears and chain
+        ("heat_w_per_n2_m2", _BOTH),  # Joule heat per squared joint torque
+        ("knee_release_rad", _ONE),  # 0: the knee's torque does not fade before its stop
+        # A second controller, which holds the start pose while the foot is off the floor; 0: no torque there.
+        ("flight_stiffness_n_m_per_rad", _ONE),
+        ("flight_damping_n_m_s_per_rad", _ONE),
+        ("start_rad", _BOTH),
+        # What the loads are computed from, see ``_loads``.
+        ("body_mass_kg", (np.float64, (3,))),
+        ("thigh_com_m", _BOTH),  # x, z
+        ("shank_com_m", _BOTH),
+        ("link_inertia_kg_m2", _BOTH),  # of thigh and shank about y, through their centres of mass
+        ("armature_kg_m2", _BOTH),
+        ("coupling_kg_m2", _ONE),  # of the knee's turning parts with the thigh's rotation
+        ("rotor_kg_m2", _BOTH),  # of what turns at the motor's speed, times the ratio: torque per motor acceleration
+        ("ratio", _BOTH),
+        ("joint_damping_n_m_s_per_rad", _BOTH),
+        ("lower_stop_rad", _BOTH),
+        ("upper_stop_rad", _BOTH),
+        ("sprocket_radius_m", _ONE),
+        # What the controller remembers from step to step.
+        ("stage", _ONE),
+        ("steps", _ONE),
+        ("height_m", _ONE),  # highest so far
+        ("clearance_m", _ONE),
+        ("lift_off_step", _ONE),  # last step with contact
+        ("stood", _ONE),  # the foot has touched the floor
+        ("off_floor", _ONE),  # the foot has left the floor after it has stood
+        ("touched", _ONE),  # contact one step ago
+        ("energy_j", _BOTH),
+        ("absorbed_j", _BOTH),
+        ("drive_loss_j", _BOTH),
+        ("joule_heat_j", _ONE),
+        ("winding_heat_j", _BOTH),
+        ("electrical_energy_j", _ONE),
+        ("peak_torque_n_m", _BOTH),
+        ("peak_speed_rad_per_s", _BOTH),
+        ("peak_power_w", _BOTH),
+        ("active_steps", _ONE),
+        ("saturated_steps", _BOTH),
+        ("peak_gear_torque_n_m", _BOTH),
+        ("peak_chain_tension_n", _ONE),
+        ("peak_stop_torque_n_m", _BOTH),
+        ("peak_beyond_stop_rad", _BOTH),  # by which a joint goes beyond an end of its range
+        ("stop_energy_j", _ONE),
+        ("peak_foot_force_n", _ONE),
+        ("peak_knee_force_n", _ONE),
+        ("drift_m", _ONE),
+        ("speed_rad_per_s", _BOTH),  # at the start of the current step
+        ("motor_torque_n_m", _BOTH),  # during the current step, at the joint before losses
+        ("joint_torque_n_m", _BOTH),  # the same after losses
+        ("periods", _ONE),  # control periods so far
+        ("quiet_periods", _ONE),  # control periods since the torque was switched off for good
+        ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of each
+        ("position", _STATE),  # x, z, hip, knee at the start of the current step
+        ("velocity", _STATE),
+        ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
+    ],
+    align=True,
+)
+"""Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64."""
+RECORD_NUMBERS = RECORD.itemsize // 8
+"""Length of a record in MuJoCo's user data."""
