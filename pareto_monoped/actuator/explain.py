@@ -26,21 +26,21 @@ CONTINUOUS_BASIS = "rated by maker"
 
 
 def peak_basis(motor: Motor) -> str:
-    """Where the peak torque comes from."""
+    """Return where the peak torque comes from."""
     if motor.peak_is_assumed:
         return f"assumed, {PEAK_TO_CONTINUOUS:.2f} times the continuous one"
     return "published"
 
 
 def how_long(time_s: float | None) -> str:
-    """How long a torque may be held, in words."""
+    """Return how long a torque may be held, in words."""
     if time_s is None:
         return f"time {_NOT_KNOWN}"
     return "for ever" if math.isinf(time_s) else f"{time_s:.1f} s from cold"
 
 
 def motor_values_shown(motor: Motor) -> dict[str, Any]:
-    """Plain values; a time is None where it is not known, and also where the torque may be held for ever."""
+    """Return plain values; a time is None where it is not known, and also where the torque may be held for ever."""
     return {
         "name": motor.name,
         "kv_rpm_per_v": motor.kv_rpm_per_v,
@@ -58,7 +58,7 @@ def motor_values_shown(motor: Motor) -> dict[str, Any]:
 
 
 def motor_facts(motor: Motor) -> list[tuple[str, str]]:
-    """Lines of a table: name and value with its unit."""
+    """Return the lines of a table: name and value with its unit."""
     return [
         ("motor", f"{motor.name}, {motor.kv_rpm_per_v:g} rpm/V, {motor.rated_voltage_v:g} V"),
         ("torque constant", f"{motor.torque_constant_n_m_per_a:.4g} N m/A, DC-equivalent current"),
@@ -89,16 +89,15 @@ def _finite(time_s: float | None) -> float | None:
 class Gap:
     """Neighbouring intervals without a gearbox."""
 
-    #: ratio_low, ratio_high: the gap is [ratio_low, ratio_high)
     ratio_low: float
-    ratio_high: float
+    ratio_high: float  #: end of the gap, which belongs to the next interval
     #: For each family, the constraints that forbid its gearboxes; empty if it has no tooth set there
     in_the_way: Mapping[Family, tuple[ConstraintName, ...]]
     cures: tuple[str, ...]  #: what would help in the first interval
 
 
 def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
-    """One row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
+    """Return one row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
     actuator = entry.actuator
     assert actuator is not None
     gears = actuator.gears
@@ -138,7 +137,7 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
 
 
 def _caveats(actuator: Actuator) -> dict[str, Any]:
-    """What the torques of a row are worth: both are before losses."""
+    """Return what the torques of a row are worth: both are before losses."""
     motor = actuator.motor
     return {
         "peak_torque_basis": peak_basis(motor),
@@ -150,7 +149,7 @@ def _caveats(actuator: Actuator) -> dict[str, Any]:
 
 
 def _safeties(actuator: Actuator) -> dict[str, float]:
-    """The least safety factors over the meshes, where the gears are rated."""
+    """Return the least safety factors over the meshes, where the gears are rated."""
     rating = actuator.rating
     if rating is None:
         return {}
@@ -163,7 +162,7 @@ def _safeties(actuator: Actuator) -> dict[str, float]:
 
 
 def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
-    """Everything known about an interval that has a gearbox; its parts from the heaviest to the lightest."""
+    """Return everything known about an interval that has a gearbox; its parts from the heaviest to the lightest."""
     actuator = entry.actuator
     assert actuator is not None
     return summary(entry, sheet) | {
@@ -192,7 +191,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
 
 
 def gaps(actuator_map: ActuatorMap) -> tuple[Gap, ...]:
-    """Where the map has no gearbox, from the lowest ratio to the highest."""
+    """Return where the map has no gearbox, from the lowest ratio to the highest."""
     runs: list[list[MapEntry]] = []
     previous_has_gearbox = True
     for entry in actuator_map.entries:
@@ -247,7 +246,7 @@ def _bush(load: BushLoad) -> dict[str, float]:
 
 
 def _part(part: Part, motor: Motor) -> dict[str, Any]:
-    """All instances of one part together; the inertia is about the gearbox axis.
+    """Return all instances of one part together; the inertia is about the gearbox axis.
 
     The motor's rotor has the inertia that is simulated: that of its data sheet or its estimate. Its solid is an
     envelope of even density, which only weighs it.

@@ -60,7 +60,7 @@ _LEAST_WINDOW_MM = 2.0
 
 
 def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """All parts of an ESSPG, or of many at once.
+    """Build all parts of an ESSPG, or of many at once.
 
     The motor's base is screwed to the backplate. Its turning face carries the coupling with the sun's shaft. The casing
     bridges the motor from the backplate to the ring housing, which carries ring and main bearing.
@@ -78,13 +78,12 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 
 def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What turns with the motor: the sun in one piece with its splined shaft, the coupling, and its dowels."""
+    """Build what turns with the motor: the sun in one piece with its splined shaft, the coupling, and its dowels."""
     data, materials = settings.parts, settings.materials
     output = _output(motor)
     through = _rotor_holes(output, _ROTOR_HOLE_MM)
     r_coupling = 0.5 * output.pitch_circle_mm + max(
-        0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM,
-        _output_screw(output).countersunk + _HEAD_RIM_MM,
+        0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM, _output_screw(output).countersunk + _HEAD_RIM_MM
     )
     spline = data.spline.external
     teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
@@ -149,7 +148,7 @@ def _dowel_holes(motor: Motor) -> Pattern:
 
 
 def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
-    """The dowels through the coupling into the motor's turning face."""
+    """Build the dowels through the coupling into the motor's turning face."""
     holes = _dowel_holes(motor)
     return dowel_part(
         "coupling_dowel",
@@ -158,9 +157,7 @@ def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSett
         room_mm=shell.base_mm + shell.coupling_mm + DOWEL_STANDS_OUT_MM,
         direction=1.0,
         material=settings.materials.steel,
-        count=holes.count,
-        pitch_radius_mm=holes.pitch_radius_mm,
-        phase_rad=holes.phase_rad,
+        holes=holes,
         group=Group.ROTOR,
         partner="coupling",
         note="drill and ream the turning face through the coupling",
@@ -168,7 +165,7 @@ def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSett
 
 
 def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]:
-    """Six lightening holes between the coupling's hub and its bolt circle, as large as their webs allow."""
+    """Return six lightening holes between the coupling's hub and its bolt circle, as large as their webs allow."""
     low, high = hub_mm + _HUB_MM, 0.5 * (output.pitch_circle_mm - output.diameter_mm) - _WEB_MM
     middle = 0.5 * (low + high)
     radius = min(0.5 * (high - low) - _HALF_WEB_MM, middle * np.sin(np.pi / 6.0) - _HALF_WEB_MM)
@@ -176,7 +173,7 @@ def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]
 
 
 def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Into the motor's turning face and into its base."""
+    """Build the screws into the motor's turning face and into its base."""
     casing, steel = settings.parts.casing, settings.materials.steel
     output, base_holes = _output(motor), motor.mount_holes
     assert base_holes is not None
@@ -214,7 +211,7 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
 
 
 def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Envelopes of stator and rotor, with their shares of the motor's mass."""
+    """Build the envelopes of stator and rotor, with their shares of the motor's mass."""
     clearance = settings.parts.casing.rotor_clearance_mm
     frame, rotor_share, base = motor.framed, motor.rotor_mass_share, shell.base_mm
     assert frame is not None
@@ -259,18 +256,18 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
 
 
 def _output(motor: Motor) -> HolePattern:
-    """Holes in the motor's turning face."""
+    """Return the holes in the motor's turning face."""
     assert motor.output_holes is not None
     return motor.output_holes
 
 
 def _output_screw(output: HolePattern) -> Screw:
-    """The screw for the motor's turning face."""
+    """Return the screw for the motor's turning face."""
     return screw_for(output.diameter_mm, 0.5 * output.diameter_mm + 0.5 * _ROTOR_TAPPED_MM)
 
 
 def _rotor_holes(output: HolePattern, play_mm: float) -> Pattern:
-    """The pattern of the motor's turning face; ``play_mm`` is hole less screw diameter."""
+    """Return the pattern of the motor's turning face; ``play_mm`` is hole less screw diameter."""
     return Pattern(
         radius_mm=0.5 * output.diameter_mm + 0.5 * play_mm,
         pitch_radius_mm=0.5 * output.pitch_circle_mm,

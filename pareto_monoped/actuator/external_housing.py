@@ -27,7 +27,7 @@ BACK_BORE_MM = 8.0
 
 
 def housing_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What stands still around gears and motor."""
+    """Build what stands still around gears and motor."""
     return (
         *_ring_housing(at, shell, settings),
         *_casing_and_backplate(at, shell, motor, settings),
@@ -36,12 +36,12 @@ def housing_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Act
 
 
 def _flange_holes(shell: ExternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern of the flange between ring housing and casing."""
+    """Return the bolt pattern of the flange between ring housing and casing."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=shell.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 
 def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """The ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
+    """Build the ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
     casing, materials = settings.parts.casing, settings.materials
     z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
     ring = at.bore_ring
@@ -98,7 +98,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
 def _casing_and_backplate(
     at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings
 ) -> tuple[Part, ...]:
-    """The bridge around the motor, and the plate that carries the motor's base."""
+    """Build the bridge around the motor, and the plate that carries the motor's base."""
     casing, materials = settings.parts.casing, settings.materials
     z_flange, z_plate = shell.z_flange, shell.z_plate
     threads = _flange_holes(shell, settings, M3.core)
@@ -154,7 +154,7 @@ def _casing_and_backplate(
 
 
 def _housing_screws(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """From the ring housing into the casing, and from the backplate into the casing."""
+    """Build the screws from the ring housing and from the backplate into the casing."""
     casing, steel = settings.parts.casing, settings.materials.steel
     mount_bolts = settings.parts.interface.mount_bolt_count
     return (

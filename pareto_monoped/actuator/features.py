@@ -38,17 +38,17 @@ MOTOR_TAPPED_HOLE_MM = -0.8
 
 
 def gear_grade(settings: ActuatorSettings, grade: GearGrade) -> GearGrade | None:
-    """The steel of a gear under ``iso6336``; the rules of the paper name none."""
+    """Return the steel of a gear under ``iso6336``; the rules of the paper name none."""
     return None if settings.rules == "paper" else grade
 
 
 def gear_accuracy(settings: ActuatorSettings) -> int | None:
-    """Accuracy class of a gear's teeth under ``iso6336``; the rules of the paper name none."""
+    """Return the accuracy class of a gear's teeth under ``iso6336``; the rules of the paper name none."""
     return None if settings.rules == "paper" else settings.parts.rating.accuracy_class
 
 
 def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> str:
-    """A gear's note; '' for arrays. Wire-cutting after hardening would take a hard case off."""
+    """Return a gear's note; '' for arrays. Wire-cutting after hardening would take a hard case off."""
     if np.ndim(gear.teeth):
         return ""
     shift = f"profile shift {gear.shift * gear.module_mm:+.3f} mm (outwards), " if gear.shift else ""
@@ -60,22 +60,16 @@ def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> 
 
 
 def note_with(text: str, *numbers: Numbers) -> str:
-    """A note with numbers filled in; '' for arrays, because notes are used only for single actuators."""
+    """Return a note with numbers filled in; '' for arrays, because notes are used only for single actuators."""
     if any(np.ndim(number) for number in numbers):
         return ""
     return text.format(*(f"{float(number):g}" for number in numbers))
 
 
 def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
-    """One prism between two heights, from radii or shapes; none if a single slab has no height.
+    """Build one prism between two heights, from radii or shapes; none if a single slab has no height.
 
     In arrays every prism is kept: those without height weigh nothing.
-
-    Args:
-        z0_mm: lower end, float or shape (n,).
-        z1_mm: upper end, likewise.
-        outline: outer radius in mm or shape.
-        holes: likewise.
     """
     if _is_single(z0_mm) and _is_single(z1_mm) and float(z1_mm) - float(z0_mm) < 1e-9:
         return ()
@@ -85,48 +79,46 @@ def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbe
 
 
 def tube(z0_mm: Numbers, z1_mm: Numbers, outer_mm: Numbers, inner_mm: Numbers, *holes: Shape) -> tuple[Prism, ...]:
-    """A slab with a central bore; none if a single tube has no wall."""
+    """Build a slab with a central bore; none if a single tube has no wall."""
     if _is_single(outer_mm) and _is_single(inner_mm) and float(outer_mm) - float(inner_mm) < 1e-9:
         return ()
     return slab(z0_mm, z1_mm, outer_mm, inner_mm, *holes)
 
 
 def _is_single(value: Numbers) -> bool:
-    """As ``np.ndim(value) == 0``, which takes ten times as long for a float; a map asks it five thousand times."""
+    """Return ``np.ndim(value) == 0``, which takes ten times as long for a float; a map asks it five thousand times."""
     return getattr(value, "ndim", 0) == 0
 
 
 def output_holes(settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
-    """Bolt pattern of the output flange."""
+    """Return the bolt pattern of the output flange."""
     data = settings.parts.interface
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
 
 
 def output_dowel_holes(settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in the output flange, in every second gap of its bolts."""
+    """Return the holes for dowels in the output flange, in every second gap of its bolts."""
     data = settings.parts.interface
     gap = np.pi / data.output_bolt_count
     return Dowel(diameter_mm=data.output_dowel_mm).holes(data.output_bolt_circle_mm, data.output_bolt_count // 2, gap)
 
 
 def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in the mounting face, in every gap of its bolts."""
+    """Return the holes for dowels in the mounting face, in every gap of its bolts."""
     data = settings.parts.interface
     gap = np.pi / data.mount_bolt_count
     return Dowel(diameter_mm=data.mount_dowel_mm).holes(2.0 * at.r_bolts, data.mount_bolt_count, gap)
 
 
 def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
-    """Bolt pattern of the mounting face, and of the backplate on the casing."""
+    """Return the bolt pattern of the mounting face, and of the backplate on the casing."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:
-    """The motor's own mounting pattern.
+    """Return the motor's own mounting pattern.
 
-    Args:
-        motor: which one.
-        play_mm: hole less screw diameter, ``MOTOR_CLEARANCE_HOLE_MM`` or ``MOTOR_TAPPED_HOLE_MM``.
+    ``play_mm``: hole less screw diameter, ``MOTOR_CLEARANCE_HOLE_MM`` or ``MOTOR_TAPPED_HOLE_MM``.
     """
     holes = motor.mount_holes
     assert holes is not None
@@ -146,7 +138,7 @@ def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern
 
 
 def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
-    """The backplate's step that centres it in the casing."""
+    """Build the backplate's step that centres it in the casing."""
     return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_casing, at.r_casing - settings.parts.casing.vent_wall_mm)
 
 
@@ -159,7 +151,7 @@ def bought_bearing(
     note: str,
     joint: Joint | None = None,
 ) -> Part:
-    """A ball bearing as the ring it fills, with its catalogue mass."""
+    """Build a ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
     return Part(
         name=name,
@@ -187,13 +179,9 @@ _CAP_MM = 1.5
 
 
 def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, shaft: str) -> tuple[Part, ...]:
-    """Magnet, sensor and cap.
+    """Build the magnet, sensor and cap.
 
-    Args:
-        z_shaft_mm: height of the rear end of the motor's shaft, float or shape (n,).
-        z_back_mm: height of the backplate's outer face, likewise.
-        bore_mm: radius of the backplate's central bore, likewise.
-        shaft: name of the part whose end takes the magnet, see ``shaft_end``.
+    ``shaft``: name of the part whose end takes the magnet, see ``shaft_end``.
     """
     z_sensor = z_shaft_mm - _GAP_MM
     return (
@@ -236,7 +224,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
 
 
 def shaft_end(z0_mm: Numbers, z1_mm: Numbers, radius_mm: Numbers) -> tuple[Prism, ...]:
-    """A shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
+    """Build a shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
     split = np.minimum(z0_mm + MAGNET_MM, z1_mm)[()]
     return (*tube(z0_mm, split, radius_mm, MAGNET_RADIUS_MM), *slab(split, z1_mm, radius_mm))
 
@@ -274,7 +262,7 @@ def rated_teeth(
 
 
 def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMaking:
-    """How a spline is made, on the shaft and in the hub."""
+    """Return how a spline is made, on the shaft and in the hub."""
     return ToothMaking(
         teeth=int(spline.teeth),
         module_mm=float(spline.module_mm),
@@ -286,5 +274,5 @@ def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMakin
 
 
 def made(*teeth: ToothMaking | None) -> tuple[ToothMaking, ...]:
-    """Those that are known."""
+    """Return those that are known."""
     return tuple(one for one in teeth if one is not None)

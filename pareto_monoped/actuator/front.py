@@ -45,7 +45,7 @@ _PIN_TO_GROOVE_MM = 0.1
 
 
 def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
-    """A planet: recessed on both faces between hub and rim where there is room for it.
+    """Build a planet: recessed on both faces between hub and rim where there is room for it.
 
     The web is a share of the face width, as is usual for turned blanks.
     """
@@ -74,13 +74,8 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Planets with their bearings, pins and the pins' screws, ring."""
-    return (
-        _planet(at, settings),
-        *planet_bearing_parts(at, settings),
-        *_pins(at, settings),
-        _ring(at, settings),
-    )
+    """Build the planets with their bearings, pins and the pins' screws, ring."""
+    return (_planet(at, settings), *planet_bearing_parts(at, settings), *_pins(at, settings), _ring(at, settings))
 
 
 def _planet(at: Layout, settings: ActuatorSettings) -> Part:
@@ -116,7 +111,7 @@ def _planet(at: Layout, settings: ActuatorSettings) -> Part:
 
 
 def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """The planets' pins, and the screws that hold the second carrier on them."""
+    """Build the planets' pins, and the screws that hold the second carrier on them."""
     materials, carrier, gears = settings.materials, settings.parts.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
@@ -129,10 +124,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             role=Role.PIN,
             visibility=Visibility.INSIDE,
             material=materials.steel,
-            prisms=(
-                *slab(pin_low, pin_tap, pin, M3.core),
-                *slab(pin_tap, pin_front, pin),
-            ),
+            prisms=(*slab(pin_low, pin_tap, pin, M3.core), *slab(pin_tap, pin_front, pin)),
             process="machined",
             group=Group.OUTPUT,
             grade=ALLOYS["raceway_pin" if needles else "dowel"],
@@ -194,7 +186,7 @@ def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
 
 
 def _planet_note(gear: ExternalGear, settings: ActuatorSettings) -> str:
-    """A planet's note; with needles, what its bore needs as their outer raceway."""
+    """Return a planet's note; with needles, what its bore needs as their outer raceway."""
     note = gear_note(gear, settings)
     if settings.planet_bearing == "bushes" or not note:
         return note
@@ -210,18 +202,18 @@ def _raceway(diameter_mm: float, zone: str) -> str:
 
 
 def z_pin_front(at: Layout, settings: ActuatorSettings) -> Numbers:
-    """Height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
+    """Return the height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
     carrier = settings.parts.carrier
     return np.minimum(-(carrier.thread_depth_mm + carrier.diaphragm_mm), _z_groove(at) - _PIN_TO_GROOVE_MM)
 
 
 def _z_groove(at: Layout) -> Numbers:
-    """Height of the back of the retaining ring's groove; its play is on this side, under the bearing."""
+    """Return the height of the back of the retaining ring's groove; its play is on this side, under the bearing."""
     return at.z_bearing_front - at.shaft_ring.play_mm
 
 
 def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Carrier with output flange and webs, retaining ring, main and end bearing, secondary carrier."""
+    """Build the carrier with output flange and webs, retaining ring, main and end bearing, secondary carrier."""
     data, materials = settings.parts, settings.materials
     carrier = data.carrier
     threads, dowels = output_holes(settings), output_dowel_holes(settings)
@@ -294,7 +286,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) -> Part:
-    """The ring that holds the far ends of the planets' pins, screwed to these and to the webs."""
+    """Build the ring that holds the far ends of the planets' pins, screwed to these and to the webs."""
     carrier, materials = settings.parts.carrier, settings.materials
     screws = Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=at.gears.planets)
     web_holes = _web_holes(at, WEB_SCREW.hole)
@@ -324,12 +316,12 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
 
 
 def _has_webs(at: Layout) -> bool:
-    """Whether there are webs, or may be in arrays."""
+    """Return whether there are webs, or may be in arrays."""
     return bool(np.any(at.webs.present))
 
 
 def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
-    """Holes of the screws into the webs."""
+    """Return the holes of the screws into the webs."""
     if not _has_webs(at):
         return ()
     webs = at.webs
@@ -337,7 +329,7 @@ def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
 
 
 def _web_prisms(at: Layout) -> tuple[Prism, ...]:
-    """The webs of the carrier, tapped from behind."""
+    """Build the webs of the carrier, tapped from behind."""
     if not _has_webs(at):
         return ()
     z_tapped = _z_tapped(at)
@@ -348,7 +340,7 @@ def _web_prisms(at: Layout) -> tuple[Prism, ...]:
 
 
 def _web_threads(at: Layout) -> tuple[Hole, ...]:
-    """The tapped holes of the webs."""
+    """Return the tapped holes of the webs."""
     return tuple(
         tapped(WEB_SCREW, (hole,), at.z_secondary_front, _z_tapped(at), enters="low", usable_mm=_WEB_THREAD_MM)
         for hole in _web_holes(at, WEB_SCREW.core)
@@ -356,12 +348,12 @@ def _web_threads(at: Layout) -> tuple[Hole, ...]:
 
 
 def _z_tapped(at: Layout) -> Numbers:
-    """Height of the bottoms of the webs' tapped holes."""
+    """Return the height of the bottoms of the webs' tapped holes."""
     return at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
 
 
 def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """From behind through the second carrier into the webs."""
+    """Build the screws that clamp the second carrier to the webs from behind."""
     if not _has_webs(at):
         return ()
     return (

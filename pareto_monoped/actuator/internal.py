@@ -59,7 +59,7 @@ _BELL_PLAY_MM = 0.5
 
 
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """All parts of an ISSPG, or of many at once.
+    """Build all parts of an ISSPG, or of many at once.
 
     The ring housing is one turned piece, solid between ring and stator. It carries the main bearing, the ring and the
     stator, whose torque and heat it takes up. Where the gears need more depth than the stator has, the stator sits
@@ -89,7 +89,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 
 def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
+    """Build what turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
     data, materials = settings.parts, settings.materials
     coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
     z_hub = shell.z_coupling - coupling.thickness_mm
@@ -148,9 +148,7 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             room_mm=shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM,
             direction=1.0,
             material=materials.steel,
-            count=dowels.count,
-            pitch_radius_mm=dowels.pitch_radius_mm,
-            phase_rad=dowels.phase_rad,
+            holes=dowels,
             group=Group.ROTOR,
             partner="coupling",
             note="drill and ream the bell through the coupling",
@@ -159,26 +157,26 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
 
 
 def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern between bell and coupling."""
+    """Return the bolt pattern between bell and coupling."""
     coupling = settings.parts.coupling
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * coupling.bolt_circle_mm, count=coupling.bolt_count)
 
 
 def _bell_dowel_holes(settings: ActuatorSettings) -> Pattern:
-    """One hole for a dowel between every two of these bolts."""
+    """Return one hole for a dowel between every two of these bolts."""
     coupling = settings.parts.coupling
     return COUPLING_DOWEL.holes(coupling.bolt_circle_mm, coupling.bolt_count, np.pi / coupling.bolt_count)
 
 
 def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern between casing and ring housing."""
+    """Return the bolt pattern between casing and ring housing."""
     return Pattern(
         radius_mm=radius_mm, pitch_radius_mm=shell.r_flange_bolts, count=settings.parts.interface.mount_bolt_count
     )
 
 
 def _flange_dowel_holes(shell: InternalLayout, settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in every second gap of these bolts: they carry the ring's torque."""
+    """Return the holes for dowels in every second gap of these bolts: they carry the ring's torque."""
     bolts = settings.parts.interface.mount_bolt_count
     return FLANGE_DOWEL.holes(2.0 * shell.r_flange_bolts, bolts // 2, np.pi / bolts)
 
@@ -219,14 +217,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             role=Role.HOUSING,
             material=aluminium,
             prisms=(
-                *tube(
-                    z_flange,
-                    -casing.plate_mm,
-                    shell.r_flange,
-                    at.r_seat,
-                    threads,
-                    flange_dowels,
-                ),
+                *tube(z_flange, -casing.plate_mm, shell.r_flange, at.r_seat, threads, flange_dowels),
                 *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
                 *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
                 *tube(at.z_gear_front, z_lip, at.r_stator_in, shell.r_ring_lip),
@@ -259,7 +250,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
 
 
 def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
-    """The dowels between ring housing and casing."""
+    """Build the dowels between ring housing and casing."""
     casing, holes = settings.parts.casing, _flange_dowel_holes(shell, settings)
     return dowel_part(
         "ring_housing_dowel",
@@ -268,9 +259,7 @@ def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
         room_mm=casing.plate_mm + casing.flange_mm,
         direction=1.0,
         material=settings.materials.steel,
-        count=holes.count,
-        pitch_radius_mm=holes.pitch_radius_mm,
-        phase_rad=holes.phase_rad,
+        holes=holes,
         group=Group.HOUSING,
         partner="ring_housing",
         note="flush with the mounting face",
@@ -278,7 +267,7 @@ def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
 
 
 def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
-    """The plate at the back with the rear bearing's seat and the motor's own bolt pattern.
+    """Build the plate at the back with the rear bearing's seat and the motor's own bolt pattern.
 
     A pad behind that pattern gives its threads their depth.
     """
@@ -319,7 +308,7 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
 
 
 def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Of ring housing, backplate and coupling."""
+    """Build the screws of ring housing, backplate and coupling."""
     casing, coupling, steel = settings.parts.casing, settings.parts.coupling, settings.materials.steel
     mount_bolts = settings.parts.interface.mount_bolt_count
     return (
@@ -369,7 +358,7 @@ def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorS
 
 
 def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Envelopes of stator and rotor, with their shares of the motor's mass."""
+    """Build the envelopes of stator and rotor, with their shares of the motor's mass."""
     kit, rotor_share = frameless(motor), motor.rotor_mass_share
     height = kit.stator_height_mm
     assert height is not None

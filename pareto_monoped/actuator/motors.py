@@ -35,44 +35,36 @@ KV_TOLERANCE = 0.10
 a sinusoidal motor under block commutation; k_t per ampere of a phase current differs by 13 or 22 percent."""
 _LOOKS_LIKE = 0.03
 """How close k_t must be to that of another convention to be taken for it; our own choice."""
-
 VOLTAGE_MOST_V = 1500.0
 """Where low voltage ends for direct current (directive 2014/35/EU)."""
-
 RIM_SPEED_MOST_M_PER_S = 150.0
 """Of a rotor with glued magnets, at no-load speed: 50 to 100 m/s are usual, about 150 m/s need a sleeve (Hendershot and
 Miller, Design of Brushless Permanent-Magnet Machines). The motors here run at 16 to 33 m/s."""
-
 SHEAR_MOST_KPA = 100.0
 """Of the air gap at peak torque: torque over gap radius and gap surface. Large liquid-cooled machines reach 70 to 100
 kPa (Hendershot and Miller, as above); the motors here 16 to 25."""
-
 LENGTH_LEAST_MM = 12.0
 """Of a framed motor: face and base with the threads of their screws, up to 5 mm each, and magnets between them."""
-
 HOLE_MOST_MM = 8.0
 """Largest hole: no motor of up to 400 mm here has larger screws, and M10 needs a thicker face."""
 HOLE_WALL_MM = 1.0
 """Least metal around a motor's holes; our own choice."""
 DIAMETER_LEAST_MM = MOUNT_BORE_MM + 2.0 * (4.0 + HOLE_WALL_MM)
 """Of a motor: the base's bore, an M4 hole on either side, and metal outside them."""
-
 DENSITY_KG_PER_M3 = (800.0, 8000.0)
 """Least and greatest mass over volume of a motor's body: half of the lightest motor here (U8, 1530), and solid metal
 (laminations 7800, magnets 7500, copper 8960). The framed motors here have 1530 to 2340, the frameless ones, without the
 stator's bore, 2380 to 4970."""
-
 POWER_OVER_INPUT = (0.1, 3.0)
 """Limits of rated power over rated voltage and continuous current. Makers of propeller motors give the power at
 another voltage: 0.97 to 2.0 here (U10). Drives of joints, rated by their shaft power, have less."""
-
 INERTIA_OVER_MASS = (0.005, 1.0)
 """Least and greatest rotor inertia over the motor's mass and squared outer radius: a tenth of a solid rotor of half
 the radius and 0.4 of the mass, and a thin ring that has the whole mass. The motors here have 0.13 to 0.29."""
 
 
 def contradiction(motor: Motor) -> str | None:
-    """What is wrong with a motor: key, value, what is allowed, cure; None if nothing is."""
+    """Return what is wrong with a motor: key, value, what is allowed, cure; None if nothing is."""
     return next((found for check in _CHECKS if (found := check(motor)) is not None), None)
 
 
@@ -259,8 +251,6 @@ _CHECKS: tuple[Callable[[Motor], str | None], ...] = (
     _inertia,
     _thermal,
 )
-
-
 __all__ = [
     "AIR_GAP_MM",
     "BELL_THICKNESS_MM",
@@ -284,7 +274,7 @@ def _shipped() -> dict[str, dict[str, Any]]:
 
 
 def motor_names() -> tuple[str, ...]:
-    """The motors that ship with the package; the first is the default."""
+    """Return the motors that ship with the package; the first is the default."""
     return tuple(_shipped())
 
 
@@ -293,13 +283,14 @@ def _shipped_name(name_or_path: str) -> str | None:
 
 
 def motor_source(name_or_path: str) -> str:
-    """What error messages call a motor: ``motor U8`` or ``motor file 'my.toml'``."""
+    """Return what error messages call a motor: ``motor U8`` or ``motor file 'my.toml'``."""
     name = _shipped_name(name_or_path)
     return f"motor file {str(Path(name_or_path))!r}" if name is None else f"motor {name}"
 
 
 def load_motor(name_or_path: str) -> Motor:
-    """A motor by the name of a shipped one (any case), or from a user's TOML file with one motor at its top level.
+    """Return a motor by the name of a shipped one (any case), or from a user's TOML file with one motor at its top
+    level.
 
     Raises:
         MotorError: unknown name, unreadable file, a field that is missing, unknown or impossible, or fields that
@@ -317,10 +308,6 @@ def load_motor(name_or_path: str) -> Motor:
 def require_motor_name(name_or_path: str, *, key: str = "motor") -> None:
     """Refuse what is neither the name of a shipped motor nor may be a file, which is not opened.
 
-    Args:
-        name_or_path: the name.
-        key: where it was given, for the message.
-
     Raises:
         MotorError: an unknown name.
     """
@@ -330,7 +317,7 @@ def require_motor_name(name_or_path: str, *, key: str = "motor") -> None:
 
 
 def _user_values(name_or_path: str) -> dict[str, Any]:
-    """The fields of the motor in a user's file."""
+    """Return the fields of the motor in a user's file."""
     require_motor_name(name_or_path)
     path = Path(name_or_path)
     values = read_toml(path, what="motor file", error=MotorError)
@@ -344,7 +331,7 @@ def _user_values(name_or_path: str) -> dict[str, Any]:
 
 
 def motor_values(motor: Motor) -> dict[str, Any]:
-    """Every value of a motor as JSON has it; ``stored_motor`` reads it back.
+    """Return every value of a motor as JSON has it; ``stored_motor`` reads it back.
 
     A field that motors did not always have is left out at the value that ``stored_motor`` gives it, so that studies and
     exports stored before it came keep their hash.
@@ -354,12 +341,7 @@ def motor_values(motor: Motor) -> dict[str, Any]:
 
 
 def stored_motor(values: Mapping[str, Any], *, source: str, error: type[InputError] = MotorError) -> Motor:
-    """A motor from what a study or an export stores; its values may contradict each other, as they did then.
-
-    Args:
-        values: as ``motor_values`` gives them, of this version or an earlier one.
-        source: where they come from, the first words of a message.
-        error: which kind of ``InputError`` to raise.
+    """Return a motor from what a study or an export stores; its values may contradict each other, as they did then.
 
     Raises:
         MotorError: (or ``error``) a field is missing, unknown or impossible.

@@ -18,12 +18,11 @@ _SPACER_PLAY_MM = 0.2
 """Radial play of a spacer ring on the pin and in the planet; our own choice."""
 _LEAST_SPACER_MM = 0.32
 """Shorter spacers are left out: needles have so much room to either side; our own choice."""
-
 Place = tuple[Numbers, Numbers, Numbers]
 
 
 def planet_bearing_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What is between planets and pins, for one gear set or for arrays of them."""
+    """Build what is between planets and pins, for one gear set or for arrays of them."""
     return _bushes(at, settings) if settings.planet_bearing == "bushes" else _needle_parts(at, settings)
 
 
@@ -47,7 +46,7 @@ def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
-    """Which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
+    """Return which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
     if np.ndim(length_mm):
         return ""
     pieces = int(np.ceil(float(length_mm) / _BUSH_LENGTHS_MM[-1]))
@@ -61,7 +60,7 @@ def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
 
 
 def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Needle rollers, spacers that fill what they leave of the planet's bore, and washers at either end."""
+    """Build the needle rollers, spacers that fill what they leave of the planet's bore, and washers at either end."""
     data, pin, bore = settings.parts.needles, settings.parts.carrier.pin_diameter_mm, settings.planet_bore_mm
     rows = needle_rows(at.face_width_mm, settings)
     needles, spacers, spacer = _stacked(at, rows)
@@ -124,7 +123,7 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _stacked(at: Layout, rows: NeedleRows) -> tuple[tuple[Place, ...], tuple[Place, ...], Numbers]:
-    """Lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
+    """Return the lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
 
     One row stands in the middle, with a spacer at either end. Two rows stand at the ends, the spacers between them. In
     arrays, one row is drawn as two halves that touch.

@@ -171,7 +171,7 @@ def _face_width(sets: CandidateSets) -> Numbers:
 
 
 def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
-    """The margin of a rule about safety factors."""
+    """Return the margin of a rule about safety factors."""
 
     def margin(sets: CandidateSets) -> Numbers:
         if sets.strength is not None:
@@ -348,7 +348,7 @@ the ranges of module and planets in V hold for every candidate."""
 
 
 def active_rules(settings: ActuatorSettings) -> tuple[ConstraintName, ...]:
-    """The rules of a search, in the order of ``CONSTRAINTS``."""
+    """Return the rules of a search, in the order of ``CONSTRAINTS``."""
     return tuple(
         name
         for name, rule in CONSTRAINTS.items()
@@ -359,11 +359,7 @@ def active_rules(settings: ActuatorSettings) -> tuple[ConstraintName, ...]:
 def violations(
     sets: CandidateSets, names: tuple[ConstraintName, ...] | None = None
 ) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    """Which of the active constraints each gear set breaks.
-
-    Args:
-        sets: the gear sets.
-        names: the rules asked for; default all active ones.
+    """Return the rules asked for, by default all active ones, and where they are broken, shape (names, sets).
 
     Returns:
         The names, and an array of shape (names, sets), True where broken.

@@ -29,7 +29,6 @@ from pareto_monoped.materials import MATERIALS, Materials
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _STRICT = ConfigDict(extra="forbid")
-
 ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
 ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
 """Modules of ISO 54 (and DIN 780) between 0.5 and 1.2 mm: those of the first series, preferred, and of the second."""
@@ -171,7 +170,7 @@ class PartData:
 
 @lru_cache(maxsize=1)
 def default_parts() -> PartData:
-    """The shipped part data."""
+    """Return the shipped part data."""
     return checked(PartData, read_shipped("actuator_parts.toml", what="part data"), source="part data")
 
 
@@ -246,7 +245,7 @@ class ActuatorSettings:
         return chosen_steels(self.parts.rating) if self.steels is None else self.steels
 
     def tooth_thinning_mm(self, module_mm: Numbers) -> Numbers:
-        """By how much each tooth is drawn thinner on the reference circle; the paper's gears all by the same."""
+        """Return by how much each tooth is thinned on the reference circle; under ``paper``, all by the same."""
         return self.parts.gears.backlash_mm if self.rules == "paper" else self.parts.gears.backlash_modules * module_mm
 
     @property

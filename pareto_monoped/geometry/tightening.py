@@ -32,8 +32,7 @@ for instance Loctite 243."""
 class ThreadSize:
     """A metric coarse thread of a screw (ISO 724)."""
 
-    #: diameter_mm, pitch_mm: nominal
-    diameter_mm: float
+    diameter_mm: float  #: nominal
     pitch_mm: float
 
     @property

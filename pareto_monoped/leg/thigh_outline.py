@@ -30,13 +30,7 @@ _HEEL_FILLET = 5.0  # radius, between heel and knee
 
 
 def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) -> Path:
-    """The outline of one plate.
-
-    Args:
-        top_radius_mm: of the round end at the hip.
-        length_mm: between the axes, float or shape (n,).
-        d: dimensions.
-    """
+    """Return the outline of one plate."""
     hip_front, _, extension, flexion = thigh_stop_faces(length_mm, d)
     at_hip, at_knee = hip_stop(d).half_face_mm, knee_stop(d).half_face_mm
     hip = Pulley(x_mm=0.0, y_mm=0.0, radius_mm=top_radius_mm)
@@ -63,7 +57,7 @@ def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) ->
 
 
 def _fillet(y_mm: Numbers, d: LegDimensions) -> Pulley:
-    """A fillet on the bar's front edge."""
+    """Return a fillet on the bar's front edge."""
     return Pulley(x_mm=d.thigh_half_width_mm + _FILLET, y_mm=y_mm, radius_mm=_FILLET, inside=False)
 
 
@@ -75,7 +69,7 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
 
 
 def outer_hip_radius_mm(d: LegDimensions) -> float:
-    """Radius of the outer plate's round end at the hip, which carries the knee actuator.
+    """Return the radius of the outer plate's round end at the hip, which carries the knee actuator.
 
     Where that actuator is narrower than the hip's, the round end still reaches the ears of the hip's stop.
     """
@@ -92,12 +86,12 @@ def hip_short_mm(d: LegDimensions) -> float:
 
 
 def _least_hip_radius_mm(face: Face) -> float:
-    """Radius of the round end that an ear's edge touches."""
+    """Return the radius of the round end that an ear's edge touches."""
     return float(face.x_mm) - WING
 
 
 def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
-    """The fillet between an ear's edge and the round end at the hip, which it almost touches.
+    """Return the fillet between an ear's edge and the round end at the hip, which it almost touches.
 
     Raises:
         DesignError: the ear stands beside the round end; ``motor_fit.require_leg`` refuses such motors.
@@ -122,7 +116,7 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
 
 
 def heel_arm_mm(d: LegDimensions) -> float:
-    """Distance of the bumper's force from the heel's root, where the fillet begins.
+    """Return the distance of the bumper's force from the heel's root, where the fillet begins.
 
     The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
     """
@@ -143,9 +137,7 @@ def _heel(face: Face, d: LegDimensions) -> tuple[Pulley, ...]:
 def require_leg(maps: Maps, *sources: str) -> None:
     """Refuse motors that are too narrow for the thigh: they have gearboxes, and no robot.
 
-    Args:
-        maps: the gearboxes of both joints; there is at least one of each. The wider actuator decides.
-        sources: what the motor is called, the first words of the message, or those of hip and knee; default the name.
+    ``sources``: what the motor is called, the first words of the message, or those of hip and knee; default the name.
 
     Raises:
         MotorError: the ears of the hip's stop would stand beside the thigh's round end, which the motor's housing sets.
@@ -172,7 +164,7 @@ def require_leg(maps: Maps, *sources: str) -> None:
 
 
 def maps_for(hip: str, knee: str, rules: RuleSet) -> JointMaps:
-    """The gearboxes of a robot with these motors, each the name of a shipped one or a TOML file.
+    """Return the gearboxes of a robot with these motors, each the name of a shipped one or a TOML file.
 
     Raises:
         MotorError: an unknown or impossible motor, or one that no gearbox or no leg fits.

@@ -40,13 +40,13 @@ _LENGTHS_M = (0.3, 0.5)  # two lengths fix a straight line; any two do
 
 
 def actuator_coupling_kg_m2(actuator: Actuator) -> float:
-    """B of rotor, planets and carrier of an actuator, against its housing."""
+    """Return B of rotor, planets and carrier of an actuator, against its housing."""
     terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
     return sum(inertia * speed for part in terms for inertia, speed in part)
 
 
 def rotor_inertia_kg_m2(actuator: Actuator) -> float:
-    """Moment of inertia of everything that turns at the motor's speed: rotor, coupling, sun."""
+    """Return the moment of inertia of everything that turns at the motor's speed: rotor, coupling, sun."""
     terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
     return sum(inertia for part in terms for inertia, speed in part if speed == actuator.ratio)
 
@@ -69,7 +69,7 @@ class DriveTurning:
 
 @lru_cache(maxsize=64)
 def drive_turning(leg: LegDimensions) -> DriveTurning:
-    """The turning parts of the knee's drive in a leg.
+    """Return the turning parts of the knee's drive in a leg.
 
     The chain runs around two equal sprockets of pitch radius r at the speed r w. A closed loop of linear density rho
     that encloses the area A has the angular momentum 2 rho A r w about every axis, and no linear momentum. The
@@ -91,7 +91,7 @@ def drive_turning(leg: LegDimensions) -> DriveTurning:
 
 
 def _line(values: list[float]) -> tuple[float, float]:
-    """Constant and slope of the line through two values at ``_LENGTHS_M``."""
+    """Return the constant and slope of the line through two values at ``_LENGTHS_M``."""
     (low, high), (at_low, at_high) = _LENGTHS_M, values
     slope = (at_high - at_low) / (high - low)
     return at_low - slope * low, slope
@@ -100,7 +100,6 @@ def _line(values: list[float]) -> tuple[float, float]:
 Floats = NDArray[np.float64]
 Weigh = Callable[[Floats], Sequence[MassProperties]]
 """Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
-
 _EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show
 _MOST_NODES = 128
 # Upper triangle of the second moments, which are symmetric.
@@ -112,13 +111,12 @@ _WIDTH = 1 + 3 + len(_ROWS)
 class Tabulated:
     """The mass properties of m units over a range of lengths."""
 
-    #: low_m, high_m: ends of the range
     low_m: float
     high_m: float
     coefficients: Floats  #: of the Chebyshev series, shape (k, 10 m): mass, first and second moments of each unit
 
     def covers(self, lengths_m: Floats) -> NDArray[np.bool_]:
-        """Which lengths are in the range, shape (n,)."""
+        """Return which lengths are in the range, shape (n,)."""
         return np.asarray((self.low_m <= lengths_m) & (lengths_m <= self.high_m))
 
     def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
@@ -133,11 +131,6 @@ class Tabulated:
 
 def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
     """Tabulate units over a range of lengths, with as many nodes as the precision needs.
-
-    Args:
-        weigh: the units, part by part.
-        low_m: shortest length.
-        high_m: longest length.
 
     Raises:
         ValueError: the units do not change smoothly with the length.
@@ -158,7 +151,7 @@ def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
 
 
 def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
-    """Coefficients of the interpolant in the Chebyshev points of the first kind.
+    """Return the coefficients of the interpolant in the Chebyshev points of the first kind.
 
     Summed term by term, because the order of the sum in a matrix product may differ from run to run.
     """
@@ -171,7 +164,7 @@ def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
 
 
 def _folded(units: Sequence[MassProperties]) -> Floats:
-    """The numbers of m units and n lengths, shape (10 m, n)."""
+    """Return the numbers of m units and n lengths, shape (10 m, n)."""
     rows: list[Floats] = []
     for unit in units:
         rows += [unit.mass_kg, *np.moveaxis(unit.first_kg_m, -1, 0), *unit.second_kg_m2[..., _ROWS, _COLUMNS].T]
@@ -179,7 +172,7 @@ def _folded(units: Sequence[MassProperties]) -> Floats:
 
 
 def _sizes(values: Floats) -> Floats:
-    """The largest mass, first moment and second moment of each unit, for each of its rows, shape (10 m, 1)."""
+    """Return the largest mass, first moment and second moment of each unit, for each of its rows, shape (10 m, 1)."""
     largest = np.abs(values).max(axis=1)
     kinds = [largest[i + j : i + k].max() for i in range(0, len(values), _WIDTH) for j, k in ((0, 1), (1, 4), (4, 10))]
     return np.repeat(kinds, np.tile([1, 3, len(_ROWS)], len(values) // _WIDTH))[:, None]
@@ -201,11 +194,9 @@ class ActuatorTable:
     row: NDArray[np.intp]  #: row of each interval's actuator, shape (intervals,); any row where the interval has none
     ratio: Floats  #: real ratio of the gearbox
     armature_kg_m2: Floats  #: reflected inertia at the joint
-    #: coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``
     coupling_kg_m2: Floats
     rotor_inertia_kg_m2: Floats
     rotor_excess_kg_m2: Floats
-    #: peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``
     peak_torque_n_m: Floats
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
@@ -215,7 +206,7 @@ class ActuatorTable:
 
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
-    """The actuators of a map in numbers. The result is kept, as a map is asked for many times."""
+    """Return the actuators of a map in numbers. The result is kept, as a map is asked for many times."""
     actuators = _actuators(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     return ActuatorTable(
@@ -241,11 +232,6 @@ def _actuators(actuator_map: ActuatorMap) -> list[Actuator]:
 def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) -> Mapping[str, MassProperties]:
     """Weigh the units that depend on the actuator of a joint, with every actuator of a map. The result is kept.
 
-    Args:
-        joint: ``hip`` or ``knee``.
-        actuator_map: of that joint.
-        leg: dimensions, which depend on the motors of both joints.
-
     Returns:
         Name -> mass properties of the joint's ``ActuatorSized`` units in their body frames, one row per actuator.
     """
@@ -258,7 +244,7 @@ def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) ->
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
-    """Mass properties of several units, one row per unit."""
+    """Return the mass properties of several units, one row per unit."""
     masses = [total(part.mass_properties() for part in parts) for parts in units]
     return MassProperties(
         mass_kg=np.array([m.mass_kg for m in masses]),
@@ -268,7 +254,7 @@ def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
 
 
 def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassProperties]:
-    """The units of one link length in their body frames, part by part, one row per length."""
+    """Return the units of one link length in their body frames, part by part, one row per length."""
     return [
         unit.in_body(total(part.mass_properties() for part in unit.parts(lengths_m, leg)), leg)
         for unit in link_units(length)
@@ -276,7 +262,7 @@ def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassPrope
 
 
 def link_units(length: str) -> list[LinkSized]:
-    """The units that depend on a link length, in the order of the table."""
+    """Return the units that depend on a link length, in the order of the table."""
     return [unit for unit in UNITS if isinstance(unit, LinkSized) and unit.length == length]
 
 
@@ -286,14 +272,9 @@ def _link_table(length: str, leg: LegDimensions) -> Tabulated:
 
 
 def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, MassProperties]:
-    """Name -> mass properties of the units that depend on a link length, in their body frames, one row per length.
+    """Return the mass properties of the units that depend on a link length, by name, in their body frames.
 
     Lengths within the table are interpolated to 12 digits; those beyond its ends are weighed part by part.
-
-    Args:
-        length: which length, a name of ``design.NAMES``.
-        leg: dimensions.
-        lengths_m: shape (n,).
     """
     table = _link_table(length, leg)
     beyond = ~table.covers(lengths_m)

@@ -21,10 +21,8 @@ from pareto_monoped.leg.shank import foot_part, shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 
 Floats = NDArray[np.float64]
-
 BODIES = ("base", "thigh", "shank")
 JOINTS = ("hip", "knee")
-
 PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From part frames (z along the joint axis, y up along the link) to body frames (y along the joint axis, z up)."""
 UPRIGHT: Floats = np.eye(3)
@@ -36,19 +34,13 @@ for _matrix in (PART_TO_BODY, UPRIGHT, OVER):
 
 
 def in_body(properties: MassProperties, turn: Floats, z_mm: float) -> MassProperties:
-    """Mass properties from a unit's frame to the body frame.
-
-    Args:
-        properties: of the unit, about the origin of its frame.
-        turn: rotation from the unit's frame to the body's part frame, shape (3, 3).
-        z_mm: where the unit's origin lies on the z axis of the body's part frame.
-    """
+    """Move mass properties from a unit's frame to the body frame."""
     move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * z_mm])
     return properties.placed(PART_TO_BODY @ turn, move)
 
 
 def _middle_plane(leg: LegDimensions) -> float:
-    """Z of a unit whose origin lies in the middle plane of the leg."""
+    """Return the height of a unit whose origin lies in the middle plane of the leg."""
     return 0.0
 
 
@@ -66,7 +58,7 @@ class UnitKind:
     weighed_last: bool = False
 
     def in_body(self, properties: MassProperties, leg: LegDimensions) -> MassProperties:
-        """Mass properties from the unit's frame to the body frame."""
+        """Move mass properties from the unit's frame to the body frame."""
         return in_body(properties, self.turn, self.z_mm(leg))
 
 

@@ -39,12 +39,12 @@ _BENDS_PER_LOOP, _BENDS_PER_JUMP = 4, 2
 
 
 def sliding_m(drive: ChainDrive, bends: float, teeth: int) -> float:
-    """Path of a pin in its bush for a number of bends by one tooth of a sprocket."""
+    """Return the path of a pin in its bush for a number of bends by one tooth of a sprocket."""
     return float(bends * 2.0 * np.pi / teeth * 0.5e-3 * drive.pin_diameter_mm)
 
 
 def wear_n(drive: ChainDrive, jumps: float) -> float:
-    """Pull under which the chain grows by 3 percent in so many jumps: p A s / s_duty."""
+    """Return the pull under which the chain grows by 3 percent in so many jumps: p A s / s_duty."""
     loops = _SPEED_M_PER_S * 3600.0 * _HOURS / (1e-3 * drive.pitch_mm * _LINKS)
     rated_m = sliding_m(drive, _BENDS_PER_LOOP * loops, _TEETH)
     duty_m = sliding_m(drive, _BENDS_PER_JUMP * jumps, drive.teeth)
@@ -56,7 +56,6 @@ def _wear(s: Structure) -> float:
 
 
 _CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
-
 JOINTS = (
     LegJoint(
         name="chain_breaking",
@@ -83,8 +82,6 @@ JOINTS = (
         cure=_CURE,
     ),
 )
-
-
 BAR, FORK = ALLOYS["aw_7075_t6"], ALLOYS["c45_qt"]
 _SHEAR = 1.0 / np.sqrt(3.0)  # yield in shear over that in tension (von Mises)
 _LIMIT_CYCLES = 2e6  # N_D of VDI 2230-1
@@ -92,12 +89,12 @@ _LEAST_CYCLES = 1e4  # below, VDI 2230-1 gives no fatigue strength
 
 
 def stud_yield_n(diameter_mm: float, yield_mpa: float) -> float:
-    """Pull at which a thread's stress area yields."""
+    """Return the pull at which a thread's stress area yields."""
     return thread_size(diameter_mm).stress_area_mm2 * yield_mpa
 
 
 def stud_fatigue_n(diameter_mm: float, cycles: float) -> float:
-    """Swelling pull that a thread rolled before heat treatment bears so often (VDI 2230-1, 5.5.3).
+    """Return the swelling pull that a thread rolled before heat treatment bears so often (VDI 2230-1, 5.5.3).
 
     The amplitude is 0.85 (150 / d + 45) MPa for two million cycles, and more by the cube root for fewer.
     """
@@ -116,24 +113,18 @@ def strip_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> float:
 
 
 def bar_n(width_mm: float, flat_mm: float, diameter_mm: float, yield_mpa: float) -> float:
-    """Pull at which a square bar yields in its flat middle or beside its thread."""
+    """Return the pull at which a square bar yields in its flat middle or beside its thread."""
     beside = width_mm**2 - 0.25 * np.pi * diameter_mm**2
     return float(min(width_mm * flat_mm, beside) * yield_mpa)
 
 
 def fork_n(half_mm: float, cheek_mm: float, pin_mm: float, slot_mm: float, root_mm: float, yield_mpa: float) -> float:
-    """Pull at which a fork yields: its cheeks beside the pin, under the pin, the pin itself, or its root.
+    """Return the pull at which a fork yields: its cheeks beside the pin, under the pin, the pin itself, or its root.
 
     The root is a beam with the pull in its middle, clamped by the cheeks: its moment is F l / 8 over the distance l of
     their middles.
 
-    Args:
-        half_mm: half width of cheeks and root.
-        cheek_mm: thickness of a cheek.
-        pin_mm: diameter of the pin.
-        slot_mm: width between the cheeks.
-        root_mm: thickness of the root.
-        yield_mpa: of fork and pin.
+    ``half_mm``: half width of cheeks and root.
     """
     beside = 2.0 * cheek_mm * (2.0 * half_mm - pin_mm) * yield_mpa
     under = 2.0 * cheek_mm * pin_mm * yield_mpa
@@ -151,7 +142,6 @@ def _fork(s: Structure) -> float:
 _SIZE = 2.0 * THREAD.shank
 _ENDS = ("turnbuckle_end_hip", "turnbuckle_end_knee")
 _YIELD = "our own choice against yield, for a pull that is measured"
-
 TURNBUCKLE_JOINTS = tuple(
     LegJoint(
         name=name,

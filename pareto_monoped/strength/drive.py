@@ -46,19 +46,19 @@ _SLIP = "VDI 2230-1, R12: against slip under static load"
 
 
 def one(s: Structure, role: Role, group: Group) -> Part:
-    """The actuator's only part of a role and group."""
+    """Build the actuator's only part of a role and group."""
     (found,) = (part for part in s.actuator.parts if part.role is role and part.group is group)
     return found
 
 
 def yield_mpa(part: Part) -> float:
-    """Of the alloy that a part is ordered in."""
+    """Return the yield stress of the alloy that a part is ordered in."""
     assert part.grade is not None
     return part.grade.yield_mpa
 
 
 def layout_of(s: Structure) -> Layout:
-    """The heights and radii of the actuator."""
+    """Return the heights and radii of the actuator."""
     a = s.actuator
     return layout(a.motor, a.family, a.gears, a.face_width_mm, s.settings)
 
@@ -83,11 +83,9 @@ def _holds(hole: object, pin: Part) -> bool:
 
 
 def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
-    """Transverse force at which the weakest layer of a circle of dowels yields, or the dowels between them.
+    """Return the transverse force at which the weakest layer of a circle of dowels yields, or the dowels between them.
 
-    Args:
-        pin: the dowels.
-        layers: of each part that they join: engaged length in mm, yield stress in MPa.
+    ``layers``: of each part that they join: engaged length in mm, yield stress in MPa.
     """
     outline = pin.prisms[0].outline
     assert isinstance(outline, Circle)
@@ -97,7 +95,7 @@ def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
 
 
 def spline(s: Structure) -> float:
-    """Output torque at which the spline yields the coupling."""
+    """Return the output torque at which the spline yields the coupling."""
     coupling = one(s, Role.COUPLING, Group.ROTOR)
     hub, teeth = _spline(coupling)
     length = float(hub.z1_mm) - float(hub.z0_mm)
@@ -108,7 +106,7 @@ def spline(s: Structure) -> float:
 
 
 def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
-    """The slab of the coupling with the spline, and the spline."""
+    """Build the slab of the coupling with the spline, and the spline."""
     ((hub, teeth),) = (
         (prism, hole) for prism in coupling.prisms for hole in prism.holes if isinstance(hole, ExternalGear)
     )
@@ -116,7 +114,7 @@ def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
 
 
 def shaft(s: Structure) -> float:
-    """Output torque at which the sun's shaft yields between spline and teeth, at its thinnest.
+    """Return the output torque at which the sun's shaft yields between spline and teeth, at its thinnest.
 
     Where the spline's roots lie below the shaft, a hob runs out into it. What is left of the section there is at least
     the round one within the roots, which counts.
@@ -131,7 +129,7 @@ def shaft(s: Structure) -> float:
 
 
 def coupling_dowels(s: Structure) -> float:
-    """Output torque at which the dowels between motor and coupling yield a hole."""
+    """Return the output torque at which the dowels between motor and coupling yield a hole."""
     pin = one(s, Role.PIN, Group.ROTOR)
     coupling, rotor = one(s, Role.COUPLING, Group.ROTOR), one(s, Role.MOTOR_ROTOR, Group.ROTOR)
     force = dowel_force_n(
@@ -141,7 +139,7 @@ def coupling_dowels(s: Structure) -> float:
 
 
 def screw_slip_torque_n_m(screw: Part, s: Structure) -> float:
-    """Torque about the actuator's axis at which a circle of screws slips."""
+    """Return the torque about the actuator's axis at which a circle of screws slips."""
     materials = s.settings.materials
     preload = least_preload_n(
         fastening(screw),
@@ -153,13 +151,13 @@ def screw_slip_torque_n_m(screw: Part, s: Structure) -> float:
 
 
 def fastening(screw: Part) -> Fastening:
-    """How a screw is tightened."""
+    """Return how a screw is tightened."""
     assert screw.fastening is not None
     return screw.fastening
 
 
 def shank_and_thread_mm(screw: Part) -> tuple[float, float]:
-    """Length of a screw's shank, which is its grip, and of its thread, which is drawn thinner."""
+    """Return the length of a screw's shank, which is its grip, and of its thread, which is drawn thinner."""
     nominal = 0.5 * fastening(screw).thread.diameter_mm
     spans = {
         float(prism.outline.radius_mm): float(prism.z1_mm) - float(prism.z0_mm)
@@ -171,7 +169,7 @@ def shank_and_thread_mm(screw: Part) -> tuple[float, float]:
 
 
 def housing_screws(s: Structure) -> float:
-    """Output torque of the motor at which a joint of the housing slips that carries the motor's reaction.
+    """Return the output torque of the motor at which a joint of the housing slips that carries the motor's reaction.
 
     In the ESSPG, base, backplate and casing pass it on to the ring housing. In the ISSPG, the stator is bonded onto the
     ring housing.
@@ -215,23 +213,20 @@ def ring_housing(s: Structure) -> float:
 
 
 def pin_bending(s: Structure) -> float:
-    """Output torque at which a planet's pin yields in bending."""
+    """Return the output torque at which a planet's pin yields in bending."""
     return planet_pins(s)[0]
 
 
 def pin_seat(s: Structure) -> float:
-    """Output torque at which a planet's pin yields its shorter seat."""
+    """Return the output torque at which a planet's pin yields its shorter seat."""
     return planet_pins(s)[1]
 
 
 def planet_pins(s: Structure) -> tuple[float, float]:
-    """Output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
+    """Return the output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
     a, at, carrier = s.actuator, layout_of(s), s.settings.parts.carrier
     (pin,) = (part for part in a.parts if part.role is Role.PIN and part.group is Group.OUTPUT)
-    seats_mm = (
-        float(z_pin_front(at, s.settings) - at.z_shoulder),
-        carrier.pin_depth_mm,
-    )
+    seats_mm = (float(z_pin_front(at, s.settings) - at.z_shoulder), carrier.pin_depth_mm)
     span = float(at.z_shoulder - at.z_secondary_front)
     bending = pin_bending_force_n(carrier.pin_diameter_mm, span, yield_mpa(pin))
     # Half of the load on either seat, one of which is short.
@@ -302,8 +297,6 @@ def _rows() -> tuple[ActuatorJoint, ...]:
 
 
 JOINTS = _rows()
-
-
 _SHARE = 0.5
 """Of the output's torque, in the second carrier: both seats of a pin are alike."""
 _REASON = (
@@ -312,7 +305,7 @@ _REASON = (
 
 
 def sheared_n(screw: Fastening) -> float:
-    """Force across a tightened screw at which its core yields: what its preload leaves by von Mises.
+    """Return the force across a tightened screw at which its core yields: what its preload leaves by von Mises.
 
     The torsion of tightening has gone by then. The friction of the joint comes on top and is not counted.
     """
@@ -322,7 +315,7 @@ def sheared_n(screw: Fastening) -> float:
 
 
 def clamped_beam_n(length_mm: float, modulus_mm3: float, yield_mpa: float) -> float:
-    """Force at the end of a beam, clamped at both ends, at which it yields: M = F L / 2."""
+    """Return the force at the end of a beam, clamped at both ends, at which it yields: M = F L / 2."""
     return 2.0 * modulus_mm3 * yield_mpa / length_mm
 
 
@@ -331,7 +324,7 @@ def _at_output_n_m(force_n: float, count: float, radius_mm: float) -> float:
 
 
 def screws(s: Structure) -> float:
-    """Output torque at which a screw of the webs yields in shear; infinite without webs."""
+    """Return the output torque at which a screw of the webs yields in shear; infinite without webs."""
     webs = layout_of(s).webs
     if not webs.present:
         return float(np.inf)

@@ -47,14 +47,9 @@ TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *plates.JOINTS,
 )
 """All rows. A module with joints of its own adds its tuple here."""
-
-
 Floats = NDArray[np.float64]
-
 MOST_FACTOR = 1000.0
 """Factors are cut here, because a joint without load would have an infinite one, which JSON cannot hold."""
-
-
 Of = Side | Literal["leg"]
 """What a capacity belongs to."""
 
@@ -71,7 +66,7 @@ class Capacities:
     columns: tuple[slice, ...]  #: of each row of ``TABLE``: where its capacities stand in ``values``
 
     def plain(self, of: Of) -> NDArray[np.intp]:
-        """Columns of ``values`` with the capacities of ``_PLAIN``."""
+        """Return the columns of ``values`` with the capacities of ``_PLAIN``."""
         return np.array([self.columns[k].start for k in _PLAIN[of]], dtype=np.intp)
 
 
@@ -134,7 +129,7 @@ def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:
 
 
 def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:
-    """Capacities of some structures, shape (structures, numbers of the capacity)."""
+    """Return the capacities of some structures, shape (structures, numbers of the capacity)."""
     values = capacity.of(structures) if isinstance(capacity, Together) else [capacity(s) for s in structures]
     return np.array([_numbers(value) for value in values])
 
@@ -145,12 +140,9 @@ def _numbers(capacity: float | Sequence[float]) -> tuple[float, ...]:
 
 
 def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:
-    """The safety factor of every joint of every design, shape (n, rows of ``TABLE``).
+    """Return the safety factor of every joint of every design, shape (n, rows of ``TABLE``).
 
-    Args:
-        designs: shape (n, number of variables), see ``design.complete``; the ratios choose the gearboxes.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of the designs' jumps.
+    ``designs``: shape (n, number of variables), see ``design.complete``; the ratios choose the gearboxes.
 
     Returns:
         At most ``MOST_FACTOR``; NaN where a load is unknown. A design without gearbox has NaN loads.
@@ -201,14 +193,10 @@ class JointFactor:
 
 
 def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor, ...]:
-    """The factors of one design in the order of the table; none if its jump failed, because loads are unknown then.
+    """Return the factors of one design in the order of the table; none if its jump failed, because loads are unknown
+    then.
 
     Rows that only inform are left out where the rules know no such limit.
-
-    Args:
-        design: whose gearboxes are looked up.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of its jump, one row.
     """
     factors = strength_factors(design.as_array(), maps, loads)[0]
     known = ~np.isnan(factors)
@@ -249,13 +237,7 @@ class GearLife:
 
 
 def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
-    """The life of a design's gears under strikes; None if its jump failed, and under rules that know no fatigue.
-
-    Args:
-        design: whose gearboxes are looked up.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of its jump, one row.
-    """
+    """Return the life of a design's gears under strikes; None if its jump failed or its rules know no fatigue."""
     both = joint_maps(maps)
     leg, settings = leg_dimensions(both), both.hip.settings
     torques = {side: float(getattr(loads, f"peak_gear_torque_{side}_n_m")[0]) for side in SIDES}

@@ -24,7 +24,8 @@ MOST_JUMPS = 1e9
 
 
 def static_torques_n_m(s: Structure) -> tuple[float, float]:
-    """Output torques at which the weakest flank and the weakest root have the static safety that the rating requires.
+    """Return the output torques at which the weakest flank and the weakest root have the static safety that the rating
+    requires.
 
     Stress grows with the torque and a little less than in proportion to it, because misalignment weighs less under a
     high load. The torque is therefore the limit of T <- T (S_H / S_H,min)^2 and of T <- T S_F / S_F,min.
@@ -45,7 +46,8 @@ def static_torques_n_m(s: Structure) -> tuple[float, float]:
 
 
 def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
-    """Output torques that the gears of one motor carry in every jump of their duty, with the safeties that it requires.
+    """Return the output torques that the gears of one motor carry in every jump of their duty, with the safeties that
+    it requires.
 
     They depend on no length and no jump, so that they are computed once per actuator map, all gearboxes of a family
     together. The least of flanks and roots; NaN under the rules ``paper``, which know no fatigue.
@@ -64,7 +66,8 @@ def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
 
 
 def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
-    """Jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their duty.
+    """Return the jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their
+    duty.
 
     0 if they do not last a single one, ``MOST_JUMPS`` if they last that many; NaN under the rules ``paper``.
     """
@@ -90,7 +93,7 @@ def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
 
 
 def lewis_torque_n_m(s: Structure) -> float:
-    """Output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
+    """Return the output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
 
     Every mesh of the sun carries an equal share. The stress is that of ``actuator.strength.face_width_mm`` without
     service factor and velocity factor: both stand for loads beyond the motor's torque, and here the load is measured.
@@ -105,7 +108,7 @@ def lewis_torque_n_m(s: Structure) -> float:
 
 
 def _torques_n_m(s: Structure) -> tuple[float, float]:
-    """Output torques that flanks and roots carry once; the rules ``paper`` have no limit of flanks."""
+    """Return the output torques that flanks and roots carry once; the rules ``paper`` have no limit of flanks."""
     return static_torques_n_m(s) if s.settings.rules == "iso6336" else (np.inf, lewis_torque_n_m(s))
 
 
@@ -120,7 +123,6 @@ _TEETH: dict[str, tuple[str, Callable[..., Any]]] = {
         lambda flank, root, torque: root / torque,
     ),
 }
-
 _ONCE = tuple(
     ActuatorJoint(
         name=f"{side}_gear_{tooth}",

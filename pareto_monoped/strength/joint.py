@@ -25,24 +25,20 @@ class Loads:
     All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``.
     """
 
-    #: peak_torque_hip_n_m, peak_torque_knee_n_m: of the motors, at the joints, before losses
-    peak_torque_hip_n_m: Floats
-    peak_torque_knee_n_m: Floats
+    peak_torque_hip_n_m: Floats  #: of the motor, at the joint, before losses
+    peak_torque_knee_n_m: Floats  #: likewise
     #: peak_gear_torque_hip_n_m, peak_gear_torque_knee_n_m: through the gearboxes, at their outputs; the end stops and
     #: the foot's impact are in it. A housing reacts to no more than that.
     peak_gear_torque_hip_n_m: Floats
     peak_gear_torque_knee_n_m: Floats
     peak_chain_tension_n: Floats  #: pull of the chain
-    #: peak_stop_torque_hip_n_m, peak_stop_torque_knee_n_m: of the joints' end stops
-    peak_stop_torque_hip_n_m: Floats
-    peak_stop_torque_knee_n_m: Floats
-    #: stop_compression_hip, stop_compression_knee: of the bumpers, as shares of their travel
-    stop_compression_hip: Floats
-    stop_compression_knee: Floats
+    peak_stop_torque_hip_n_m: Floats  #: of the joint's end stops
+    peak_stop_torque_knee_n_m: Floats  #: likewise
+    stop_compression_hip: Floats  #: of the bumpers, as a share of their travel
+    stop_compression_knee: Floats  #: likewise
     stop_energy_j: Floats  #: into all end stops
     peak_foot_force_n: Floats  #: of the floor on the foot
     peak_knee_force_n: Floats  #: between thigh and shank, by bearings, chain and end stop together
-    #: thigh_length_m, shank_length_m: of the links
     thigh_length_m: Floats
     shank_length_m: Floats
 
@@ -55,7 +51,7 @@ LOAD_NAMES: tuple[str, ...] = tuple(field.name for field in fields(Loads))
 
 
 def loads_of(columns: Mapping[str, Any]) -> Loads:
-    """Loads from the columns of stored trials or of evaluations.
+    """Return the loads from the columns of stored trials or of evaluations.
 
     Args:
         columns: name -> values of shape (n,), such as a data frame of trials; others than ``LOAD_NAMES`` are ignored,
@@ -92,7 +88,7 @@ class Together:
 
 
 def over(capacity: Any, load: Any) -> Any:
-    """The common safety factor: what a joint carries over what it has to carry."""
+    """Return the common safety factor: what a joint carries over what it has to carry."""
     return capacity / load
 
 

@@ -35,14 +35,9 @@ _BEARINGS = 2
 def dowels_n_m(
     count: float, circle_mm: float, diameter_mm: float, layers: tuple[tuple[float, float], ...], pin_mpa: float
 ) -> float:
-    """Torque at which a circle of dowels yields a hole, by its mean pressure, or the dowels, in shear.
+    """Return the torque at which a circle of dowels yields a hole, by its mean pressure, or the dowels, in shear.
 
-    Args:
-        count: of dowels.
-        circle_mm: radius of their circle.
-        diameter_mm: of a dowel.
-        layers: depth in mm and yield stress in MPa of each part that a dowel stands in.
-        pin_mpa: yield stress of the dowels.
+    ``layers``: depth in mm and yield stress in MPa of each part that a dowel stands in.
     """
     holes = min(diameter_mm * depth * stress for depth, stress in layers)
     shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * _SHEAR * pin_mpa  # 4 / 3 of the mean in the middle
@@ -50,43 +45,32 @@ def dowels_n_m(
 
 
 def bearing_safety(static_n: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any:
-    """Safety s0 = 2 C0 / P of the knee's two bearings (ISO 76).
+    """Return the safety s0 = 2 C0 / P of the knee's two bearings (ISO 76).
 
     The chain pulls the shank along the thigh by F_c, and the stop pushes it by F_s = T / lever at an angle to that. The
     bearings balance both and what the shank needs, the force K at the knee, in whatever direction:
     P <= K + |F_c + F_s|.
 
-    Args:
-        static_n: static rating C0 of a bearing.
-        lever_mm: of the stop.
-        cross: cosine of the angle between both forces.
-        loads: pull of the chain, torque of the stop, force at the knee.
+    ``cross``: cosine of the angle between both forces; ``loads``: pull of the chain, torque of the stop, force at the
+    knee.
     """
     return _BEARINGS * static_n / bearings_n(lever_mm, cross, *loads)
 
 
 def bearings_n(lever_mm: Any, cross: Any, pull: Any, torque: Any, knee: Any) -> Any:
-    """Load of both bearings of the knee together; arguments as of ``bearing_safety``."""
+    """Return the load of both bearings of the knee together; arguments as of ``bearing_safety``."""
     push = 1e3 * torque / lever_mm
     together = np.sqrt(np.square(pull) + np.square(push) + 2.0 * cross * pull * push)
     return knee + together
 
 
 def bearing_life(dynamic_n: Any, turns: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any:
-    """L10 of the knee's bearings (ISO 281) over the turns of the duty, if each turn had the peak load.
-
-    Args:
-        dynamic_n: C of a bearing.
-        turns: of the duty.
-        lever_mm: see ``bearing_safety``, as for the next two.
-        cross: cosine.
-        loads: of the jump.
-    """
+    """Return L10 of the knee's bearings (ISO 281) over the turns of the duty, if each turn had the peak load."""
     return 1e6 * (_BEARINGS * dynamic_n / bearings_n(lever_mm, cross, *loads)) ** 3 / turns
 
 
 def _dowels(s: Structure) -> float:
-    """Of the chain's pull: both plates take the axle's torque."""
+    """Return the chain's pull at which the axle's dowels yield; both plates take the axle's torque."""
     holes, plate_mm = axle_dowels(), s.leg.shank_plate_mm
     layers = ((plate_mm, PLATE.yield_mpa), (DOWEL_DEPTH, AXLE.yield_mpa))
     one = dowels_n_m(
@@ -109,7 +93,7 @@ def _bearings(s: Structure) -> tuple[float, ...]:
 
 
 def _life(s: Structure) -> tuple[float, ...]:
-    """In each jump the knee swings through its range and back."""
+    """Return what ``bearing_life`` needs; in each jump the knee swings through its range and back."""
     stop = knee_stop(s.leg)
     turns = s.settings.parts.duty.jumps * 2.0 * (stop.upper_rad - stop.lower_rad) / (2.0 * np.pi)
     dynamic = float(rated_bearing(2.0 * s.leg.bearing_bore_radius_mm).dynamic_rating_n)
@@ -117,7 +101,6 @@ def _life(s: Structure) -> tuple[float, ...]:
 
 
 _CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
-
 JOINTS = (
     LegJoint(
         name="knee_axle_dowels",
@@ -161,7 +144,7 @@ JOINTS = (
 
 
 def tube_modulus_mm3(outer_mm: float, inner_mm: float) -> float:
-    """Section modulus of a tube against bending; twice as much against torsion."""
+    """Return the section modulus of a tube against bending; twice as much against torsion."""
     return float(0.25 * np.pi * (outer_mm**4 - inner_mm**4) / outer_mm)
 
 
@@ -172,7 +155,7 @@ def bending_and_torsion(limit_mpa: Any, bent_per_n: Any, twisted_per_n_m: Any, p
 
 @lru_cache(maxsize=16)
 def _parts(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns with the knee's output; all gearboxes of a map share it."""
+    """Build what turns with the knee's output; all gearboxes of a map share it."""
     return tuple(part for part in hip_joints(d) if part.group is Group.KNEE_DRIVE)
 
 
@@ -182,7 +165,7 @@ def _drive(s: Structure, role: Role) -> Part:
 
 
 def _moment_mm(s: Structure, height_mm: float) -> float:
-    """Bending moment of the drive at a height z, per newton of the chain's pull, which acts at z = 0."""
+    """Return the bending moment of the drive at a height z, per newton of the chain's pull, which acts at z = 0."""
     front, behind = -middle_mm(), s.leg.knee_mount_mm + float(main_bearing_depth_mm(layout_of(s)))
     if height_mm < 0.0:
         return behind / (front + behind) * (front + height_mm)
@@ -190,7 +173,7 @@ def _moment_mm(s: Structure, height_mm: float) -> float:
 
 
 def shaft_n(s: Structure) -> float:
-    """Chain's pull at which the stub of the shaft yields where it leaves the sprocket."""
+    """Return the chain's pull at which the stub of the shaft yields where it leaves the sprocket."""
     shaft = _drive(s, Role.SHAFT)
     stub = min(shaft.prisms, key=lambda prism: float(prism.z0_mm))
     (bore,) = stub.holes
@@ -209,7 +192,7 @@ def _rim_inside_holes(coupling: Part) -> tuple[float, float]:
 
 
 def coupling(s: Structure) -> tuple[float, float, float]:
-    """Of the drive coupling: yield stress, bending stress per pull, shear stress per torque.
+    """Return yield stress, bending stress per pull and shear stress per torque of the drive coupling.
 
     Only the ring inside all holes counts. It is bent most where it meets the shaft's flange.
     """
@@ -220,7 +203,8 @@ def coupling(s: Structure) -> tuple[float, float, float]:
 
 
 def opening_n(s: Structure) -> float:
-    """Chain's pull at which the drive's joint begins to gape at its edge: M / W reaches the pressure n F_V / A.
+    """Return the chain's pull at which the drive's joint begins to gape at its edge: M / W reaches the pressure n F_V /
+    A.
 
     The joint is the ring of the coupling's face. Its holes weaken area and modulus alike and are left out.
     """
@@ -240,7 +224,6 @@ def opening_n(s: Structure) -> float:
 
 
 _CHAIN_SUPPORT_CURE = "release the knee's torque before its stop, or a lower knee_ratio"
-
 CHAIN_SUPPORT_JOINTS = (
     ActuatorJoint(
         name="knee_drive_shaft",

@@ -29,12 +29,12 @@ _ANY_LENGTH_M = 0.05
 
 
 def dowels_under(torque_n_m: Any, force_n: Any, acting_n_m: Any, acting_n: Any) -> Any:
-    """Safety factor of dowels that carry so much torque alone, or so much force alone, under both."""
+    """Return the safety factor of dowels that carry so much torque alone, or so much force alone, under both."""
     return 1.0 / (acting_n_m / torque_n_m + acting_n / force_n)
 
 
 def _pins(parts: tuple[Part, ...], holes: Pattern, group: Group) -> Part:
-    """The circle of dowels that stands in a pattern."""
+    """Build the circle of dowels that stands in a pattern."""
     (found,) = (
         part
         for part in parts
@@ -77,7 +77,7 @@ def knee_output(s: Structure) -> tuple[float, float]:
 
 
 def knee_mount(s: Structure) -> tuple[float, float]:
-    """Torque and force that the dowels between the knee actuator's housing and the outer plate carry."""
+    """Return the torque and force that the dowels between the knee actuator's housing and the outer plate carry."""
     d = s.leg
     pin = _pins(hip_joints(d), d.knee.mount_dowel, Group.FIXED)
     _, high = _ends(pin)
@@ -86,7 +86,7 @@ def knee_mount(s: Structure) -> tuple[float, float]:
 
 
 def hip_mount(s: Structure) -> tuple[float, float]:
-    """Torque and force that the dowels between the hip actuator's housing and the base's cheek carry."""
+    """Return the torque and force that the dowels between the hip actuator's housing and the base's cheek carry."""
     d = s.leg
     pin = _pins(base_parts(_ANY_LENGTH_M, d), d.hip.mount_dowel, Group.FIXED)
     low, high = _ends(pin)
@@ -95,7 +95,7 @@ def hip_mount(s: Structure) -> tuple[float, float]:
 
 
 def _screws(parts: tuple[Part, ...], pitch_radius_mm: float, group: Group) -> Part:
-    """The circle of screws with a radius."""
+    """Build the circle of screws with a radius."""
     (found,) = (
         part
         for part in parts
@@ -105,7 +105,7 @@ def _screws(parts: tuple[Part, ...], pitch_radius_mm: float, group: Group) -> Pa
 
 
 def screws_tightened(s: Structure) -> float:
-    """The least of ``tightened`` over all screws between the actuators and the links."""
+    """Return the least of ``tightened`` over all screws between the actuators and the links."""
     d, thigh, base = s.leg, hip_joints(s.leg), base_parts(_ANY_LENGTH_M, s.leg)
     sprocket = yield_mpa(next(part for part in thigh if part.role is Role.SPROCKET))
     carrier, housing, plate = (ALLOYS[name].yield_mpa for name in (_CARRIER, _HOUSING, _PLATE))
@@ -118,7 +118,8 @@ def screws_tightened(s: Structure) -> float:
 
 
 def dowels_pressed(s: Structure) -> float:
-    """Elastic limit of the metal around a dowel over the pressure of its tightest fit, the least of all dowels.
+    """Return the elastic limit of the metal around a dowel over the pressure of its tightest fit, the least of all
+    dowels.
 
     The metal around it is as thick as the thinnest wall beside the hole: 2.5 mm in flange and coupling, 0.7 mm in the
     housing's rim. The small dowels of the coupling stand in 1.6 mm or more.
@@ -144,7 +145,7 @@ _Capacity = Callable[[Structure], tuple[float, float]]
 
 
 def _dowel_row(name: str, side: Side, force: str, capacity: _Capacity, parts: tuple[str, ...]) -> LegJoint:
-    """A circle of dowels between an actuator and a link, under its gearbox's torque and a force across it."""
+    """Return a circle of dowels between an actuator and a link, under its gearbox's torque and a force across it."""
     return LegJoint(
         name=name,
         group="joints",
@@ -161,7 +162,6 @@ def _dowel_row(name: str, side: Side, force: str, capacity: _Capacity, parts: tu
 
 
 _CHAIN, _FOOT = "peak_chain_tension_n", "peak_foot_force_n"
-
 JOINTS = (
     _dowel_row(
         "hip_output_dowels", "hip", _FOOT, hip_output, ("hip_coupling_dowel", "hip_coupling", "thigh_plate_inner")

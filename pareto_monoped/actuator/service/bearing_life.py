@@ -63,14 +63,7 @@ class _Context:
 def bearing_services(
     actuator: Actuator, at: Layout, settings: ActuatorSettings, service: ServiceData
 ) -> tuple[BearingService, ...]:
-    """Every bearing of an actuator at both joints; the same actuator is taken for hip and knee.
-
-    Args:
-        actuator: the actuator.
-        at: its layout.
-        settings: of stage 1, with the duty.
-        service: pace, forces and fits.
-    """
+    """Return every bearing of an actuator at both joints; the same actuator is taken for hip and knee."""
     levels = np.array([*settings.parts.duty.torque_shares, 1.0, settings.parts.rating.overload_factor])
     context = _Context(settings=settings, service=service, levels=levels)
     main = rated_bearing(float(at.bearing.inner_diameter_mm))
@@ -97,7 +90,7 @@ def bearing_services(
 
 
 def _needles(actuator: Actuator, context: _Context) -> BearingService:
-    """The needles of the most loaded planet."""
+    """Return the needles of the most loaded planet."""
     settings, gears = context.settings, actuator.gears
     (part,) = (p for p in actuator.parts if p.role is Role.BEARING and p.group is Group.PLANET)
     bearing = as_bearing(
@@ -112,7 +105,8 @@ def _needles(actuator: Actuator, context: _Context) -> BearingService:
 
 
 def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
-    """Radial force on the hip's main bearing: its share of foot force and weight, which act in the leg's middle plane.
+    """Return the radial force on the hip's main bearing: its share of foot force and weight, which act in the leg's
+    middle plane.
 
     The other support is the far cheek's bearing, behind the knee actuator. Both are taken as pivots.
     """
