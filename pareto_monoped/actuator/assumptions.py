@@ -13,23 +13,19 @@ from functools import lru_cache, reduce
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_shipped
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GEAR_GRADES, GearGrade
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
 SecondCarrier = Literal["pins", "webs"]
 PlanetBearing = Literal["bushes", "needles"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WebData:
+class WebData(Strict):
     """Webs between the planets, in one piece with the carrier, to which the second carrier is screwed."""
-
-    __pydantic_config__ = _STRICT
 
     clearance_mm: Positive  #: to the tips of planets and ring
     depth_mm: Positive  #: largest radial extent
@@ -39,10 +35,8 @@ class WebData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NeedleData:
+class NeedleData(Strict):
     """Rows of loose needle rollers between pin and planet, and the washers beside the planet."""
-
-    __pydantic_config__ = _STRICT
 
     diameter_mm: Positive  #: of a needle
     lengths_mm: tuple[Positive, ...]  #: to choose from, increasing; a planet takes one row, or two of the same length
@@ -64,10 +58,8 @@ GradeName = Literal[
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RatingData:
+class RatingData(Strict):
     """Safety factors, limits of the face width, and what the factors of ISO 6336 need to know of design and making."""
-
-    __pydantic_config__ = _STRICT
 
     sun_grade: GradeName
     planet_grade: GradeName
@@ -99,10 +91,8 @@ class RatingData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DutyData:
+class DutyData(Strict):
     """The load spectrum that the gears are rated for."""
-
-    __pydantic_config__ = _STRICT
 
     jumps: Positive  #: how many the gears shall last
     #: Torque over the motor's peak torque, one value per level; above 1 where a stop is struck
@@ -163,14 +153,9 @@ def chosen_steels(data: RatingData) -> GearSteels:
     )
 
 
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ServiceData:
+class ServiceData(Strict):
     """Pace of the joints, forces on the output, fit and lubrication of the bearings."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     jumps_per_minute: Positive  #: on average
     mean_speed_rad_per_s: Positive  #: of the output while it moves

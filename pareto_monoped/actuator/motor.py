@@ -4,15 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pareto_monoped.actuator.windings import ResistanceKind, ThermalData, line_to_line_ohm, torque_constant_n_m_per_a
+from pareto_monoped.config import Positive, Strict
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 # The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
 Diameter = Annotated[float, Field(gt=0.0, le=400.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
 PEAK_TO_CONTINUOUS = 5.5 / 3.82
 """Peak over continuous torque where a motor's peak torque is not published: the VT8020's own, 5.5 / 3.82 = 1.44."""
 BELL_THICKNESS_MM = 2.0
@@ -39,10 +38,8 @@ AIR_GAP_MM = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HolePattern:
+class HolePattern(Strict):
     """Holes evenly spread on a circle."""
-
-    __pydantic_config__ = _STRICT
 
     pitch_circle_mm: Positive
     diameter_mm: Positive
@@ -57,10 +54,8 @@ class HolePattern:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FramedMotor:
+class FramedMotor(Strict):
     """The motor as sold, with its own bearings and base: mass and envelope."""
-
-    __pydantic_config__ = _STRICT
 
     mass_kg: Positive
     outer_diameter_mm: Diameter
@@ -68,13 +63,11 @@ class FramedMotor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FramelessMotor:
+class FramelessMotor(Strict):
     """Stator and rotor alone; the gearbox goes into the stator's bore.
 
     ``stator_height_mm`` defaults to the length less a bell of 2 mm.
     """
-
-    __pydantic_config__ = _STRICT
 
     mass_kg: Positive
     outer_diameter_mm: Diameter
@@ -114,7 +107,7 @@ class FramelessMotor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Motor:
+class Motor(Strict):
     """A brushless outrunner. Values that are not given are derived.
 
     Example:
@@ -125,8 +118,6 @@ class Motor:
         >>> cooler.name, cooler.kv_rpm_per_v == known.kv_rpm_per_v
         ('U8 cooler', True)
     """
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: as asked for
     description: str = ""  #: maker and type

@@ -40,7 +40,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
+
+from pareto_monoped.config import Positive, Strict
 
 ResistanceKind = Literal["line_to_line", "phase"]
 """Between two terminals, or of one phase of the star (for a delta: of the star that replaces it, a third of a branch).
@@ -63,7 +65,6 @@ def line_to_line_ohm(resistance_ohm: float, kind: ResistanceKind) -> float:
     return PHASES_IN_SERIES * resistance_ohm if kind == "phase" else resistance_ohm
 
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Temperature = Annotated[float, Field(ge=-60.0, le=400.0, allow_inf_nan=False)]
 COPPER_DEGC = 235.0
 """Copper's resistance is proportional to this plus its temperature (IEC 60034-1)."""
@@ -73,10 +74,8 @@ _REL_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThermalData:
+class ThermalData(Strict):
     """Measured thermal properties of a motor. No default stands for a measurement."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     winding_heat_capacity_j_per_k: Positive
     housing_heat_capacity_j_per_k: Positive
