@@ -10,9 +10,9 @@ import tomllib
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from pareto_monoped.errors import DiskError, InputError, complaint
 from pareto_monoped.files import SQLITE, cure_of, is_failure
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 T = TypeVar("T")
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
 MAX_TOML_BYTES = 1_000_000
 """Our own choice: a hundred times our longest file."""
@@ -32,6 +34,13 @@ _TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 _INNERMOST = re.compile(r"\[\]|\{\}")
 _TOO_DEEP = f"JSON nested more than {MAX_JSON_DEPTH} levels deep"
+
+
+class Strict:
+    """The base of records that refuse fields that they do not have."""
+
+    __slots__ = ()
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
 
 def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:

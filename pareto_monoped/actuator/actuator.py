@@ -58,14 +58,12 @@ class Actuator:
     continuous_torque_n_m: float
     no_load_speed_rad_per_s: float  #: at the output
     efficiency: float  #: of both gear meshes together
-    #: contact_ratio_sun, contact_ratio_ring: of sun and planet, of planet and ring
-    contact_ratio_sun: float
-    contact_ratio_ring: float
+    contact_ratio_sun: float  #: of sun and planet
+    contact_ratio_ring: float  #: of planet and ring
     reflected_inertia_kg_m2: float  #: of everything that turns with the motor or in the gearbox, at the output
     length_mm: float  #: from the output face to the back, without the screw heads and the encoder that stand out there
-    #: output, mount: where the links are bolted on
-    output: OutputInterface
-    mount: MountInterface
+    output: OutputInterface  #: where a link is bolted to the output
+    mount: MountInterface  #: where the housing is held
     parts: tuple[Part, ...]  #: every part, including the screws that hold a framed motor
     rating: Rating | None = None  #: of the gears after ISO 6336; None under the rules ``paper``
 
@@ -82,18 +80,18 @@ class Actuator:
         return tuple(part for part in self.parts if part.role is not Role.STATOR_SCREW)
 
     def mass_breakdown_kg(self) -> dict[str, float]:
-        """Mass by part, all instances of each."""
+        """Return the mass by part, all instances of each."""
         return {part.name: float(part.mass_kg()) for part in self.parts}
 
 
 def actuator_parts(at: Layout, motor: Motor, family: Family, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """All parts of one actuator, or of many at once."""
+    """Build all parts of one actuator, or of many at once."""
     build = internal_parts if family == "ISSPG" else external_parts
     return build(at, motor, settings)
 
 
 def actuator_mass_kg(at: Layout, motor: Motor, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Sum over the parts; the same for one actuator and for many at once."""
+    """Return the sum over the parts; the same for one actuator and for many at once."""
     mass: Numbers = 0.0
     for part in actuator_parts(at, motor, family, settings):
         mass = mass + part.mass_kg()
@@ -108,16 +106,7 @@ def build_actuator(
     width_mm: float | None = None,
     rating: Rating | None = None,
 ) -> Actuator:
-    """The actuator around one gear set. No constraint is checked.
-
-    Args:
-        motor: what drives it.
-        family: where the gears are.
-        gears: the gear set.
-        settings: of stage 1.
-        width_mm: face width, if it is known already; default the least that carries the torque.
-        rating: of these gears at this width, if it is known already.
-    """
+    """Build the actuator around a gear set, unchecked; ``width_mm`` and ``rating`` are computed where not given."""
     width = float(face_width_mm(gears, motor, family, settings)) if width_mm is None else width_mm
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)
@@ -155,7 +144,7 @@ _GEAR_OF_GROUP = {Group.ROTOR: "sun", Group.PLANET: "planet", Group.HOUSING: "ri
 
 
 def _with_safeties(part: Part, rating: Rating) -> Part:
-    """A gear with its least safety factors in the note, any other part as it is."""
+    """Build a gear with its least safety factors in the note, any other part as it is."""
     if part.role is not Role.GEAR:
         return part
     flank, root = rating.of(_GEAR_OF_GROUP[part.group])
@@ -169,7 +158,7 @@ def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Moto
 
 
 def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iterator[tuple[tuple[float, float], ...]]:
-    """For each part that turns: moments of inertia in kg m2, each with its speed relative to the output's.
+    """Yield for each part that turns its moments of inertia in kg m2, each with its speed relative to the output's.
 
     Rotor, sun, coupling and shafts turn at the ratio; the carrier and everything fixed to it turn once; the planets
     turn once on their orbit, and about themselves at 1 - Nr / Np (Willis, ring fixed). The motor's rotor counts with
@@ -192,7 +181,7 @@ def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iter
 
 
 def output_interface(settings: ActuatorSettings) -> OutputInterface:
-    """The output flange's patterns of bolts and dowels."""
+    """Return the output flange's patterns of bolts and dowels."""
     data = settings.parts
     return OutputInterface(
         flange_radius_mm=data.carrier.flange_radius_mm,
@@ -211,7 +200,7 @@ def output_interface(settings: ActuatorSettings) -> OutputInterface:
 
 
 def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) -> MountInterface:
-    """The housing's patterns of bolts and dowels."""
+    """Return the housing's patterns of bolts and dowels."""
     body = motor.frameless if family == "ISSPG" else motor.framed
     assert body is not None
     assert motor.mount_holes is not None

@@ -1,10 +1,6 @@
-"""Settings of the rating after ISO 6336; values and sources stand in ``data/actuator_parts.toml``.
+"""What the gears are rated for and what the joints ask: steels, safeties, duty, forces, pace, and lives under them.
 
-Settings of carriers and planet bearings under ``iso6336``; values and sources in ``data/actuator_parts.toml``.
-
-What the joints ask of an actuator: forces, pace, fit; values and sources stand in ``data/service.toml``.
-
-The duty of a joint as turns per hour, and the life of a bearing under it.
+Values and sources stand in ``data/actuator_parts.toml`` and ``data/service.toml``.
 """
 
 from collections.abc import Sequence
@@ -13,24 +9,19 @@ from functools import lru_cache, reduce
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_shipped
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import GEAR_GRADES, GearGrade
-
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
 
 SecondCarrier = Literal["pins", "webs"]
 PlanetBearing = Literal["bushes", "needles"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WebData:
+class WebData(Strict):
     """Webs between the planets, in one piece with the carrier, to which the second carrier is screwed."""
-
-    __pydantic_config__ = _STRICT
 
     clearance_mm: Positive  #: to the tips of planets and ring
     depth_mm: Positive  #: largest radial extent
@@ -40,16 +31,13 @@ class WebData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NeedleData:
+class NeedleData(Strict):
     """Rows of loose needle rollers between pin and planet, and the washers beside the planet."""
-
-    __pydantic_config__ = _STRICT
 
     diameter_mm: Positive  #: of a needle
     lengths_mm: tuple[Positive, ...]  #: to choose from, increasing; a planet takes one row, or two of the same length
     end_mm: Positive  #: what a rounded end takes from the length that carries, at either end
-    #: washer_mm, washer_diameter_mm: thickness and diameter of a washer, between planet and carrier
-    washer_mm: Positive
+    washer_mm: Positive  #: thickness of a washer, between planet and carrier
     washer_diameter_mm: Positive
     washer_play_mm: Positive  #: axial play of the planet at either washer
     friction_coefficient: Positive  #: at the radius of the pin
@@ -66,26 +54,20 @@ GradeName = Literal[
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RatingData:
+class RatingData(Strict):
     """Safety factors, limits of the face width, and what the factors of ISO 6336 need to know of design and making."""
 
-    __pydantic_config__ = _STRICT
-
-    #: sun_grade, planet_grade, ring_grade: steel of each gear
     sun_grade: GradeName
     planet_grade: GradeName
     ring_grade: GradeName
-    #: flank_safety, root_safety: least S_H and S_F under the duty
-    flank_safety: Positive
-    root_safety: Positive
-    #: overload_flank_safety, overload_root_safety: least S_H and S_F against static failure under one overload
-    overload_flank_safety: Positive
-    overload_root_safety: Positive
+    flank_safety: Positive  #: least S_H under the duty
+    root_safety: Positive  #: least S_F under the duty
+    overload_flank_safety: Positive  #: least S_H against static failure under one overload
+    overload_root_safety: Positive  #: least S_F, likewise
     overload_factor: Positive  #: largest torque of a single event over the motor's peak torque
     application_factor: Positive  #: K_A
-    #: face_width_min_mm, face_modules_min: least face width
-    face_width_min_mm: Positive
-    face_modules_min: Positive
+    face_width_min_mm: Positive  #: least face width
+    face_modules_min: Positive  #: the same in modules
     face_over_sun_max: Positive  #: largest face width over the sun's reference diameter
     face_modules_max: Positive  #: largest face width in modules
     tip_thickness_modules: Positive  #: least thickness of the teeth of sun and planets at their tips
@@ -100,16 +82,13 @@ class RatingData:
     second_carrier: SecondCarrier
     planet_bearing: PlanetBearing  #: what the planets turn on: ``bushes``, or rows of ``needles``
     sun_support: Literal["fixed", "floating"]  #: whether the sun is held by bearings or floats between the planets
-    #: load_sharing_fixed, load_sharing_floating: K_gamma for 2, 3, ... planets; the last value also beyond.
-    load_sharing_fixed: tuple[Positive, ...]
-    load_sharing_floating: tuple[Positive, ...]
+    load_sharing_fixed: tuple[Positive, ...]  #: K_gamma for 2, 3, ... planets; the last value also beyond
+    load_sharing_floating: tuple[Positive, ...]  #: likewise
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DutyData:
+class DutyData(Strict):
     """The load spectrum that the gears are rated for."""
-
-    __pydantic_config__ = _STRICT
 
     jumps: Positive  #: how many the gears shall last
     #: Torque over the motor's peak torque, one value per level; above 1 where a stop is struck
@@ -164,20 +143,15 @@ class GearSteels:
 
 
 def chosen_steels(data: RatingData) -> GearSteels:
-    """The grades that the settings name."""
+    """Return the grades that the settings name."""
     return GearSteels(
         sun=GEAR_GRADES[data.sun_grade], planet=GEAR_GRADES[data.planet_grade], ring=GEAR_GRADES[data.ring_grade]
     )
 
 
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ServiceData:
+class ServiceData(Strict):
     """Pace of the joints, forces on the output, fit and lubrication of the bearings."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     jumps_per_minute: Positive  #: on average
     mean_speed_rad_per_s: Positive  #: of the output while it moves
@@ -194,9 +168,8 @@ class ServiceData:
     bearing_clearance_mm: NotNegative  #: radial clearance of a fitted bearing
     bearing_tilt_limit_rad: Positive  #: by which the rings may turn against each other
     bearing_life_min_h: Positive  #: least L10 under the duty
-    #: static_safety_min, overload_static_safety_min: least s0 at the peak torque and under the overload
-    static_safety_min: Positive
-    overload_static_safety_min: Positive
+    static_safety_min: Positive  #: least s0 at the peak torque
+    overload_static_safety_min: Positive  #: least s0 under the overload
     bearing_friction_coefficient: Positive  #: of ball bearings, at the radius of the bore
     needle_friction_coefficient: Positive  #: of needle roller bearings with a cage, likewise
     lubricant_viscosity_mm2_per_s: NotNegative  #: of the oil that the bearings churn; 0 if they churn none
@@ -204,24 +177,17 @@ class ServiceData:
 
 @lru_cache(maxsize=1)
 def default_service() -> ServiceData:
-    """The shipped service data."""
+    """Return the shipped service data."""
     return checked(ServiceData, read_shipped("service.toml", what="service data"), source="service data")
 
 
 def output_turns_per_hour(duty: DutyData, service: ServiceData) -> float:
-    """Angle through which the output turns in an hour, in whole turns."""
+    """Return the angle through which the output turns in an hour, in whole turns."""
     return 60.0 * service.jumps_per_minute * sum(duty.output_angles_rad) / (2.0 * np.pi)
 
 
 def life_turns(loads_n: Sequence[Numbers], rating_n: Numbers, exponent: float, duty: DutyData) -> Numbers:
-    """L10 in turns of the bearing (ISO 281), summed over the duty's levels (Palmgren and Miner).
-
-    Args:
-        loads_n: equivalent load at each level of the duty.
-        rating_n: C.
-        exponent: 3 for balls, 10 / 3 for rollers.
-        duty: whose angles weigh the levels.
-    """
+    """Return L10 in turns (ISO 281, Palmgren, Miner) under the duty; ``exponent``: 3 for balls, 10 / 3 for rollers."""
     whole = sum(duty.output_angles_rad)
     levels = zip(loads_n, duty.output_angles_rad, strict=True)
     used = [angle / whole * (load / rating_n) ** exponent for load, angle in levels]

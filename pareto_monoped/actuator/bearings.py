@@ -1,10 +1,8 @@
-"""Ball bearings: catalogue with ratings, choice of the main bearing, the paper's regression of mass over bore.
+"""Ball bearings and retaining rings (DIN 471, DIN 472): catalogues, choice of the main bearing, mass over bore.
 
-Retaining rings of shafts and bores: catalogue after DIN 471 and DIN 472, with the grooves that they need.
-
-Rings with inverted lugs (makers' V-rings) fit the same grooves. They are used here, because thin-section bearings leave
-no room for the others: the eyes of DIN 471 - 40 x 1.75 reach to 24.75 mm and those of DIN 472 - 52 x 2 to 20.8 mm, but
-the shoulder of the outer ring begins at 24.5 mm and that of the inner ring ends at 21 mm.
+Rings with inverted lugs (makers' V-rings) fit the grooves of the standards. They are used here, because thin-section
+bearings leave no room for the others: the eyes of DIN 471 - 40 x 1.75 reach to 24.75 mm and those of DIN 472 - 52 x 2
+to 20.8 mm, but the shoulder of the outer ring begins at 24.5 mm and that of the inner ring ends at 21 mm.
 """
 
 import csv
@@ -36,16 +34,13 @@ class RatedBearing:
     """One deep groove ball bearing of the catalogue with its load ratings."""
 
     designation: str  #: of the maker
-    #: inner_diameter_mm, outer_diameter_mm, width_mm, mass_kg: as of ``Bearing``
     inner_diameter_mm: float
     outer_diameter_mm: float
     width_mm: float
     mass_kg: float
-    #: dynamic_rating_n, static_rating_n: C and C0
-    dynamic_rating_n: float
-    static_rating_n: float
-    #: balls, ball_diameter_mm: of its row
-    balls: int
+    dynamic_rating_n: float  #: C
+    static_rating_n: float  #: C0
+    balls: int  #: in its row
     ball_diameter_mm: float
 
     def __post_init__(self) -> None:
@@ -94,7 +89,7 @@ _STATIC_FACTORS = (11.0, 18.0)
 
 
 def iso_281_rating_n(balls: int, ball_diameter_mm: float, pitch_diameter_mm: float) -> float:
-    """Dynamic rating C of a single row of balls up to 25.4 mm in deep grooves of 0.52 ball diameters.
+    """Return the dynamic rating C of a single row of balls up to 25.4 mm in deep grooves of 0.52 ball diameters.
 
     C = b_m f_c Z^(2/3) Dw^1.8 with b_m = 1.3 (ISO 281, clause 5.1). f_c is that of the formula behind the standard's
     table (ISO/TR 1281-1; Harris, Rolling Bearing Analysis, ch. 11), which it meets to 1 percent.
@@ -107,7 +102,7 @@ def iso_281_rating_n(balls: int, ball_diameter_mm: float, pitch_diameter_mm: flo
 
 
 def read_bearings(text: str) -> tuple[RatedBearing, ...]:
-    """The bearings of a table in CSV with ``#`` comments.
+    """Return the bearings of a table in CSV with ``#`` comments.
 
     Raises:
         InputError: a rating does not belong to its bearing, or the bores do not increase.
@@ -142,57 +137,52 @@ _DIMENSIONS = ("inner_diameter_mm", "outer_diameter_mm", "width_mm", "mass_kg")
 
 @lru_cache(maxsize=1)
 def rated_bearings() -> tuple[RatedBearing, ...]:
-    """The shipped catalogue; bores increase."""
+    """Return the shipped catalogue; bores increase."""
     return read_bearings((resources.files("pareto_monoped") / "data" / "bearings.csv").read_text(encoding="utf-8"))
 
 
 def rated_bearing(inner_diameter_mm: float) -> RatedBearing:
-    """The catalogue's bearing with exactly this bore, with its ratings."""
+    """Return the catalogue's bearing with exactly this bore, with its ratings."""
     (found,) = (bearing for bearing in rated_bearings() if bearing.inner_diameter_mm == inner_diameter_mm)
     return found
 
 
 @lru_cache(maxsize=1)
 def catalogue() -> NDArray[np.float64]:
-    """The shipped catalogue, shape (k, 4): bore, outer diameter, width in mm, mass in kg; bores increase."""
+    """Return the shipped catalogue, shape (k, 4): bore, outer diameter, width in mm, mass in kg; bores increase."""
     table = np.array([[getattr(bearing, name) for name in _DIMENSIONS] for bearing in rated_bearings()])
     table.flags.writeable = False
     return table
 
 
 def small_bearing(inner_diameter_mm: float) -> Bearing:
-    """The catalogue's bearing with exactly this bore."""
+    """Return the catalogue's bearing with exactly this bore."""
     (row,) = (row for row in catalogue() if row[0] == inner_diameter_mm)
     return Bearing(
-        inner_diameter_mm=float(row[0]),
-        outer_diameter_mm=float(row[1]),
-        width_mm=float(row[2]),
-        mass_kg=float(row[3]),
+        inner_diameter_mm=float(row[0]), outer_diameter_mm=float(row[1]), width_mm=float(row[2]), mass_kg=float(row[3])
     )
 
 
 @lru_cache(maxsize=1)
 def _regression() -> NDArray[np.float64]:
-    """Least-squares quadratic of catalogue mass over bore, of bores from 10 mm (the authors' table)."""
+    """Return the least-squares quadratic of catalogue mass over bore, of bores from 10 mm (the authors' table)."""
     table = catalogue()[catalogue()[:, 0] >= 10.0]
     return np.polyfit(table[:, 0], table[:, 3], 2)
 
 
 @lru_cache(maxsize=1)
 def _lightest_from() -> NDArray[np.intp]:
-    """For each row of the catalogue, that of the lightest bearing from there on; 0 beyond the last."""
+    """Return for each row of the catalogue that of the lightest bearing from there on; 0 beyond the last."""
     mass = catalogue()[:, 3]
     # Of equals, argmin takes the first, the smallest.
     return np.array([start + int(np.argmin(mass[start:])) for start in range(len(mass))] + [0], dtype=np.intp)
 
 
 def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "catalogue") -> Bearing:
-    """The lightest catalogue bearing with at least this bore; NaN beyond the catalogue.
+    """Return the lightest catalogue bearing with at least this bore; NaN beyond the catalogue.
 
-    Args:
-        bore_mm: least bore, float or shape (n,).
-        model: ``regression`` keeps the bearing's dimensions and takes its mass from the quadratic fit (the paper's
-            "regression-based function ... using the bearing's internal diameter").
+    ``model``: ``regression`` keeps the bearing's dimensions and takes its mass from the quadratic fit (the paper's
+    "regression-based function ... using the bearing's internal diameter").
     """
     table = catalogue()
     start = np.searchsorted(table[:, 0], np.asarray(bore_mm) - 1e-9, side="left")
@@ -251,7 +241,8 @@ _NUMBERS = ("size_mm", "thickness_mm", "radial_width_mm", "groove_diameter_mm", 
 
 
 def read_retaining_rings(text: str) -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
-    """The rings of a table in CSV with ``#`` comments: by standard, numbers of shape (n, 6) and zones of the grooves.
+    """Return the rings of a table in CSV with ``#`` comments: by standard, numbers of shape (n, 6) and zones of the
+    grooves.
 
     Raises:
         InputError: a ring does not fit its groove, or the sizes do not increase.
@@ -281,18 +272,12 @@ def _refuse(quantity: str, value: float, allowed: str) -> None:
 
 @lru_cache(maxsize=1)
 def _catalogue() -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
-    """The shipped catalogue."""
     path = resources.files("pareto_monoped") / "data" / "retaining_rings.csv"
     return read_retaining_rings(path.read_text(encoding="utf-8"))
 
 
 def retaining_ring(standard: Standard, size_mm: Numbers) -> RetainingRing:
-    """The ring of a shaft (DIN 471) or of a bore (DIN 472); NaN where the catalogue has none.
-
-    Args:
-        standard: which one.
-        size_mm: diameter of shaft or bore, float or shape (n,).
-    """
+    """Return the ring of a shaft (DIN 471) or of a bore (DIN 472); NaN where the catalogue has none."""
     table, zones = _catalogue()[standard]
     place = np.minimum(np.searchsorted(table[:, 0], np.asarray(size_mm) - 1e-9), len(table) - 1)
     row = np.where((np.abs(table[place, 0] - size_mm) < 1e-6)[..., None], table[place], np.nan)

@@ -1,7 +1,4 @@
-"""The actuator map as plain values, for tables and JSON: one row per interval, gaps, and one interval in full.
-
-What a motor is and can do, in words for a table and as plain values for JSON.
-"""
+"""Motors and the actuator map as plain values and words, for tables and JSON."""
 
 import dataclasses
 import math
@@ -16,7 +13,7 @@ from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS, Motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
-from pareto_monoped.actuator.service.sheet import BushLoad, ServiceSheet
+from pareto_monoped.actuator.service.sheet import ServiceSheet
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
 
@@ -26,21 +23,21 @@ CONTINUOUS_BASIS = "rated by maker"
 
 
 def peak_basis(motor: Motor) -> str:
-    """Where the peak torque comes from."""
+    """Return where the peak torque comes from."""
     if motor.peak_is_assumed:
         return f"assumed, {PEAK_TO_CONTINUOUS:.2f} times the continuous one"
     return "published"
 
 
 def how_long(time_s: float | None) -> str:
-    """How long a torque may be held, in words."""
+    """Return how long a torque may be held, in words."""
     if time_s is None:
         return f"time {_NOT_KNOWN}"
     return "for ever" if math.isinf(time_s) else f"{time_s:.1f} s from cold"
 
 
 def motor_values_shown(motor: Motor) -> dict[str, Any]:
-    """Plain values; a time is None where it is not known, and also where the torque may be held for ever."""
+    """Return plain values; a time is None where it is not known, and also where the torque may be held for ever."""
     return {
         "name": motor.name,
         "kv_rpm_per_v": motor.kv_rpm_per_v,
@@ -58,7 +55,7 @@ def motor_values_shown(motor: Motor) -> dict[str, Any]:
 
 
 def motor_facts(motor: Motor) -> list[tuple[str, str]]:
-    """Lines of a table: name and value with its unit."""
+    """Return the lines of a table: name and value with its unit."""
     return [
         ("motor", f"{motor.name}, {motor.kv_rpm_per_v:g} rpm/V, {motor.rated_voltage_v:g} V"),
         ("torque constant", f"{motor.torque_constant_n_m_per_a:.4g} N m/A, DC-equivalent current"),
@@ -89,16 +86,23 @@ def _finite(time_s: float | None) -> float | None:
 class Gap:
     """Neighbouring intervals without a gearbox."""
 
-    #: ratio_low, ratio_high: the gap is [ratio_low, ratio_high)
     ratio_low: float
-    ratio_high: float
+    ratio_high: float  #: end of the gap, which belongs to the next interval
     #: For each family, the constraints that forbid its gearboxes; empty if it has no tooth set there
     in_the_way: Mapping[Family, tuple[ConstraintName, ...]]
     cures: tuple[str, ...]  #: what would help in the first interval
 
 
+_OF_ACTUATOR = (
+    *("face_width_mm", "mass_kg", "peak_torque_n_m", "efficiency", "continuous_torque_n_m"),
+    *("no_load_speed_rad_per_s", "length_mm", "reflected_inertia_kg_m2"),
+)
+_OF_LOSSES = ("efficiency_mesh", "efficiency_planets", "efficiency_bearings", "efficiency_total")
+_OF_SHEET = ("bearing_life_h", "output_tilt_n_m", "backlash_arcmin", "greatest_backlash_arcmin")
+
+
 def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
-    """One row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
+    """Return one row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
     actuator = entry.actuator
     assert actuator is not None
     gears = actuator.gears
@@ -106,31 +110,12 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "ratio_low": entry.ratio_low,
         "ratio": actuator.ratio,
         "type": actuator.family,
-        "sun_teeth": gears.sun_teeth,
-        "planet_teeth": gears.planet_teeth,
-        "ring_teeth": gears.ring_teeth,
-        "module_mm": gears.module_mm,
-        "planets": gears.planets,
-        "sun_shift": float(gears.sun_shift),
-        "planet_shift": float(gears.planet_shift),
-        "ring_shift": float(gears.ring_shift),
+        **{name: getattr(gears, name) for name in ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets")},
+        **{name: float(getattr(gears, name)) for name in ("sun_shift", "planet_shift", "ring_shift")},
         "centre_distance_mm": float(gears.carrier_radius_mm),
-        "face_width_mm": actuator.face_width_mm,
-        "mass_kg": actuator.mass_kg,
-        "peak_torque_n_m": actuator.peak_torque_n_m,
-        "efficiency": actuator.efficiency,
-        "continuous_torque_n_m": actuator.continuous_torque_n_m,
-        "no_load_speed_rad_per_s": actuator.no_load_speed_rad_per_s,
-        "length_mm": actuator.length_mm,
-        "reflected_inertia_kg_m2": actuator.reflected_inertia_kg_m2,
-        "efficiency_mesh": sheet.losses.efficiency_mesh,
-        "efficiency_planets": sheet.losses.efficiency_planets,
-        "efficiency_bearings": sheet.losses.efficiency_bearings,
-        "efficiency_total": sheet.losses.efficiency_total,
-        "bearing_life_h": sheet.bearing_life_h,
-        "output_tilt_n_m": sheet.output_tilt_n_m,
-        "backlash_arcmin": sheet.backlash_arcmin,
-        "greatest_backlash_arcmin": sheet.greatest_backlash_arcmin,
+        **{name: getattr(actuator, name) for name in _OF_ACTUATOR},
+        **{name: getattr(sheet.losses, name) for name in _OF_LOSSES},
+        **{name: getattr(sheet, name) for name in _OF_SHEET},
         "stiffness_n_m_per_rad": sheet.stiffness.stiffness_n_m_per_rad,
         **_caveats(actuator),
         **_safeties(actuator),
@@ -138,7 +123,7 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
 
 
 def _caveats(actuator: Actuator) -> dict[str, Any]:
-    """What the torques of a row are worth: both are before losses."""
+    """Return what the torques of a row are worth: both are before losses."""
     motor = actuator.motor
     return {
         "peak_torque_basis": peak_basis(motor),
@@ -150,7 +135,7 @@ def _caveats(actuator: Actuator) -> dict[str, Any]:
 
 
 def _safeties(actuator: Actuator) -> dict[str, float]:
-    """The least safety factors over the meshes, where the gears are rated."""
+    """Return the least safety factors over the meshes, where the gears are rated."""
     rating = actuator.rating
     if rating is None:
         return {}
@@ -163,7 +148,7 @@ def _safeties(actuator: Actuator) -> dict[str, float]:
 
 
 def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
-    """Everything known about an interval that has a gearbox; its parts from the heaviest to the lightest."""
+    """Return everything known about an interval that has a gearbox; its parts from the heaviest to the lightest."""
     actuator = entry.actuator
     assert actuator is not None
     return summary(entry, sheet) | {
@@ -173,7 +158,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "compliance_rad_per_n_m": dataclasses.asdict(sheet.stiffness),
         "bearings": [_bearing(found) for found in sheet.bearings],
         **{
-            name: _bush(load)
+            name: dataclasses.asdict(load) | {"pv_mpa_m_per_s": load.pv_mpa_m_per_s}
             for name, load in (("bush", sheet.bush), ("bush_duty", sheet.bush_duty))
             if load is not None
         },
@@ -192,7 +177,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
 
 
 def gaps(actuator_map: ActuatorMap) -> tuple[Gap, ...]:
-    """Where the map has no gearbox, from the lowest ratio to the highest."""
+    """Return where the map has no gearbox, from the lowest ratio to the highest."""
     runs: list[list[MapEntry]] = []
     previous_has_gearbox = True
     for entry in actuator_map.entries:
@@ -221,6 +206,9 @@ def _best(found: Candidate | None) -> dict[str, Any]:
     return {"gears": None, "mass_kg": None} if found is None else {"gears": str(found.gears), "mass_kg": found.mass_kg}
 
 
+_BEARING = ("force_n", "equivalent_n", "tilt_rad", "life_h", "static_safety", "overload_safety")
+
+
 def _bearing(found: BearingService) -> dict[str, Any]:
     rated = found.bearing
     return {
@@ -229,25 +217,12 @@ def _bearing(found: BearingService) -> dict[str, Any]:
         "size_mm": [rated.inner_diameter_mm, rated.outer_diameter_mm, rated.width_mm],
         "dynamic_rating_n": rated.dynamic_rating_n,
         "static_rating_n": rated.static_rating_n,
-        "force_n": found.force_n,
-        "equivalent_n": found.equivalent_n,
-        "tilt_rad": found.tilt_rad,
-        "life_h": found.life_h,
-        "static_safety": found.static_safety,
-        "overload_safety": found.overload_safety,
-    }
-
-
-def _bush(load: BushLoad) -> dict[str, float]:
-    return {
-        "pressure_mpa": load.pressure_mpa,
-        "speed_m_per_s": load.speed_m_per_s,
-        "pv_mpa_m_per_s": load.pv_mpa_m_per_s,
+        **{name: getattr(found, name) for name in _BEARING},
     }
 
 
 def _part(part: Part, motor: Motor) -> dict[str, Any]:
-    """All instances of one part together; the inertia is about the gearbox axis.
+    """Return all instances of one part together; the inertia is about the gearbox axis.
 
     The motor's rotor has the inertia that is simulated: that of its data sheet or its estimate. Its solid is an
     envelope of even density, which only weighs it.

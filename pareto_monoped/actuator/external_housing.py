@@ -5,6 +5,7 @@ from pareto_monoped.actuator.features import (
     SPIGOT_MM,
     casing_dowel_holes,
     casing_holes,
+    housing_part,
     housing_screw,
     motor_holes,
     slab,
@@ -21,14 +22,13 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.screws import M3, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
-from pareto_monoped.materials import ALLOYS
 
 BACK_BORE_MM = 8.0
 """Radius of the backplate's central hole, behind the motor's shaft; our own choice."""
 
 
 def housing_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What stands still around gears and motor."""
+    """Build what stands still around gears and motor."""
     return (
         *_ring_housing(at, shell, settings),
         *_casing_and_backplate(at, shell, motor, settings),
@@ -37,12 +37,12 @@ def housing_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Act
 
 
 def _flange_holes(shell: ExternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern of the flange between ring housing and casing."""
+    """Return the bolt pattern of the flange between ring housing and casing."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=shell.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 
 def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """The ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
+    """Build the ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
     casing, materials = settings.parts.casing, settings.materials
     z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
     ring = at.bore_ring
@@ -51,9 +51,8 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
     dowels = casing_dowel_holes(at, settings)
     return (
-        Part(
+        housing_part(
             name="ring_housing",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels),
@@ -67,9 +66,6 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 *tube(z_flange, at.z_gear_front, shell.r_tube, at.r_ring),
                 *tube(z_flange, z_flange + casing.flange_mm, shell.r_flange, shell.r_tube, screws),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
@@ -99,7 +95,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
 def _casing_and_backplate(
     at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings
 ) -> tuple[Part, ...]:
-    """The bridge around the motor, and the plate that carries the motor's base."""
+    """Build the bridge around the motor, and the plate that carries the motor's base."""
     casing, materials = settings.parts.casing, settings.materials
     z_flange, z_plate = shell.z_flange, shell.z_plate
     threads = _flange_holes(shell, settings, M3.core)
@@ -108,9 +104,8 @@ def _casing_and_backplate(
     r_mount = 0.5 * (motor.mount_holes.pitch_circle_mm + motor.mount_holes.diameter_mm)
     back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
     return (
-        Part(
+        housing_part(
             name="casing",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *tube(at.z_gear_back, z_flange, shell.r_web, at.r_ring, threads),
@@ -118,9 +113,6 @@ def _casing_and_backplate(
                 *tube(z_plate + casing.flange_mm, shell.z_web, at.r_casing + casing.wall_mm, at.r_casing),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 tapped(M3, (threads,), shell.z_web, z_flange, enters="high"),
                 tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
@@ -129,9 +121,8 @@ def _casing_and_backplate(
             ),
             note="bore and faces in one clamping",
         ),
-        Part(
+        housing_part(
             name="backplate",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *slab(
@@ -145,9 +136,6 @@ def _casing_and_backplate(
                 ),
                 *spigot(z_plate, at, settings),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
             note="step to fit the casing",
         ),
@@ -155,7 +143,7 @@ def _casing_and_backplate(
 
 
 def _housing_screws(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """From the ring housing into the casing, and from the backplate into the casing."""
+    """Build the screws from the ring housing and from the backplate into the casing."""
     casing = settings.parts.casing
     return (
         housing_screw(

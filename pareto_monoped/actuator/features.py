@@ -1,28 +1,25 @@
-"""Building blocks of an actuator's parts: slabs, tubes, hole patterns, bearings, notes.
+"""Building blocks of an actuator's parts: slabs, hole patterns, gears, coupling, bearings, encoder, notes.
 
-The encoder at the back of an actuator: a magnet in the end of the motor's shaft, and a sensor in the backplate.
-
-The sensor is RLS's RM08 (data sheet RM08D01): a sealed body of 8 mm diameter and 7 mm length, which reads a magnet of
-4 x 4 mm, magnetised across, over a gap of 1 mm within 0.5 mm. 12 bit per turn of the motor, up to 30,000 rpm. It is
-bonded into a cap, which is bonded into the backplate's bore once the gap is set.
-
-Both joints have the same actuator. At the knee, sensor and cable stand in the journal's bore.
-
-How the teeth of gears and splines are made: what their rating takes for granted, for drawings and parts list.
+The encoder's sensor, RLS's RM08 (data sheet RM08D01), has a sealed body of 8 mm diameter and 7 mm length. It reads a
+magnet of 4 x 4 mm in the end of the motor's shaft, magnetised across, over a gap of 1 mm within 0.5 mm: 12 bit per turn
+of the motor, up to 30,000 rpm. It is bonded into a cap, which is bonded into the backplate's bore once the gap is set.
+At the knee, sensor and cable stand in the journal's bore.
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pareto_monoped.actuator.bearings import Bearing
-from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.layout import COUPLING_DOWEL, Layout, SunNeck, hub_note, spline_note
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
+from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
-from pareto_monoped.geometry.making import ToothMaking
+from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
@@ -39,18 +36,86 @@ MOTOR_TAPPED_HOLE_MM = -0.8
 """Tapping hole less thread diameter for the motor's mounting pattern (ISO 2306: 4.2 mm for M5)."""
 
 
-def gear_grade(settings: ActuatorSettings, grade: GearGrade) -> GearGrade | None:
-    """The steel of a gear under ``iso6336``; the rules of the paper name none."""
-    return None if settings.rules == "paper" else grade
+def gear_part(settings: ActuatorSettings, steel: GearGrade) -> "partial[Part]":
+    """Return what makes the part of a gear; the rules of the paper name neither its steel nor its accuracy."""
+    rated = settings.rules != "paper"
+    return partial(
+        Part,
+        role=Role.GEAR,
+        visibility=Visibility.INSIDE,
+        material=settings.materials.gear_steel,
+        process="machined",
+        grade=steel if rated else None,
+        accuracy_class=settings.parts.rating.accuracy_class if rated else None,
+    )
 
 
-def gear_accuracy(settings: ActuatorSettings) -> int | None:
-    """Accuracy class of a gear's teeth under ``iso6336``; the rules of the paper name none."""
-    return None if settings.rules == "paper" else settings.parts.rating.accuracy_class
+def sun_part(
+    at: Layout,
+    neck: SunNeck,
+    settings: ActuatorSettings,
+    spline: ExternalGear,
+    shaft_mm: float,
+    *,
+    behind: tuple[Prism, ...],
+    seats_mm: tuple[float, ...] = (),
+) -> Part:
+    """Build the sun in one piece with its splined shaft, whose prisms ``behind`` the teeth depend on the family."""
+    teeth, steel = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm)), settings.gear_steels.sun
+    return gear_part(settings, steel)(
+        name="sun",
+        prisms=(
+            *slab(neck.z, -END_PLAY_MM, neck.r_journal),
+            *slab(at.z_gear_front, neck.z, neck.r),
+            *slab(at.z_gear_back, at.z_gear_front, teeth),
+            *behind,
+        ),
+        group=Group.ROTOR,
+        teeth=made(rated_teeth(at.gears.sun(), steel, settings, at.gears.planet()), spline_teeth(spline, settings)),
+        fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, *seats_mm)),
+        note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; " + gear_note(teeth, settings),
+        joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
+    )
+
+
+def coupling_part(
+    prisms: tuple[Prism, ...], spline: ExternalGear, screws: Hole, screwed_to: str, settings: ActuatorSettings
+) -> Part:
+    """Build the coupling between motor and sun."""
+    return Part(
+        name="coupling",
+        role=Role.COUPLING,
+        visibility=Visibility.INSIDE,
+        material=settings.materials.aluminium,
+        prisms=prisms,
+        process="machined",
+        group=Group.ROTOR,
+        teeth=(spline_teeth(spline, settings),),
+        grade=ALLOYS["aw_7075_t6"],
+        fits=(COUPLING_DOWEL.hole_fit,),
+        features=(screws,),
+        note=f"screwed to the {screwed_to}; bore {hub_note(settings)}",
+    )
+
+
+def coupling_dowels(holes: Pattern, end_mm: Numbers, room_mm: Numbers, reamed: str, settings: ActuatorSettings) -> Part:
+    """Build the dowels through the coupling into what turns it."""
+    return dowel_part(
+        "coupling_dowel",
+        COUPLING_DOWEL,
+        end_mm=end_mm,
+        room_mm=room_mm,
+        direction=1.0,
+        material=settings.materials.steel,
+        holes=holes,
+        group=Group.ROTOR,
+        partner="coupling",
+        note=f"drill and ream the {reamed} through the coupling",
+    )
 
 
 def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> str:
-    """A gear's note; '' for arrays. Wire-cutting after hardening would take a hard case off."""
+    """Return a gear's note; '' for arrays. Wire-cutting after hardening would take a hard case off."""
     if np.ndim(gear.teeth):
         return ""
     shift = f"profile shift {gear.shift * gear.module_mm:+.3f} mm (outwards), " if gear.shift else ""
@@ -62,23 +127,14 @@ def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> 
 
 
 def note_with(text: str, *numbers: Numbers) -> str:
-    """A note with numbers filled in; '' for arrays, because notes are used only for single actuators."""
+    """Return a note with numbers filled in; '' for arrays, because notes are used only for single actuators."""
     if any(np.ndim(number) for number in numbers):
         return ""
     return text.format(*(f"{float(number):g}" for number in numbers))
 
 
 def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
-    """One prism between two heights, from radii or shapes; none if a single slab has no height.
-
-    In arrays every prism is kept: those without height weigh nothing.
-
-    Args:
-        z0_mm: lower end, float or shape (n,).
-        z1_mm: upper end, likewise.
-        outline: outer radius in mm or shape.
-        holes: likewise.
-    """
+    """Build one prism from radii or shapes; none if a single slab has no height, which arrays keep."""
     if _is_single(z0_mm) and _is_single(z1_mm) and float(z1_mm) - float(z0_mm) < 1e-9:
         return ()
     shapes = tuple(Circle(radius_mm=hole) if isinstance(hole, float | int | np.ndarray) else hole for hole in holes)
@@ -87,39 +143,39 @@ def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbe
 
 
 def tube(z0_mm: Numbers, z1_mm: Numbers, outer_mm: Numbers, inner_mm: Numbers, *holes: Shape) -> tuple[Prism, ...]:
-    """A slab with a central bore; none if a single tube has no wall."""
+    """Build a slab with a central bore; none if a single tube has no wall."""
     if _is_single(outer_mm) and _is_single(inner_mm) and float(outer_mm) - float(inner_mm) < 1e-9:
         return ()
     return slab(z0_mm, z1_mm, outer_mm, inner_mm, *holes)
 
 
 def _is_single(value: Numbers) -> bool:
-    """As ``np.ndim(value) == 0``, which takes ten times as long for a float; a map asks it five thousand times."""
+    """Return ``np.ndim(value) == 0``, which takes ten times as long for a float; a map asks it five thousand times."""
     return getattr(value, "ndim", 0) == 0
 
 
 def output_holes(settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
-    """Bolt pattern of the output flange."""
+    """Return the bolt pattern of the output flange."""
     data = settings.parts.interface
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
 
 
 def output_dowel_holes(settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in the output flange, in every second gap of its bolts."""
+    """Return the holes for dowels in the output flange, in every second gap of its bolts."""
     data = settings.parts.interface
     gap = np.pi / data.output_bolt_count
     return Dowel(diameter_mm=data.output_dowel_mm).holes(data.output_bolt_circle_mm, data.output_bolt_count // 2, gap)
 
 
 def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in the mounting face, in every gap of its bolts."""
+    """Return the holes for dowels in the mounting face, in every gap of its bolts."""
     data = settings.parts.interface
     gap = np.pi / data.mount_bolt_count
     return Dowel(diameter_mm=data.mount_dowel_mm).holes(2.0 * at.r_bolts, data.mount_bolt_count, gap)
 
 
 def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
-    """Bolt pattern of the mounting face, and of the backplate on the casing."""
+    """Return the bolt pattern of the mounting face, and of the backplate on the casing."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 
@@ -131,12 +187,7 @@ def housing_screw(name: str, settings: ActuatorSettings, **own: Any) -> Part:
 
 
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:
-    """The motor's own mounting pattern.
-
-    Args:
-        motor: which one.
-        play_mm: hole less screw diameter, ``MOTOR_CLEARANCE_HOLE_MM`` or ``MOTOR_TAPPED_HOLE_MM``.
-    """
+    """Return the motor's mounting pattern; ``play_mm`` is hole less screw diameter."""
     holes = motor.mount_holes
     assert holes is not None
     return Pattern(
@@ -145,7 +196,7 @@ def motor_holes(motor: Motor, play_mm: float) -> Pattern:
 
 
 def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern, ...]:
-    """As many round holes as fit between two radii, with ``wall_mm`` around each; none if they would be below M3."""
+    """Return as many round holes as fit between two radii, ``wall_mm`` around each; none if they were below M3."""
     radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
     count = np.floor(np.pi / np.arcsin(np.clip((radius + wall_mm) / middle, 0.01, 1.0)))
     count = np.where(radius >= M3.hole, count, 0.0)[()]
@@ -155,7 +206,7 @@ def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern
 
 
 def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
-    """The backplate's step that centres it in the casing."""
+    """Build the backplate's step that centres it in the casing."""
     return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_casing, at.r_casing - settings.parts.casing.vent_wall_mm)
 
 
@@ -168,7 +219,7 @@ def bought_bearing(
     note: str,
     joint: Joint | None = None,
 ) -> Part:
-    """A ball bearing as the ring it fills, with its catalogue mass."""
+    """Build a ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
     return Part(
         name=name,
@@ -186,6 +237,8 @@ def bought_bearing(
     )
 
 
+housing_part = partial(Part, role=Role.HOUSING, process="machined", group=Group.HOUSING, grade=ALLOYS["aw_6082_t6"])
+"""Builds a part of the housing, of the alloy that all of them are made of."""
 BODY_RADIUS_MM, _BODY_MM = 4.0, 7.0
 MAGNET_RADIUS_MM, MAGNET_MM = 2.0, 4.0
 _GAP_MM = 1.0
@@ -196,14 +249,7 @@ _CAP_MM = 1.5
 
 
 def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, shaft: str) -> tuple[Part, ...]:
-    """Magnet, sensor and cap.
-
-    Args:
-        z_shaft_mm: height of the rear end of the motor's shaft, float or shape (n,).
-        z_back_mm: height of the backplate's outer face, likewise.
-        bore_mm: radius of the backplate's central bore, likewise.
-        shaft: name of the part whose end takes the magnet, see ``shaft_end``.
-    """
+    """Build magnet, sensor and cap; ``shaft`` is the part whose end takes the magnet, see ``shaft_end``."""
     z_sensor = z_shaft_mm - _GAP_MM
     return (
         Part(
@@ -229,15 +275,11 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             note=f"RM08 (RLS), 12 bit; {_GAP_MM:g} mm from the magnet, within 0.5 mm",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap"),
         ),
-        Part(
+        housing_part(
             name="encoder_cap",
-            role=Role.HOUSING,
             visibility=Visibility.INSIDE,
             material=MATERIALS.aluminium,
             prisms=tube(z_back_mm, z_back_mm + _CAP_MM, bore_mm, BODY_RADIUS_MM),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             note="flush with the backplate",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate"),
         ),
@@ -245,7 +287,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
 
 
 def shaft_end(z0_mm: Numbers, z1_mm: Numbers, radius_mm: Numbers) -> tuple[Prism, ...]:
-    """A shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
+    """Build a shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
     split = np.minimum(z0_mm + MAGNET_MM, z1_mm)[()]
     return (*tube(z0_mm, split, radius_mm, MAGNET_RADIUS_MM), *slab(split, z1_mm, radius_mm))
 
@@ -283,7 +325,7 @@ def rated_teeth(
 
 
 def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMaking:
-    """How a spline is made, on the shaft and in the hub."""
+    """Return how a spline is made, on the shaft and in the hub."""
     return ToothMaking(
         teeth=int(spline.teeth),
         module_mm=float(spline.module_mm),
@@ -295,5 +337,5 @@ def spline_teeth(spline: ExternalGear, settings: ActuatorSettings) -> ToothMakin
 
 
 def made(*teeth: ToothMaking | None) -> tuple[ToothMaking, ...]:
-    """Those that are known."""
+    """Return those that are known."""
     return tuple(one for one in teeth if one is not None)

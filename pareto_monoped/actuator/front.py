@@ -4,9 +4,8 @@ import numpy as np
 
 from pareto_monoped.actuator.features import (
     bought_bearing,
-    gear_accuracy,
-    gear_grade,
     gear_note,
+    gear_part,
     made,
     output_dowel_holes,
     output_holes,
@@ -18,7 +17,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
-from pareto_monoped.geometry.features import Hole, bored, turned
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
 from pareto_monoped.geometry.making import Fit, limits, raceway_note
 from pareto_monoped.geometry.parts import Part, Prism
@@ -45,10 +44,7 @@ _PIN_TO_GROOVE_MM = 0.1
 
 
 def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
-    """A planet: recessed on both faces between hub and rim where there is room for it.
-
-    The web is a share of the face width, as is usual for turned blanks.
-    """
+    """Build a planet, recessed on both faces between hub and rim where there is room for it."""
     data = settings.parts.gears
     gears = at.gears
     shape = gears.planet(settings.tooth_thinning_mm(gears.module_mm))
@@ -74,49 +70,29 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
 
 
 def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Planets with their bearings, pins and the pins' screws, ring."""
-    return (
-        _planet(at, settings),
-        *planet_bearing_parts(at, settings),
-        *_pins(at, settings),
-        _ring(at, settings),
-    )
+    """Build the planets with their bearings, pins and the pins' screws, ring."""
+    return (_planet(at, settings), *planet_bearing_parts(at, settings), *_pins(at, settings), _ring(at, settings))
 
 
 def _planet(at: Layout, settings: ActuatorSettings) -> Part:
-    materials, gears = settings.materials, at.gears
-    return Part(
+    gears, steel, bushes = at.gears, settings.gear_steels.planet, settings.planet_bearing == "bushes"
+    bore = Circle(radius_mm=0.5 * settings.planet_bore_mm)
+    return gear_part(settings, steel)(
         name="planet",
-        role=Role.GEAR,
-        visibility=Visibility.INSIDE,
-        material=materials.gear_steel,
         prisms=planet_prisms(at, settings),
-        process="machined",
         group=Group.PLANET,
-        grade=gear_grade(settings, settings.gear_steels.planet),
-        accuracy_class=gear_accuracy(settings),
-        features=(
-            bored(
-                Circle(radius_mm=0.5 * settings.planet_bore_mm),
-                at.z_gear_back,
-                at.z_gear_front,
-                enters="both",
-                pressed=settings.planet_bearing == "bushes",
-            ),
-        ),
-        teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
+        features=(bored(bore, at.z_gear_back, at.z_gear_front, enters="both", pressed=bushes),),
+        teeth=made(rated_teeth(gears.planet(), steel, settings, gears.sun(), gears.ring())),
         note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
         fits=planet_fits(settings),
-        joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
-        if settings.planet_bearing == "bushes"
-        else None,
+        joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush") if bushes else None,
         count=gears.planets,
         pitch_radius_mm=at.r_pins,
     )
 
 
 def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """The planets' pins, and the screws that hold the second carrier on them."""
+    """Build the planets' pins, and the screws that hold the second carrier on them."""
     materials, carrier, gears = settings.materials, settings.parts.carrier, at.gears
     pin = 0.5 * carrier.pin_diameter_mm
     pin_low = at.z_secondary_front - carrier.pin_depth_mm
@@ -129,10 +105,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             role=Role.PIN,
             visibility=Visibility.INSIDE,
             material=materials.steel,
-            prisms=(
-                *slab(pin_low, pin_tap, pin, M3.core),
-                *slab(pin_tap, pin_front, pin),
-            ),
+            prisms=(*slab(pin_low, pin_tap, pin, M3.core), *slab(pin_tap, pin_front, pin)),
             process="machined",
             group=Group.OUTPUT,
             grade=ALLOYS["raceway_pin" if needles else "dowel"],
@@ -165,22 +138,15 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _ring(at: Layout, settings: ActuatorSettings) -> Part:
-    materials, gears = settings.materials, at.gears
-    return Part(
+    gears, steel = at.gears, settings.gear_steels.ring
+    teeth = gears.ring(settings.tooth_thinning_mm(gears.module_mm))
+    return gear_part(settings, steel)(
         name="ring",
-        role=Role.GEAR,
-        visibility=Visibility.INSIDE,
-        material=materials.gear_steel,
-        prisms=slab(
-            at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(settings.tooth_thinning_mm(gears.module_mm))
-        ),
-        process="machined",
+        prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, teeth),
         group=Group.HOUSING,
-        grade=gear_grade(settings, settings.gear_steels.ring),
         fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
-        accuracy_class=gear_accuracy(settings),
-        teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
-        note=gear_note(gears.ring(settings.tooth_thinning_mm(gears.module_mm)), settings),
+        teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet())),
+        note=gear_note(teeth, settings),
         joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
     )
 
@@ -194,7 +160,7 @@ def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
 
 
 def _planet_note(gear: ExternalGear, settings: ActuatorSettings) -> str:
-    """A planet's note; with needles, what its bore needs as their outer raceway."""
+    """Return a planet's note; with needles, what its bore needs as their outer raceway."""
     note = gear_note(gear, settings)
     if settings.planet_bearing == "bushes" or not note:
         return note
@@ -210,18 +176,18 @@ def _raceway(diameter_mm: float, zone: str) -> str:
 
 
 def z_pin_front(at: Layout, settings: ActuatorSettings) -> Numbers:
-    """Height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
+    """Return the height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
     carrier = settings.parts.carrier
     return np.minimum(-(carrier.thread_depth_mm + carrier.diaphragm_mm), _z_groove(at) - _PIN_TO_GROOVE_MM)
 
 
 def _z_groove(at: Layout) -> Numbers:
-    """Height of the back of the retaining ring's groove; its play is on this side, under the bearing."""
+    """Return the height of the back of the retaining ring's groove; its play is on this side, under the bearing."""
     return at.z_bearing_front - at.shaft_ring.play_mm
 
 
 def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Carrier with output flange and webs, retaining ring, main and end bearing, secondary carrier."""
+    """Build the carrier with output flange and webs, retaining ring, main and end bearing, secondary carrier."""
     data, materials = settings.parts, settings.materials
     carrier = data.carrier
     threads, dowels = output_holes(settings), output_dowel_holes(settings)
@@ -231,7 +197,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     seat = 0.5 * at.end_bearing.outer_diameter_mm
     ring = at.shaft_ring
     z_ring = at.z_bearing_front + ring.thickness_mm
-    body = (
+    body: tuple[Prism, ...] = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
         *slab(z_diaphragm, z_ring, ring.r_groove, seat, threads, dowels),
@@ -239,8 +205,11 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         *slab(z_pins, z_groove, at.r_bore, seat - data.casing.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
-        *_web_prisms(at),
     )
+    web_holes, z_tapped = _web_holes(at, WEB_SCREW.core), at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
+    if web_holes:
+        body += slab(at.z_secondary_front, z_tapped, at.webs.outline, *web_holes)
+        body += slab(z_tapped, at.z_shoulder, at.webs.outline)
     return (
         Part(
             name="carrier",
@@ -263,7 +232,10 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
                 bored(pins, at.z_shoulder, z_pins, enters="low", pressed=True),
                 turned(at.r_bore, -carrier.flange_thickness_mm, -1.0),
-                *_web_threads(at),
+                *(
+                    tapped(WEB_SCREW, (hole,), at.z_secondary_front, z_tapped, enters="low", usable_mm=_WEB_THREAD_MM)
+                    for hole in web_holes
+                ),
             ),
         ),
         _secondary_carrier(at, settings, pins),
@@ -294,7 +266,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) -> Part:
-    """The ring that holds the far ends of the planets' pins, screwed to these and to the webs."""
+    """Build the ring that holds the far ends of the planets' pins, screwed to these and to the webs."""
     carrier, materials = settings.parts.carrier, settings.materials
     screws = Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=at.gears.planets)
     web_holes = _web_holes(at, WEB_SCREW.hole)
@@ -323,46 +295,16 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
     )
 
 
-def _has_webs(at: Layout) -> bool:
-    """Whether there are webs, or may be in arrays."""
-    return bool(np.any(at.webs.present))
-
-
 def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
-    """Holes of the screws into the webs."""
-    if not _has_webs(at):
-        return ()
     webs = at.webs
+    if not np.any(webs.present):  # of arrays, any may have webs
+        return ()
     return (Pattern(radius_mm=radius_mm, pitch_radius_mm=webs.r_screw_mm, count=webs.count, phase_rad=webs.phase_rad),)
 
 
-def _web_prisms(at: Layout) -> tuple[Prism, ...]:
-    """The webs of the carrier, tapped from behind."""
-    if not _has_webs(at):
-        return ()
-    z_tapped = _z_tapped(at)
-    return (
-        *slab(at.z_secondary_front, z_tapped, at.webs.outline, *_web_holes(at, WEB_SCREW.core)),
-        *slab(z_tapped, at.z_shoulder, at.webs.outline),
-    )
-
-
-def _web_threads(at: Layout) -> tuple[Hole, ...]:
-    """The tapped holes of the webs."""
-    return tuple(
-        tapped(WEB_SCREW, (hole,), at.z_secondary_front, _z_tapped(at), enters="low", usable_mm=_WEB_THREAD_MM)
-        for hole in _web_holes(at, WEB_SCREW.core)
-    )
-
-
-def _z_tapped(at: Layout) -> Numbers:
-    """Height of the bottoms of the webs' tapped holes."""
-    return at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
-
-
 def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """From behind through the second carrier into the webs."""
-    if not _has_webs(at):
+    """Build the screws that clamp the second carrier to the webs from behind."""
+    if not _web_holes(at, WEB_SCREW.core):
         return ()
     return (
         screw_part(

@@ -1,6 +1,5 @@
-"""Planetary gear sets: teeth, module, planets, and what follows from them alone.
-
-How evenly the planets share the load.
+"""Planetary gear sets: teeth, module, planets, and what follows from them alone, with how evenly planets share the
+load.
 """
 
 from collections.abc import Sequence
@@ -24,6 +23,7 @@ class _Shifts(NamedTuple):
     ring: Numbers
 
 
+_COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets"), ("centre_shift", "sun_shift")
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 
 
@@ -37,10 +37,9 @@ class GearSet:
     the internal mesh with the differences of teeth and shifts.
     """
 
-    #: sun_teeth, planet_teeth, ring_teeth: Ns, Np, Nr
-    sun_teeth: Numbers
-    planet_teeth: Numbers
-    ring_teeth: Numbers
+    sun_teeth: Numbers  #: Ns
+    planet_teeth: Numbers  #: Np
+    ring_teeth: Numbers  #: Nr
     module_mm: Numbers  #: m
     planets: Numbers  #: n_p
     centre_shift: Numbers = 0.0  #: y, by how much the centre distance exceeds m (Ns + Np) / 2
@@ -102,7 +101,7 @@ class GearSet:
         return 0.5 * self.module_mm * self.ring_teeth
 
     def sun(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
-        """Cross-section of the sun, a tooth on the x axis."""
+        """Return the cross-section of the sun, a tooth on the x axis."""
         return ExternalGear(
             teeth=self.sun_teeth,
             module_mm=self.module_mm,
@@ -112,7 +111,7 @@ class GearSet:
         )
 
     def planet(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
-        """Cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
+        """Return the cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
         return ExternalGear(
             teeth=self.planet_teeth,
             module_mm=self.module_mm,
@@ -123,7 +122,7 @@ class GearSet:
         )
 
     def ring(self, backlash_mm: Numbers = 0.0) -> InternalGear:
-        """Toothed hole of the ring, with a space where the first planet has a tooth."""
+        """Return the toothed hole of the ring, with a space where the first planet has a tooth."""
         return InternalGear(
             teeth=self.ring_teeth,
             module_mm=self.module_mm,
@@ -133,35 +132,28 @@ class GearSet:
         )
 
     def chosen(self, index: int) -> "GearSet":
-        """One set out of arrays, with plain numbers."""
+        """Return one set out of arrays, with plain numbers."""
         return GearSet(
             sun_teeth=int(np.asarray(self.sun_teeth)[index]),
             planet_teeth=int(np.asarray(self.planet_teeth)[index]),
             ring_teeth=int(np.asarray(self.ring_teeth)[index]),
             module_mm=float(np.asarray(self.module_mm)[index]),
             planets=int(np.asarray(self.planets)[index]),
-            centre_shift=float(self._spread(self.centre_shift)[index]),
-            sun_shift=float(self._spread(self.sun_shift)[index]),
+            **{name: float(self._spread(getattr(self, name))[index]) for name in _SHIFTS},
         )
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
-        """The sets at a mask or at indices."""
-        return GearSet(
-            sun_teeth=np.asarray(self.sun_teeth)[mask],
-            planet_teeth=np.asarray(self.planet_teeth)[mask],
-            ring_teeth=np.asarray(self.ring_teeth)[mask],
-            module_mm=np.asarray(self.module_mm)[mask],
-            planets=np.asarray(self.planets)[mask],
-            centre_shift=self._spread(self.centre_shift)[mask] if self.is_shifted else 0.0,
-            sun_shift=self._spread(self.sun_shift)[mask] if self.is_shifted else 0.0,
-        )
+        """Return the sets at a mask or at indices."""
+        teeth = {name: np.asarray(getattr(self, name))[mask] for name in _COUNTS}
+        shifts = {name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS}
+        return GearSet(**teeth, **shifts)
 
     def _spread(self, value: Numbers) -> NDArray[np.float64]:
-        """A shift as an array of the sets' shape."""
+        """Return a shift as an array of the sets' shape."""
         return np.broadcast_to(np.asarray(value, dtype=np.float64), np.shape(self.sun_teeth))
 
     def shifted(self, centre_shift: float, sun_shift: float) -> "GearSet":
-        """The same sets with one pair of shifts for all; see the attributes."""
+        """Return the same sets with one pair of shifts for all; see the attributes."""
         shape = np.shape(self.sun_teeth)
         return replace(self, centre_shift=np.full(shape, centre_shift), sun_shift=np.full(shape, sun_shift))
 
@@ -174,7 +166,7 @@ class GearSet:
 
 
 def joined(sets: Sequence[GearSet]) -> GearSet:
-    """Several arrays of gear sets as one."""
+    """Return several arrays of gear sets as one."""
     columns = {
         each.name: np.concatenate(
             [np.atleast_1d(np.broadcast_to(getattr(one, each.name), np.shape(one.sun_teeth))) for one in sets]
@@ -200,14 +192,14 @@ def _shifts(gears: GearSet) -> _Shifts:
 
 
 def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:
-    """Sum of shifts over sum of teeth at a working pressure angle."""
+    """Return the sum of shifts over the sum of teeth at a working pressure angle."""
     wider = involute(working_angle_rad) - involute(PRESSURE_ANGLE_RAD)
     ratio: Numbers = wider / (2.0 * np.tan(PRESSURE_ANGLE_RAD))
     return ratio
 
 
 def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
-    """Transverse contact ratios of sun with planet and of planet with ring (Shigley, section 13-6; ISO 21771)."""
+    """Return the transverse contact ratios of both meshes (Shigley, section 13-6; ISO 21771)."""
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
     distance = gears.carrier_radius_mm * np.sin(gears.working_angle_rad)
     ring_distance = gears.carrier_radius_mm * np.sin(gears.ring_working_angle_rad)
@@ -216,14 +208,14 @@ def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
 
 
 def _tip_reach_mm(gear: ExternalGear | InternalGear) -> Numbers:
-    """Length of the tangent to the base circle that ends on the tip circle."""
+    """Return the length of the tangent to the base circle that ends on the tip circle."""
     # The tips of a small ring may lie inside its base circle; the rules refuse such a ring.
     length_mm: Numbers = np.sqrt(np.maximum(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm), 0.0))
     return length_mm
 
 
 def efficiency(gears: GearSet, friction: float) -> Numbers:
-    """Mesh efficiency of the stage with the ring fixed, the sun as input and the carrier as output.
+    """Return the mesh efficiency of the stage with the ring fixed, the sun as input and the carrier as output.
 
     The loss of a mesh with the carrier held, per unit of power, is
 
@@ -253,16 +245,14 @@ def efficiency(gears: GearSet, friction: float) -> Numbers:
     planet, angle, ring_angle = gears.planet(), gears.working_angle_rad, gears.ring_working_angle_rad
     outer = loss(share(gears.sun(), angle), share(planet, angle), 1.0 / gears.sun_teeth + 1.0 / gears.planet_teeth)
     inner = loss(
-        share(planet, ring_angle),
-        share(gears.ring(), ring_angle),
-        1.0 / gears.planet_teeth - 1.0 / gears.ring_teeth,
+        share(planet, ring_angle), share(gears.ring(), ring_angle), 1.0 / gears.planet_teeth - 1.0 / gears.ring_teeth
     )
     basic = (1.0 - outer) * (1.0 - inner)
     return (1.0 + (gears.ratio - 1.0) * basic) / gears.ratio
 
 
 def load_sharing(planets: Numbers, settings: ActuatorSettings) -> Numbers:
-    """K_gamma by the number of planets, from the settings' table for the sun's support."""
+    """Return K_gamma by the number of planets, from the settings' table for the sun's support."""
     data = settings.parts.rating
     table = data.load_sharing_fixed if data.sun_support == "fixed" else data.load_sharing_floating
     factor: Numbers = np.asarray(table)[np.minimum(np.asarray(planets).astype(int) - 2, len(table) - 1)][()]

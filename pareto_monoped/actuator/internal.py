@@ -3,25 +3,22 @@
 import numpy as np
 
 from pareto_monoped.actuator.features import (
-    END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
     SPIGOT_MM,
     bought_bearing,
     casing_dowel_holes,
     casing_holes,
+    coupling_dowels,
+    coupling_part,
     encoder_parts,
-    gear_accuracy,
-    gear_grade,
-    gear_note,
+    housing_part,
     housing_screw,
-    made,
     motor_holes,
     note_with,
-    rated_teeth,
     shaft_end,
     slab,
     spigot,
-    spline_teeth,
+    sun_part,
     tube,
     vents,
 )
@@ -32,9 +29,7 @@ from pareto_monoped.actuator.layout import (
     InternalLayout,
     Layout,
     frameless,
-    hub_note,
     internal_layout,
-    spline_note,
 )
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -45,7 +40,6 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
-from pareto_monoped.materials import ALLOYS
 
 FLANGE_DOWEL = Dowel(diameter_mm=2.5)
 """Between ring housing and casing; our own choice: the thinnest sold whose length is that of both flanges."""
@@ -60,7 +54,7 @@ _BELL_PLAY_MM = 0.5
 
 
 def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """All parts of an ISSPG, or of many at once.
+    """Build all parts of an ISSPG, or of many at once.
 
     The ring housing is one turned piece, solid between ring and stator. It carries the main bearing, the ring and the
     stator, whose torque and heat it takes up. Where the gears need more depth than the stator has, the stator sits
@@ -90,96 +84,62 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 
 def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
-    data, materials = settings.parts, settings.materials
-    coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
-    z_hub = shell.z_coupling - coupling.thickness_mm
-    dowels = _bell_dowel_holes(settings)
-    teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
+    """Build what turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
+    coupling, spline = settings.parts.coupling, settings.parts.spline.internal
+    shaft = coupling.shaft_radius_mm
+    z_hub, threads, dowels = (
+        shell.z_coupling - coupling.thickness_mm,
+        _bell_holes(settings, M3.core),
+        _bell_dowel_holes(settings),
+    )
     return (
-        Part(
-            name="sun",
-            role=Role.GEAR,
-            visibility=Visibility.INSIDE,
-            material=materials.gear_steel,
-            prisms=(
-                *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
-                *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
-                *slab(at.z_gear_back, at.z_gear_front, teeth),
+        sun_part(
+            at,
+            shell.neck,
+            settings,
+            spline,
+            shaft,
+            behind=(
                 *slab(shell.z_coupling, at.z_gear_back, shaft),
                 *slab(z_hub, shell.z_coupling, spline),
                 *shaft_end(shell.z_plate, z_hub, shaft),
             ),
-            process="machined",
-            group=Group.ROTOR,
-            grade=gear_grade(settings, settings.gear_steels.sun),
-            accuracy_class=gear_accuracy(settings),
-            teeth=made(
-                rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings, at.gears.planet()),
-                spline_teeth(spline, settings),
-            ),
-            fits=(
-                Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),
-                Fit(diameter_mm=2.0 * shaft, zone="h6", seat=True),
-            ),
-            note=f"one piece with its shaft, {spline_note(spline, shaft)}; " + gear_note(teeth, settings),
-            joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
+            seats_mm=(shaft,),
         ),
-        Part(
-            name="coupling",
-            role=Role.COUPLING,
-            visibility=Visibility.INSIDE,
-            material=materials.aluminium,
-            prisms=(
-                *slab(z_hub, shell.z_coupling, coupling.radius_mm, spline, _bell_holes(settings, M3.core), dowels),
+        coupling_part(
+            (
+                *slab(z_hub, shell.z_coupling, coupling.radius_mm, spline, threads, dowels),
                 *tube(shell.z_seat, z_hub, shaft + _HUB_WALL_MM, shaft),
             ),
-            process="machined",
-            group=Group.ROTOR,
-            teeth=(spline_teeth(spline, settings),),
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(COUPLING_DOWEL.hole_fit,),
-            features=(tapped(M3, (_bell_holes(settings, M3.core),), z_hub, shell.z_coupling, enters="high"),),
-            note=f"screwed to the bell; bore {hub_note(settings)}",
+            spline,
+            tapped(M3, (threads,), z_hub, shell.z_coupling, enters="high"),
+            "bell",
+            settings,
         ),
-        dowel_part(
-            "coupling_dowel",
-            COUPLING_DOWEL,
-            end_mm=z_hub,
-            room_mm=shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM,
-            direction=1.0,
-            material=materials.steel,
-            count=dowels.count,
-            pitch_radius_mm=dowels.pitch_radius_mm,
-            phase_rad=dowels.phase_rad,
-            group=Group.ROTOR,
-            partner="coupling",
-            note="drill and ream the bell through the coupling",
-        ),
+        coupling_dowels(dowels, z_hub, shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM, "bell", settings),
     )
 
 
 def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern between bell and coupling."""
     coupling = settings.parts.coupling
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * coupling.bolt_circle_mm, count=coupling.bolt_count)
 
 
 def _bell_dowel_holes(settings: ActuatorSettings) -> Pattern:
-    """One hole for a dowel between every two of these bolts."""
+    """Return one hole for a dowel between every two of these bolts."""
     coupling = settings.parts.coupling
     return COUPLING_DOWEL.holes(coupling.bolt_circle_mm, coupling.bolt_count, np.pi / coupling.bolt_count)
 
 
 def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Bolt pattern between casing and ring housing."""
+    """Return the bolt pattern between casing and ring housing."""
     return Pattern(
         radius_mm=radius_mm, pitch_radius_mm=shell.r_flange_bolts, count=settings.parts.interface.mount_bolt_count
     )
 
 
 def _flange_dowel_holes(shell: InternalLayout, settings: ActuatorSettings) -> Pattern:
-    """Holes for dowels in every second gap of these bolts: they carry the ring's torque."""
+    """Return the holes for dowels in every second gap of these bolts: they carry the ring's torque."""
     bolts = settings.parts.interface.mount_bolt_count
     return FLANGE_DOWEL.holes(2.0 * shell.r_flange_bolts, bolts // 2, np.pi / bolts)
 
@@ -192,9 +152,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
     return (
-        Part(
+        housing_part(
             name="casing",
-            role=Role.HOUSING,
             material=aluminium,
             prisms=(
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels, screws, flange_dowels, *front_vents),
@@ -203,9 +162,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 *tube(z_plate + casing.flange_mm, -casing.rim_mm, at.r_casing + casing.wall_mm, at.r_casing),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),
                 tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
@@ -215,19 +171,11 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
             note="bore and faces in one clamping",
         ),
-        Part(
+        housing_part(
             name="ring_housing",
-            role=Role.HOUSING,
             material=aluminium,
             prisms=(
-                *tube(
-                    z_flange,
-                    -casing.plate_mm,
-                    shell.r_flange,
-                    at.r_seat,
-                    threads,
-                    flange_dowels,
-                ),
+                *tube(z_flange, -casing.plate_mm, shell.r_flange, at.r_seat, threads, flange_dowels),
                 *tube(at.z_bearing_back, z_flange, shell.r_seat_out, at.r_seat),
                 *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
                 *tube(at.z_gear_front, z_lip, at.r_stator_in, shell.r_ring_lip),
@@ -239,9 +187,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                     at.r_stator_in - casing.ring_wall_mm,
                 ),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
@@ -260,7 +205,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
 
 
 def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
-    """The dowels between ring housing and casing."""
     casing, holes = settings.parts.casing, _flange_dowel_holes(shell, settings)
     return dowel_part(
         "ring_housing_dowel",
@@ -269,9 +213,7 @@ def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
         room_mm=casing.plate_mm + casing.flange_mm,
         direction=1.0,
         material=settings.materials.steel,
-        count=holes.count,
-        pitch_radius_mm=holes.pitch_radius_mm,
-        phase_rad=holes.phase_rad,
+        holes=holes,
         group=Group.HOUSING,
         partner="ring_housing",
         note="flush with the mounting face",
@@ -279,10 +221,7 @@ def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
 
 
 def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
-    """The plate at the back with the rear bearing's seat and the motor's own bolt pattern.
-
-    A pad behind that pattern gives its threads their depth.
-    """
+    """Build the plate with the rear bearing's seat and, on a pad that gives threads their depth, the motor's bolts."""
     casing = settings.parts.casing
     holes, rear_seat, z_plate = motor.mount_holes, shell.r_rear_seat, shell.z_plate
     assert holes is not None
@@ -290,9 +229,8 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
     r_mount = 0.5 * (holes.pitch_circle_mm + holes.diameter_mm)
     r_pad = 0.5 * (holes.pitch_circle_mm - holes.diameter_mm) - _PAD_RIM_MM
     back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
-    return Part(
+    return housing_part(
         name="backplate",
-        role=Role.HOUSING,
         material=settings.materials.aluminium,
         prisms=(
             *slab(shell.z_end, z_plate, at.r_plate, rear_seat - casing.lip_mm, back, threads, *back_vents),
@@ -300,9 +238,6 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             *tube(z_plate, shell.z_seat, rear_seat + casing.seat_wall_mm, rear_seat),
             *spigot(z_plate, at, settings),
         ),
-        process="machined",
-        group=Group.HOUSING,
-        grade=ALLOYS["aw_6082_t6"],
         fits=(Fit(diameter_mm=2.0 * rear_seat, zone="J7", seat=True),),
         features=(
             tapped(
@@ -320,7 +255,6 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
 
 
 def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Of ring housing, backplate and coupling."""
     casing, coupling, steel = settings.parts.casing, settings.parts.coupling, settings.materials.steel
     return (
         housing_screw(
@@ -361,7 +295,7 @@ def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorS
 
 
 def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Envelopes of stator and rotor, with their shares of the motor's mass."""
+    """Build the envelopes of stator and rotor, with their shares of the motor's mass."""
     kit, rotor_share = frameless(motor), motor.rotor_mass_share
     height = kit.stator_height_mm
     assert height is not None

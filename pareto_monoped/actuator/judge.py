@@ -1,9 +1,7 @@
-"""What the rules say of thousands of gear sets at once, and what those that matter weigh.
+"""Every gear set that the search looks at, what the rules say of it, and the mass of those that matter.
 
 Most gear sets are ruled out by teeth and room alone. What costs more is worked out for the others only: first the
 layout and the rules that need it, then the mass, and last the rating.
-
-Every gear set that the search looks at: whole tooth numbers, standard modules, planets, profile shifts.
 """
 
 from collections.abc import Mapping
@@ -40,7 +38,7 @@ _TEETH_LEAST = 12
 
 
 def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
-    """Every gear set with Nr = Ns + 2 Np, a ratio in the map's range, and m Nr not far beyond the room."""
+    """Return every gear set with Nr = Ns + 2 Np, a ratio in the map's range, and m Nr not far beyond the room."""
     sets = []
     intervals = (10 * RATIO_LOW, 10 * RATIO_HIGH)
     for module in settings.modules_mm:
@@ -59,20 +57,13 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
             sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
     columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
     gears = GearSet(
-        sun_teeth=columns[0],
-        planet_teeth=columns[1],
-        ring_teeth=columns[2],
-        module_mm=columns[3],
-        planets=columns[4],
+        sun_teeth=columns[0], planet_teeth=columns[1], ring_teeth=columns[2], module_mm=columns[3], planets=columns[4]
     )
     return _with_shifts(gears, room_mm, settings)
 
 
 def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> GearSet:
-    """Every gear set with every profile shift of the settings.
-
-    No shift helps planets that do not mesh or a ring beyond the room, so that such sets come with the first shift only.
-    """
+    """Return the gear sets with every shift, and with the first one only if they do not mesh or exceed the room."""
     first, *others = settings.shift_choices
     everything = gears.shifted(*first) if any(first) else gears
     if not others:
@@ -97,12 +88,10 @@ class Judged:
 
     gears: GearSet  #: the gear sets
     tenths: NDArray[np.int64]  #: lower end of each set's interval
-    #: width_mm, mass_kg: face width and mass; infinite mass for sets that cannot be built, or need not be weighed
-    width_mm: NDArray[np.float64]
-    mass_kg: NDArray[np.float64]
-    #: names, broken: rules, and which of them each set breaks, shape (names, n)
-    names: tuple[ConstraintName, ...]
-    broken: NDArray[np.bool_]
+    width_mm: NDArray[np.float64]  #: face width
+    mass_kg: NDArray[np.float64]  #: infinite for sets that cannot be built, or need not be weighed
+    names: tuple[ConstraintName, ...]  #: of the rules
+    broken: NDArray[np.bool_]  #: which of them each set breaks, shape (names, n)
     #: Sets that are solutions or are kept out by a single rule, as far as these may be lighter than the two lightest of
     #: their interval
     considered: NDArray[np.bool_]
@@ -127,7 +116,7 @@ class Judge:
     settings: ActuatorSettings
 
     def judge(self, gears: GearSet) -> Judged:
-        """All sets under the rules of the settings."""
+        """Judge all sets under the rules of the settings."""
         if self.settings.rules == "paper":
             screen = _Screen(self, gears, np.asarray(face_width_mm(gears, self.motor, self.family, self.settings)))
             return self._by_lewis(screen)
@@ -142,7 +131,7 @@ class Judge:
         return screen.judged(mass, near)
 
     def _by_rating(self, screen: "_Screen") -> Judged:
-        """All sets under the rules ``iso6336``.
+        """Judge all sets under the rules ``iso6336``.
 
         To rate a gear set costs more than all other rules together. Sets that break more than one of the others at the
         least face width are neither solutions nor kept out by a single rule, and are not rated. Nor are sets that are
@@ -156,11 +145,11 @@ class Judge:
         return screen.judged(rating.mass_kg, rating.rated)
 
     def layout(self, gears: GearSet, width_mm: NDArray[np.float64]) -> Layout:
-        """What lies around gear sets of these widths."""
+        """Return what lies around gear sets of these widths."""
         return layout(self.motor, self.family, gears, width_mm, self.settings)
 
     def mass_kg(self, gears: GearSet, width_mm: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Mass of the actuators; infinite where the catalogue has no main bearing."""
+        """Return the mass of the actuators; infinite where the catalogue has no main bearing."""
         at = self.layout(gears, width_mm)
         mass = np.asarray(actuator_mass_kg(at, self.motor, self.family, self.settings))
         return np.where(np.isnan(mass), np.inf, mass)
@@ -172,7 +161,7 @@ class Judge:
         at: Layout | None,
         strength: Mapping[str, Numbers] | None = None,
     ) -> CandidateSets:
-        """Gear sets as the rules look at them."""
+        """Return the gear sets as the rules look at them."""
         return CandidateSets(
             gears=gears,
             face_width_mm=width_mm,
@@ -213,7 +202,7 @@ class _Screen:
         self.broken[np.ix_(np.flatnonzero(self.late), rows)] = broken
 
     def judged(self, mass_kg: NDArray[np.float64], considered: NDArray[np.bool_]) -> Judged:
-        """The verdict, complete wherever an interval has no solution and its nearest sets name the rules."""
+        """Return the verdict, complete wherever an interval has no solution and its nearest sets name the rules."""
         found = Judged(
             gears=self.gears,
             tenths=self.tenths,
@@ -284,10 +273,6 @@ class _Rating:
         It does if they are lighter than the solution of their interval, or if the interval has neither a solution nor a
         set that fits. Next to a solution, a set that no width makes strong enough breaks a second rule and does not
         matter.
-
-        Args:
-            rows: the sets.
-            fitting_tenths: the intervals that have sets that break no other rule.
         """
         screen, tenths = self.screen, self.screen.tenths[rows]
         lightest = self.lightest(0)[tenths]
@@ -315,16 +300,16 @@ class _Bounded:
     bounds: WidthBounds  #: of their widths
 
     def where(self, mask: NDArray[np.bool_]) -> "_Bounded":
-        """Some of them."""
+        """Return some of the sets."""
         return _Bounded(rows=self.rows[mask], stage=self.stage.rows(mask), bounds=self.bounds.where(mask))
 
     def least_mass_kg(self, judge: Judge) -> NDArray[np.float64]:
-        """Masses that the sets do not go below."""
+        """Return the masses that the sets do not go below."""
         return judge.mass_kg(self.stage.gears, self.bounds.floor_mm)
 
 
 def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Place of each value among those of its group, from 0."""
+    """Return the place of each value among those of its group, from 0."""
     order = np.lexsort((values, groups))
     first = np.searchsorted(groups[order], groups[order])
     rank = np.empty(len(order), dtype=np.intp)
@@ -333,7 +318,7 @@ def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.
 
 
 def _lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64], place: int) -> NDArray[np.float64]:
-    """For each interval, by its tenths, the lightest mass, or the next by ``place``; infinite where there is none."""
+    """Return the lightest mass of each interval by its tenths, or the next by ``place``; infinite where none is."""
     found = np.full(10 * RATIO_HIGH, np.inf)
     known = np.flatnonzero(np.isfinite(mass_kg))
     chosen = known[_rank(tenths[known], mass_kg[known]) == place]

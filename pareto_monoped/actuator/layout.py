@@ -1,4 +1,5 @@
-"""Radii and heights that both families have in common, for one gear set or for arrays of them.
+"""Radii and heights of both families, for one gear set or for arrays of them: the common front, then what follows
+it.
 
 Actuator frame: z is the gearbox axis. The housing is bolted to what carries it by its face at z = 0. The output flange
 is flush with this face and points to +z; everything lies at z <= 0. From the front:
@@ -6,12 +7,6 @@ is flush with this face and points to +z; everything lies at z <= 0. From the fr
     output flange, main bearing around the carrier | planets between sun and ring | secondary carrier | coupling, motor
 
 In the ISSPG, the stator sits on the ring housing around the gears. In the ESSPG, the motor follows behind them.
-
-Radii and heights of the ESSPG behind the common front: housing, coupling, motor, backplate.
-
-Radii and heights of the ISSPG behind the common front: ring housing, rotor, coupling, rear bearing, backplate.
-
-The sun's shaft: its end in the carrier's end bearing, and the spline by which the motor drives it.
 """
 
 from dataclasses import dataclass
@@ -31,7 +26,6 @@ from pareto_monoped.geometry.shapes import Numbers
 
 Family = Literal["ISSPG", "ESSPG"]
 FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
-
 SHAFT_GROOVE_WALL_MM = 0.75
 """What is left of the carrier in front of a retaining ring's groove; our own choice. The rings keep the bearing in its
 place and carry no load of the leg. 1 kN along the axis bends the walls of a 50 mm shaft and a 65 mm bore with 54 and
@@ -83,7 +77,7 @@ class Layout:
 
 
 def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> float:
-    """D_GB, the largest diameter of the gearbox (paper, after eq. 5)."""
+    """Return D_GB, the largest diameter of the gearbox (paper, after eq. 5)."""
     if family == "ISSPG":
         assert motor.frameless is not None
         return motor.frameless.stator_inner_diameter_mm - settings.diameter_clearance_mm
@@ -92,7 +86,7 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
 
 
 def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Outer radius of the ring gear: fixed beyond the pitch circle (``paper``), or a rim that grows with the module."""
+    """Return the ring's outer radius: fixed beyond the pitch circle (``paper``), or with a rim of some modules."""
     data = settings.parts.gears
     if settings.rules == "iso6336":
         return gears.ring_root_radius_mm + data.ring_rim_modules * gears.module_mm
@@ -102,7 +96,7 @@ def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -
 
 
 def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers, settings: ActuatorSettings) -> Layout:
-    """The common layout of an actuator."""
+    """Return the common layout of an actuator."""
     data = settings.parts
     carrier, casing = data.carrier, data.casing
     r_pins = gears.carrier_radius_mm
@@ -184,13 +178,12 @@ class SunNeck:
     """The front end of the sun's shaft, in mm."""
 
     z: Numbers  #: back of the end that turns in the end bearing
-    #: r_journal, r: radii of this end and of the neck behind it
-    r_journal: Numbers
-    r: Numbers
+    r_journal: Numbers  #: radius of this end
+    r: Numbers  #: radius of the neck behind it
 
 
 def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
-    """The neck keeps the sun from moving forwards and clears the carrier."""
+    """Return the neck, which keeps the sun from moving forwards and clears the carrier."""
     r_journal = 0.5 * at.end_bearing.inner_diameter_mm
     room = at.r_carrier_in - settings.parts.casing.rotor_clearance_mm
     return SunNeck(
@@ -201,17 +194,12 @@ def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
 
 
 def hub_note(settings: ActuatorSettings) -> str:
-    """How the coupling is made to fit."""
+    """Return how the coupling is made to fit."""
     return f"wire-cut to the shaft's spline, {settings.parts.spline.play_mm:g} mm play"
 
 
 def spline_note(spline: ExternalGear, shaft_radius_mm: float) -> str:
-    """The spline in words. It is toothed like a gear, so that a hob and a wire-cutter do, not a tool of its own.
-
-    Args:
-        spline: its teeth.
-        shaft_radius_mm: of the shaft beside them.
-    """
+    """Return the spline in words. It is toothed like a gear, so that it needs no tool of its own."""
     note = f"splined end of {spline.teeth:g} teeth, module {spline.module_mm:g} mm, 20 degrees"
     root, shaft = 2.0 * float(spline.root_radius_mm), 2.0 * shaft_radius_mm
     if root >= shaft:
@@ -260,7 +248,7 @@ class ExternalLayout:
 
 
 def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> ExternalLayout:
-    """The layout of an ESSPG behind its front, for one gear set or for arrays of them."""
+    """Return the layout of an ESSPG behind its front, for one gear set or for arrays of them."""
     casing, coupling_mm = settings.parts.casing, _coupling_mm(motor, settings)
     assert motor.framed is not None
     z_coupling = at.z_secondary_back - casing.motor_carrier_clearance_mm
@@ -302,10 +290,7 @@ def _coupling_mm(motor: Motor, settings: ActuatorSettings) -> float:
 
 
 def _frame_base_mm(motor: Motor, coupling_mm: float) -> float:
-    """Thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones.
-
-    It is more where the face would not hold the coupling's screws by ``_THREAD_SHARE`` of their diameter.
-    """
+    """Return the thickness of a framed motor's base and face: at most 3 mm, or more to hold the coupling's screws."""
     assert motor.framed is not None
     assert motor.output_holes is not None
     least = coupling_mm + _THREAD_SHARE * motor.output_holes.diameter_mm
@@ -321,17 +306,14 @@ _FLANGE_LESS_MM = 1.0
 class InternalLayout:
     """Radii and heights of ring housing, rotor, coupling, rear bearing and backplate, in mm, beyond ``Layout``."""
 
-    #: z_flange, z_lip: backs of the ring housing's flange and of the lip behind the main bearing
-    z_flange: float
-    z_lip: Numbers
-    #: z_bell, z_stator_back: front of the bell, back of the stator
-    z_bell: Numbers
-    z_stator_back: Numbers
+    z_flange: float  #: back of the ring housing's flange
+    z_lip: Numbers  #: back of the lip behind the main bearing
+    z_bell: Numbers  #: front of the bell
+    z_stator_back: Numbers  #: back of the stator
     z_coupling: Numbers  #: front of the coupling, at the bell's back
-    #: z_seat, z_plate, z_end: front of the rear bearing, front and back of the backplate
-    z_seat: Numbers
-    z_plate: Numbers
-    z_end: Numbers
+    z_seat: Numbers  #: front of the rear bearing
+    z_plate: Numbers  #: front of the backplate
+    z_end: Numbers  #: back of the backplate
     neck: SunNeck  #: front end of the sun's shaft
     #: r_seat_out, r_flange, r_flange_bolts, r_lip, r_ring_lip: of the ring housing: outside of its seat, its flange,
     #: the flange's bolt circle, the openings of the lips behind the main bearing and in front of the ring
@@ -344,7 +326,7 @@ class InternalLayout:
 
 
 def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> InternalLayout:
-    """The layout of an ISSPG behind its front, for one gear set or for arrays of them."""
+    """Return the layout of an ISSPG behind its front, for one gear set or for arrays of them."""
     data, kit = settings.parts, frameless(motor)
     casing = data.casing
     assert kit.stator_height_mm is not None
@@ -389,6 +371,6 @@ def internal_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Int
 
 
 def frameless(motor: Motor) -> FramelessMotor:
-    """The frameless motor, which every ISSPG has."""
+    """Return the frameless motor, which every ISSPG has."""
     assert motor.frameless is not None
     return motor.frameless

@@ -4,54 +4,42 @@ import math
 from dataclasses import dataclass
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pareto_monoped.actuator.windings import ResistanceKind, ThermalData, line_to_line_ohm, torque_constant_n_m_per_a
+from pareto_monoped.config import Positive, Strict
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 # The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
 Diameter = Annotated[float, Field(gt=0.0, le=400.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
-
 PEAK_TO_CONTINUOUS = 5.5 / 3.82
 """Peak over continuous torque where a motor's peak torque is not published: the VT8020's own, 5.5 / 3.82 = 1.44."""
-
 BELL_THICKNESS_MM = 2.0
 """Of an outrunner's bell where the stator's height is not published: VT8020 and U12 are 2.0 mm longer than theirs."""
-
 _STATOR_OUTER_SHARE, _STATOR_INNER_SHARE = 0.90, 0.67
 """Stator diameters over motor diameter where they are not published: means over VT8020, U8, U10 and U12, rounded."""
-
 _ACTIVE_SHARE = 0.79
 """Mass of a frameless motor over that of the framed one where it is not published (VT8020: 0.560 / 0.710)."""
-
 _DIAMETER_MM, _MOUNT_CIRCLE_MM, _OUTPUT_CIRCLE_MM = 89.0, 51.0, 71.5
 """The VT8020's diameter and bolt circles, by which those of other motors are scaled if they are not published."""
-
 _STATOR_KG_PER_M3 = 7100.0
 """Mean of a stator: laminations (7.8 g/cm3) fill 60 percent, and copper (8.96 g/cm3) 45 percent of the slots; end turns
 add half of the copper again: 0.6 x 7.8 + 1.5 x 0.4 x 0.45 x 8.96."""
 _ROTOR_KG_PER_M3 = 6930.0
 """Mean of a rotor's ring: half back iron (7.85 g/cm3), half NdFeB magnets (7.5 g/cm3) on 80 percent of the circle.
 The shares are usual ones; with them the U8's inertia lies between the two published for its class."""
-
 MOUNT_BORE_MM = 25.0
 """Across what lies within the mounting holes: the rear bearing's seat (6800, 19 mm, with 2.5 mm of wall) and the rim of
 the thread pad. It also leaves room for the journal behind."""
-
 OUTPUT_BORE_MM = 14.0
 """Across the coupling's hub within the holes of the turning face: a spline of 10 mm in 2 mm of metal."""
-
 AIR_GAP_MM = 0.5
 """Magnetic air gap of small outrunners, per side; an estimate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HolePattern:
+class HolePattern(Strict):
     """Holes evenly spread on a circle."""
-
-    __pydantic_config__ = _STRICT
 
     pitch_circle_mm: Positive
     diameter_mm: Positive
@@ -66,10 +54,8 @@ class HolePattern:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FramedMotor:
+class FramedMotor(Strict):
     """The motor as sold, with its own bearings and base: mass and envelope."""
-
-    __pydantic_config__ = _STRICT
 
     mass_kg: Positive
     outer_diameter_mm: Diameter
@@ -77,13 +63,8 @@ class FramedMotor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FramelessMotor:
-    """Stator and rotor alone; the gearbox goes into the stator's bore.
-
-    ``stator_height_mm`` defaults to the length less a bell of 2 mm.
-    """
-
-    __pydantic_config__ = _STRICT
+class FramelessMotor(Strict):
+    """Stator and rotor alone; the gearbox goes into the stator's bore. Its default height leaves a bell."""
 
     mass_kg: Positive
     outer_diameter_mm: Diameter
@@ -123,7 +104,7 @@ class FramelessMotor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Motor:
+class Motor(Strict):
     """A brushless outrunner. Values that are not given are derived.
 
     Example:
@@ -135,14 +116,11 @@ class Motor:
         ('U8 cooler', True)
     """
 
-    __pydantic_config__ = _STRICT
-
     name: str  #: as asked for
     description: str = ""  #: maker and type
     kv_rpm_per_v: Positive  #: speed constant
-    #: rated_voltage_v, rated_power_w: as published
-    rated_voltage_v: Positive
-    rated_power_w: Positive | None = None
+    rated_voltage_v: Positive  #: as published
+    rated_power_w: Positive | None = None  #: as published
     max_continuous_current_a: Positive  #: as published, of the equivalent DC machine, see ``windings``
     winding_resistance_ohm: Positive  #: as published, at 25 C
     #: Of the DC-equivalent current; default 60 / (2 pi Kv), the speed constant in SI
@@ -188,7 +166,7 @@ class Motor:
         fill("rotor_inertia_kg_m2", self.estimated_rotor_inertia_kg_m2())
 
     def _usual_holes(self, circle_mm: float, bore_mm: float, *, diameter_mm: float, count: int) -> HolePattern:
-        """Holes on the VT8020's circle, scaled to this motor's diameter; around ``bore_mm`` at least."""
+        """Return the holes on the VT8020's circle, scaled to this motor's diameter; around ``bore_mm`` at least."""
         scaled = circle_mm * self.outer_diameter_mm / _DIAMETER_MM
         return HolePattern(pitch_circle_mm=max(scaled, bore_mm + diameter_mm), diameter_mm=diameter_mm, count=count)
 
@@ -217,11 +195,11 @@ class Motor:
         return line_to_line_ohm(self.winding_resistance_ohm, self.winding_resistance_kind)
 
     def current_a(self, torque_n_m: float) -> float:
-        """DC-equivalent current of a torque."""
+        """Return DC-equivalent current of a torque."""
         return torque_n_m / self.torque_constant_n_m_per_a
 
     def winding_heat_w(self, torque_n_m: float) -> float:
-        """Heat of all phases together at a torque and 25 C."""
+        """Return the heat of all phases together at a torque and 25 C."""
         return self.terminal_resistance_ohm * self.current_a(torque_n_m) ** 2
 
     @property
@@ -259,7 +237,7 @@ class Motor:
         return mass_share(self, _ROTOR_KG_PER_M3, _STATOR_KG_PER_M3)
 
     def estimated_rotor_inertia_kg_m2(self) -> float:
-        """The rotor as a ring between air gap and outer diameter, with its share of the active mass.
+        """Return the rotor as a ring between air gap and outer diameter, with its share of the active mass.
 
         The active mass is that of the frameless motor, or a share of the framed one's. The bell is thin and its radius
         of gyration smaller, so counting its mass into the ring errs to the high side by a few percent. For the U8 the
@@ -276,7 +254,7 @@ class Motor:
 
 
 def mass_share(motor: Motor, rotor_kg_per_m3: float, stator_kg_per_m3: float) -> float:
-    """Share of the rotor ring in the mass of rotor ring and stator, for mean densities of both."""
+    """Return the share of the rotor ring in the mass of rotor ring and stator, for mean densities of both."""
     inner, outer = motor.stator_diameters_mm
     # In g/cm3; the share does not depend on the unit.
     rotor = 1e-3 * rotor_kg_per_m3 * (motor.outer_diameter_mm**2 - (outer + 2.0 * AIR_GAP_MM) ** 2)

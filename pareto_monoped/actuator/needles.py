@@ -1,9 +1,7 @@
-"""Rows of loose needle rollers between a planet and its pin: how many, how long, and their ratings.
+"""Needle rollers: rows of loose ones between a planet and its pin, and bearings as bought.
 
 Full complements have no catalogue rating. It follows from the needles by ISO 281 and ISO 76, as makers tell their
 customers to do. Pin and planet are the raceways; planets softer than 58 HRC carry less, by f_H.
-
-Needle roller bearings as bought: catalogue with ratings.
 """
 
 import csv
@@ -39,9 +37,8 @@ class NeedleRows:
     needles: int  #: in one row
     rows: Numbers  #: 1 or 2
     length_mm: Numbers  #: of a needle
-    #: dynamic_rating_n, static_rating_n: C and C0 of all rows of a planet together
-    dynamic_rating_n: Numbers
-    static_rating_n: Numbers
+    dynamic_rating_n: Numbers  #: C of all rows of a planet together
+    static_rating_n: Numbers  #: C0, likewise
 
     @property
     def total_mm(self) -> Numbers:
@@ -50,18 +47,18 @@ class NeedleRows:
 
 
 def choices_mm(settings: ActuatorSettings) -> tuple[float, ...]:
-    """Lengths that the rows of a planet can have together, from the shortest to the longest."""
+    """Return the lengths that the rows of a planet can have together, from the shortest to the longest."""
     return tuple(total for total, _, _ in _choices(settings.parts.needles.lengths_mm))
 
 
 @lru_cache(maxsize=8)
 def _choices(lengths_mm: tuple[float, ...]) -> tuple[tuple[float, int, float], ...]:
-    """Total length, rows and length of a needle of every choice, increasing."""
+    """Return the total length, rows and length of a needle of every choice, increasing."""
     return tuple(sorted((rows * length, rows, length) for rows in range(1, _ROWS_MOST + 1) for length in lengths_mm))
 
 
 def needle_rows(width_mm: Numbers, settings: ActuatorSettings) -> NeedleRows:
-    """The rows that fill a planet's bore best, float or shape (n,)."""
+    """Return the rows that fill a planet's bore best, float or shape (n,)."""
     data = settings.parts.needles
     choices = np.array(_choices(data.lengths_mm))
     # Where one long row or two short ones fill the bore alike, the last one stands: two rows tilt less.
@@ -86,20 +83,15 @@ def raceway_factor(hardness_hv: float) -> float:
 
 
 def needle_count(pin_mm: float, needle_mm: float) -> int:
-    """How many needles fit around a pin."""
+    """Return how many needles fit around a pin."""
     return int(np.pi / np.arcsin(needle_mm / (pin_mm + needle_mm)))
 
 
 def dynamic_rating_n(count: int, needle_mm: float, length_mm: Numbers, pitch_mm: float) -> Numbers:
-    """C = b_m f_c (i L)^(7/9) Z^(3/4) D^(29/27) (ISO 281, clause 7.1).
+    """Return C = b_m f_c (i L)^(7/9) Z^(3/4) D^(29/27) of Z needles of diameter D in each of i rows (ISO 281, clause
+    7.1).
 
     f_c is that of the formula behind the standard's table, which has 88.7 at most.
-
-    Args:
-        count: Z, needles of a row.
-        needle_mm: D.
-        length_mm: i L, what carries, of all rows.
-        pitch_mm: diameter of the circle through the needles' axes.
     """
     gamma = needle_mm / pitch_mm
     rings = (1.04 * ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)) ** 4.5
@@ -110,7 +102,7 @@ def dynamic_rating_n(count: int, needle_mm: float, length_mm: Numbers, pitch_mm:
 
 
 def static_rating_n(count: int, needle_mm: float, length_mm: Numbers, pitch_mm: float) -> Numbers:
-    """C0 = 44 (1 - D / D_pw) i Z L D (ISO 76, clause 5.1); arguments as of ``dynamic_rating_n``."""
+    """Return C0 = 44 (1 - D / D_pw) i Z L D (ISO 76, clause 5.1); arguments as of ``dynamic_rating_n``."""
     return _STATIC * (1.0 - needle_mm / pitch_mm) * count * length_mm * needle_mm
 
 
@@ -119,14 +111,12 @@ class RollerBearing:
     """One bearing of rollers with its load ratings."""
 
     designation: str  #: of the maker
-    #: inner_diameter_mm, outer_diameter_mm, width_mm: over the rollers inside, over everything outside, over all
-    inner_diameter_mm: float
-    outer_diameter_mm: float
-    width_mm: float
+    inner_diameter_mm: float  #: over the rollers inside
+    outer_diameter_mm: float  #: over everything outside
+    width_mm: float  #: over all
     mass_kg: float  #: of it
-    #: dynamic_rating_n, static_rating_n: C and C0
-    dynamic_rating_n: float
-    static_rating_n: float
+    dynamic_rating_n: float  #: C
+    static_rating_n: float  #: C0
 
     def __post_init__(self) -> None:
         """Refuse impossible dimensions or ratings.
@@ -147,7 +137,7 @@ class RollerBearing:
 
 
 def read_roller_bearings(text: str) -> dict[str, RollerBearing]:
-    """The bearings of a table in CSV with ``#`` comments, by designation.
+    """Return the bearings of a table in CSV with ``#`` comments, by designation.
 
     Raises:
         InputError: see ``RollerBearing``.
@@ -163,13 +153,13 @@ def read_roller_bearings(text: str) -> dict[str, RollerBearing]:
 
 @lru_cache(maxsize=1)
 def roller_bearings() -> dict[str, RollerBearing]:
-    """The shipped catalogue by designation."""
+    """Return the shipped catalogue by designation."""
     text = (resources.files("pareto_monoped") / "data" / "needle_bearings.csv").read_text(encoding="utf-8")
     return read_roller_bearings(text)
 
 
 def roller_bearing(designation: str) -> RollerBearing:
-    """A bearing of the catalogue.
+    """Return a bearing of the catalogue.
 
     Raises:
         InputError: it is not in the catalogue.
@@ -181,7 +171,7 @@ def roller_bearing(designation: str) -> RollerBearing:
 
 
 def as_bearing(rows: NeedleRows, *, pin_mm: float, bore_mm: float, mass_kg: float) -> RollerBearing:
-    """The needles of one planet as one bearing, for plain numbers."""
+    """Return the needles of one planet as one bearing, for plain numbers."""
     across = 0.5 * (bore_mm - pin_mm)
     count = f"{int(rows.rows)} x {rows.needles}" if rows.rows > 1 else f"{rows.needles}"
     return RollerBearing(

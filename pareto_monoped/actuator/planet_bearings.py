@@ -1,5 +1,7 @@
 """What the planets turn on, as parts: a bush each, or rows of needle rollers between washers."""
 
+from functools import partial
+
 import numpy as np
 
 from pareto_monoped.actuator.features import note_with, tube
@@ -18,36 +20,39 @@ _SPACER_PLAY_MM = 0.2
 """Radial play of a spacer ring on the pin and in the planet; our own choice."""
 _LEAST_SPACER_MM = 0.32
 """Shorter spacers are left out: needles have so much room to either side; our own choice."""
-
 Place = tuple[Numbers, Numbers, Numbers]
 
 
 def planet_bearing_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """What is between planets and pins, for one gear set or for arrays of them."""
+    """Build what is between planets and pins, for one gear set or for arrays of them."""
     return _bushes(at, settings) if settings.planet_bearing == "bushes" else _needle_parts(at, settings)
 
 
 def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     stands_out = settings.planet_clearance_mm - _BUSH_PLAY_MM
-    pin = 0.5 * settings.parts.carrier.pin_diameter_mm
+    pin, planet_part = 0.5 * settings.parts.carrier.pin_diameter_mm, _planet_part(at)
     return (
-        Part(
+        planet_part(
             name="planet_bush",
             role=Role.BUSH,
-            visibility=Visibility.INSIDE,
             material=settings.materials.bush_bronze,
             prisms=tube(at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * settings.planet_bore_mm, pin),
             process="bought",
-            group=Group.PLANET,
             note=_bush_note(at.face_width_mm + 2.0 * stands_out, settings),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
         ),
     )
 
 
+def _planet_part(at: Layout) -> "partial[Part]":
+    """Return what makes a part that turns with the planets."""
+    gears = at.gears
+    return partial(
+        Part, visibility=Visibility.INSIDE, group=Group.PLANET, count=gears.planets, pitch_radius_mm=at.r_pins
+    )
+
+
 def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
-    """Which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
+    """Return which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
     if np.ndim(length_mm):
         return ""
     pieces = int(np.ceil(float(length_mm) / _BUSH_LENGTHS_MM[-1]))
@@ -61,7 +66,7 @@ def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
 
 
 def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Needle rollers, spacers that fill what they leave of the planet's bore, and washers at either end."""
+    """Build the needle rollers, spacers that fill what they leave of the planet's bore, and washers at either end."""
     data, pin, bore = settings.parts.needles, settings.parts.carrier.pin_diameter_mm, settings.planet_bore_mm
     rows = needle_rows(at.face_width_mm, settings)
     needles, spacers, spacer = _stacked(at, rows)
@@ -70,53 +75,41 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         (0.0, 0.0, at.z_gear_front + data.washer_play_mm),
         (0.0, 0.0, at.z_gear_back - data.washer_play_mm - data.washer_mm),
     )
-    length = rows.total_mm / len(needles)
+    length, planet_part = rows.total_mm / len(needles), _planet_part(at)
     parts = [
-        Part(
+        planet_part(
             name="planet_needles",
             role=Role.BEARING,
-            visibility=Visibility.INSIDE,
             material=settings.materials.bearing_steel,
             prisms=tube(0.0, length, 0.5 * bore, 0.5 * pin),
             process="bought",
-            group=Group.PLANET,
             catalogue_mass_kg=rows.needles * one_kg * length,
             note=note_with(
                 f"{rows.needles} loose needle rollers " + "{} x {} mm (ISO 3096), full complement, greased",
                 data.diameter_mm,
                 rows.length_mm,
             ),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
             places_mm=needles,
         ),
-        Part(
+        planet_part(
             name="planet_washer",
             role=Role.SPACER,
-            visibility=Visibility.INSIDE,
             material=settings.materials.steel,
             prisms=tube(0.0, data.washer_mm, 0.5 * data.washer_diameter_mm, 0.5 * pin),
             process="bought",
-            group=Group.PLANET,
             note=note_with("DIN 988, {} x {} x {}", pin, data.washer_diameter_mm, data.washer_mm),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
             places_mm=washer_places,
         ),
     ]
     if np.ndim(spacer) or spacer:
         parts.append(
-            Part(
+            planet_part(
                 name="needle_spacer",
                 role=Role.SPACER,
-                visibility=Visibility.INSIDE,
                 material=settings.materials.aluminium,
                 prisms=tube(0.0, spacer, 0.5 * bore - _SPACER_PLAY_MM, 0.5 * pin + _SPACER_PLAY_MM),
                 process="machined",
-                group=Group.PLANET,
                 note="fills the planet's bore beside its needles",
-                count=at.gears.planets,
-                pitch_radius_mm=at.r_pins,
                 places_mm=spacers,
             )
         )
@@ -124,7 +117,7 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _stacked(at: Layout, rows: NeedleRows) -> tuple[tuple[Place, ...], tuple[Place, ...], Numbers]:
-    """Lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
+    """Return the lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
 
     One row stands in the middle, with a spacer at either end. Two rows stand at the ends, the spacers between them. In
     arrays, one row is drawn as two halves that touch.

@@ -1,6 +1,6 @@
 """The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one.
 
-The gearboxes of a robot's joints: hip and knee may have different motors.
+Hip and knee may have different motors, and then have two maps.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,18 +24,13 @@ RATIO_LOW = 4
 RATIO_HIGH = 15
 RATIO_STEP = 0.1
 """The map covers the half-open intervals [4.0, 4.1) to [14.9, 15.0) (paper, section III-A)."""
-
-
 STAND_IN_WITHIN = 1.5
 """How far a gearbox may be from a ratio that has none and stand in for it, under the rules ``iso6336``.
 
 Our own choice: it covers the paper's 7.9:1. Farther away, a robot has little to do with the one that was asked for.
 """
-
 _EDGE_DECIMALS = 8
 """To which decimal ten times a ratio is rounded, so that 0.1 x 87, a hair below 8.7, is 8.7."""
-
-
 _FAR = 1000.0
 """A ratio beyond any map."""
 
@@ -54,9 +49,8 @@ class Candidate:
 class FamilyResult:
     """What the search found for one family in one interval."""
 
-    #: best, runner_up: the lightest set and the next, or None
-    best: Candidate | None
-    runner_up: Candidate | None
+    best: Candidate | None  #: the lightest set, or None
+    runner_up: Candidate | None  #: the next
     #: Names of constraints (``rules.CONSTRAINTS``). If there is a best set: each of them alone keeps out a lighter one.
     #: If there is none: the constraints that the nearest sets break; empty if no integer tooth set has such a ratio.
     in_the_way: tuple[ConstraintName, ...]
@@ -92,7 +86,7 @@ class MapEntry:
         return {name: found.in_the_way for name, found in self.families.items() if found.best is None}
 
     def why_not(self) -> str:
-        """One sentence on why there is no gearbox."""
+        """Return one sentence on why there is no gearbox."""
         reasons = [
             f"{family}: {' or '.join(names) if names else 'no integer tooth set'}"
             for family, names in self.forbidden_by.items()
@@ -124,9 +118,6 @@ class ActuatorMap:
     def require_gearbox(self, source: str) -> None:
         """Refuse a motor that has no gearbox at any ratio: nothing can be built or simulated with it.
 
-        Args:
-            source: what the motor is called, the first words of the message.
-
         Raises:
             MotorError: there is none; the message names the rules in the way and the motor's size, or its torque where
                 gear sets fit and are too weak.
@@ -155,7 +146,7 @@ class ActuatorMap:
         )
 
     def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
-        """Index into ``entries`` of the gearbox for each ratio, shape (n,) -> (n,); -1 where there is none."""
+        """Return indices into ``entries`` of the gearboxes for ratios, shape (n,) -> (n,); -1 where there is none."""
         index = _index(np.asarray(ratios, dtype=np.float64))
         inside = (index >= 0) & (index < len(self.entries))
         return np.where(inside, _serving(self)[np.where(inside, index, 0)], -1)
@@ -173,7 +164,7 @@ class ActuatorMap:
         )
 
     def entry(self, ratio: float) -> MapEntry:
-        """The interval that the ratio lies in, or the one that stands in for it; it has an actuator.
+        """Return the interval that the ratio lies in, or the one that stands in for it; it has an actuator.
 
         Raises:
             DesignError: the ratio lies outside the map, or no gearbox exists there; the message names the constraint.
@@ -184,16 +175,13 @@ class ActuatorMap:
         return self.entries[index]
 
     def lookup(self, ratio: float) -> Actuator:
-        """The actuator of ``entry``; raises as it does."""
+        """Return the actuator of ``entry``; raises as it does."""
         actuator = self.entry(ratio).actuator
         assert actuator is not None
         return actuator
 
     def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
-        """Least mass in every interval, of one family or of both: the curves of the paper's figure.
-
-        Shape (intervals,), to be drawn over ``ratios_low``; NaN where there is no gearbox.
-        """
+        """Return the least mass in every interval, of one family or both, shape (intervals,); NaN without gearbox."""
         masses = np.full(len(self.entries), np.nan)
         for index, entry in enumerate(self.entries):
             bests = [found.best for name, found in entry.families.items() if family in (None, name)]
@@ -206,7 +194,7 @@ class ActuatorMap:
         return np.array([entry.ratio_low for entry in self.entries])
 
     def why_not(self, ratio: float) -> str:
-        """Why there is no gearbox for a ratio."""
+        """Return why there is no gearbox for a ratio."""
         if not RATIO_LOW <= ratio < RATIO_HIGH:
             return (
                 f"outside the map of {self.motor.name}, which covers {RATIO_LOW} up to but not including {RATIO_HIGH}"
@@ -230,7 +218,7 @@ class ActuatorMap:
 
 @lru_cache(maxsize=16)
 def _serving(actuator_map: ActuatorMap) -> NDArray[np.intp]:
-    """For each interval the index of the entry whose gearbox serves it, shape (intervals,), or -1."""
+    """Return for each interval the index of the entry whose gearbox serves it, shape (intervals,), or -1."""
     own = np.arange(len(actuator_map.entries))
     present = np.array([entry.actuator is not None for entry in actuator_map.entries])
     serving = np.where(present, own, -1)
@@ -243,10 +231,7 @@ def _serving(actuator_map: ActuatorMap) -> NDArray[np.intp]:
 
 
 def cures(entry: MapEntry) -> tuple[str, ...]:
-    """What would help where there is no gearbox, for the family that the fewest rules forbid.
-
-    A family that lacks strength alone goes first: its gear sets fit.
-    """
+    """Return what would help the family that the fewest rules forbid, first of all one that lacks strength alone."""
 
     def effort(names: tuple[ConstraintName, ...]) -> tuple[bool, bool, int]:
         return not names, not set(names) <= set(LOAD_RULES), len(names)
@@ -257,17 +242,17 @@ def cures(entry: MapEntry) -> tuple[str, ...]:
 
 
 def either(choices: Sequence[str]) -> str:
-    """``a, b or c``."""
+    """Return ``a, b or c``."""
     return " or ".join(filter(None, (", ".join(choices[:-1]), choices[-1])))
 
 
 def _index(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Index of the interval that each ratio lies in; beyond the entries, or negative, outside the map."""
+    """Return the index of the interval that each ratio lies in; beyond the entries, or negative, outside the map."""
     return _tenths(np.where(np.isfinite(ratios), ratios, -1.0)) - 10 * RATIO_LOW
 
 
 def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Lower end of each ratio's interval, in tenths.
+    """Return the lower end of each ratio's interval, in tenths.
 
     A ratio within 5e-10 below an interval's end counts to the next interval. Ratios far outside the map become
     ``_FAR``, because a whole number cannot hold any ratio.
@@ -286,9 +271,8 @@ class JointMaps:
         DesignError: the maps follow different rules.
     """
 
-    #: hip, knee: ratio -> lightest actuator of the joint's motor
-    hip: ActuatorMap
-    knee: ActuatorMap
+    hip: ActuatorMap  #: gearboxes of the hip's motor
+    knee: ActuatorMap  #: those of the knee's
 
     def __post_init__(self) -> None:
         one, other = self.hip.settings.rules, self.knee.settings.rules
@@ -299,7 +283,7 @@ class JointMaps:
             )
 
     def of(self, joint: str) -> ActuatorMap:
-        """The map of ``hip`` or ``knee``."""
+        """Return the map of ``hip`` or ``knee``."""
         return {"hip": self.hip, "knee": self.knee}[joint]
 
     @property
@@ -323,10 +307,10 @@ Maps = ActuatorMap | JointMaps
 
 
 def joint_maps(maps: Maps) -> JointMaps:
-    """The gearboxes of both joints."""
+    """Return the gearboxes of both joints."""
     return maps if isinstance(maps, JointMaps) else JointMaps(hip=maps, knee=maps)
 
 
 def motor_label(hip: str, knee: str) -> str:
-    """Name of the motor of both joints, or the names of both motors with the joints."""
+    """Return the name of the motor of both joints, or the names of both motors with the joints."""
     return hip if hip == knee else f"{hip} hip, {knee} knee"

@@ -1,7 +1,7 @@
 """The rules that a gear set must obey: the paper's, and those that engineering adds, each with its source."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import reduce
 
 import numpy as np
@@ -46,23 +46,18 @@ class CandidateSets:
         return self.at
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Constraint:
     """One rule."""
 
-    says: str  #: what it says
-    source: str  #: where it comes from
     margin: Callable[[CandidateSets], Numbers]  #: what is left until it is broken, negative beyond
     cures: tuple[str, ...]  #: what would help where it forbids every gearbox
+    _: KW_ONLY
+    says: str  #: what it says
+    source: str  #: where it comes from
     rule_sets: tuple[RuleSet, ...] = RULE_SETS  #: the sets of rules that it belongs to
-    #: Whether it looks at the layout, which costs more to work out than all other rules together
-    laid_out: bool = False
+    laid_out: bool = False  #: whether it needs the layout, which costs more to work out than all other rules together
     of_width: bool = False  #: whether it looks at the face width
-
-
-def _meshing(sets: CandidateSets) -> Numbers:
-    gears = sets.gears
-    return -((gears.sun_teeth + gears.ring_teeth) % gears.planets)
 
 
 def _no_interference(sets: CandidateSets) -> Numbers:
@@ -129,20 +124,11 @@ def _planet_rim(sets: CandidateSets) -> Numbers:
     return sets.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
-def _ring_rim(sets: CandidateSets) -> Numbers:
-    return sets.around.r_ring - sets.gears.ring_root_radius_mm - 3.5 * sets.gears.module_mm
-
-
 def _ring_interference(sets: CandidateSets) -> Numbers:
     ring = sets.gears.ring()
     reach = sets.gears.carrier_radius_mm * np.sin(sets.gears.ring_working_angle_rad)
     spare_mm: Numbers = ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
     return spare_mm
-
-
-def _contact_ratio(sets: CandidateSets) -> Numbers:
-    outer, inner = contact_ratios(sets.gears)
-    return np.minimum(outer, inner) - sets.settings.contact_ratio_min
 
 
 def _within_stator(sets: CandidateSets) -> Numbers:
@@ -154,10 +140,6 @@ def _within_stator(sets: CandidateSets) -> Numbers:
     return kit.stator_height_mm - sets.face_width_mm
 
 
-def _bearing(sets: CandidateSets) -> Numbers:
-    return np.where(np.isfinite(sets.around.r_bore), 0.0, -1.0)
-
-
 def _bearing_room(sets: CandidateSets) -> Numbers:
     if sets.family == "ISSPG":
         # The seat in front of the stator and its flange must stay inside the casing's bolts and rim.
@@ -166,12 +148,8 @@ def _bearing_room(sets: CandidateSets) -> Numbers:
     return sets.around.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.around.r_seat
 
 
-def _face_width(sets: CandidateSets) -> Numbers:
-    return face_limit_mm(sets.gears, sets.settings) - sets.face_width_mm
-
-
 def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
-    """The margin of a rule about safety factors."""
+    """Return the margin of a rule about safety factors."""
 
     def margin(sets: CandidateSets) -> Numbers:
         if sets.strength is not None:
@@ -182,173 +160,100 @@ def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
     return margin
 
 
-def _output_bearing(sets: CandidateSets) -> Numbers:
-    return output_margin(sets.gears.ratio * sets.motor.peak_torque_n_m, sets.around, sets.settings)
-
-
 def _planet_bearing(sets: CandidateSets) -> Numbers:
     if sets.strength is not None and "planet_bearing" in sets.strength:
         return sets.strength["planet_bearing"]
     return planet_margin(sets.gears, sets.face_width_mm, sets.motor, sets.settings)
 
 
+_RATED: tuple[RuleSet, ...] = ("iso6336",)
 CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "meshing": Constraint(
-        says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh",
-        source="paper, III (eq. 3)",
-        margin=_meshing,
-        cures=("another number of planets",),
-    ),
-    "no_interference": Constraint(
+        lambda s: -((s.gears.sun_teeth + s.gears.ring_teeth) % s.gears.planets),
+        ("another number of planets",),
+        says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh", source="paper, III (eq. 3)"),
+    "no_interference": Constraint(_no_interference, ("a smaller planet_gap_mm", "fewer planets"),
         says="2 m (Ns + Np) sin(pi / n_p) - 2 m Np >= delta_p, so that planets keep clear of each other",
-        source="paper, IV (eq. 4)",
-        margin=_no_interference,
-        cures=("a smaller planet_gap_mm", "fewer planets"),
-    ),
-    "teeth_min": Constraint(
+        source="paper, IV (eq. 4)"),
+    "teeth_min": Constraint(_teeth_min, ("a smaller module", "fewer teeth with profile shift"),
         says="Ns, Np >= N_min, against undercutting; less by 2 x / sin(alpha)^2 with a profile shift of x",
-        source="paper, V (eq. 5); ISO 21771 for the shift",
-        margin=_teeth_min,
-        cures=("a smaller module", "fewer teeth with profile shift"),
-    ),
-    "tip_thickness": Constraint(
+        source="paper, V (eq. 5); ISO 21771 for the shift"),
+    "tip_thickness": Constraint(_tip_thickness, ("less profile shift",), rule_sets=_RATED,
         says="tips of sun and planets at least 0.4 modules thick",
-        source="Niemann/Winter, Maschinenelemente II; limit in data/actuator_parts.toml, table rating",
-        margin=_tip_thickness,
-        cures=("less profile shift",),
-        rule_sets=("iso6336",),
-    ),
+        source="Niemann/Winter, Maschinenelemente II; limit in data/actuator_parts.toml, table rating"),
     "gearbox_diameter": Constraint(
+        lambda s: radial_room_mm(s.motor, s.family, s.settings) - 2.0 * s.gears.ring_pitch_radius_mm,
+        ("a wider motor", "a smaller module"),
         says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",
-        source="paper, V (eq. 5)",
-        margin=lambda sets: (
-            radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_pitch_radius_mm
-        ),
-        cures=("a wider motor", "a smaller module"),
-    ),
+        source="paper, V (eq. 5)"),
     "ring_root": Constraint(
+        lambda s: radial_room_mm(s.motor, s.family, s.settings) - 2.0 * s.gears.ring_root_radius_mm,
+        ("a wider motor", "a smaller module"),
         says="m (Nr + 2.5) <= D_GB: so does the ring's root circle",
-        source="implied by the paper's section IV-A: the families end at 6:1 and 8.7:1; root circle after ISO 53",
-        margin=lambda sets: (
-            radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_root_radius_mm
-        ),
-        cures=("a wider motor", "a smaller module"),
-    ),
-    "root_fillet": Constraint(
+        source="implied by the paper's section IV-A: the families end at 6:1 and 8.7:1; root circle after ISO 53"),
+    "root_fillet": Constraint(_root_fillet, ("less profile shift", "more teeth"), rule_sets=_RATED,
         says="fillets of 0.38 modules fit between the flanks of every gear",
-        source="root radius of the basic rack, ISO 53",
-        margin=_root_fillet,
-        cures=("less profile shift", "more teeth"),
-        rule_sets=("iso6336",),
-    ),
-    "sun_rim": Constraint(
-        says="the sun's roots lie outside its journal of 6 mm (iso6336), or stay 1.2 tooth depths off its bore of 6 mm "
-        "(paper, ESSPG)",
-        source="assembly; AGMA 2001-D04, rim thickness factor 1",
-        margin=_sun_rim,
-        cures=("a smaller journal of the sun", "a larger module"),
-    ),
-    "planet_rim": Constraint(
+        source="root radius of the basic rack, ISO 53"),
+    "sun_rim": Constraint(_sun_rim, ("a smaller journal of the sun", "a larger module"),
+        says="the sun's roots lie outside its journal of 6 mm (iso6336), or stay 1.2 tooth depths off its bore of 6 "
+        "mm (paper, ESSPG)",
+        source="assembly; AGMA 2001-D04, rim thickness factor 1"),
+    "planet_rim": Constraint(_planet_rim, ("a smaller bore of the planets", "a larger module"),
         says="wall between the planet's bore and its roots >= 1.2 tooth depths",
-        source="AGMA 2001-D04, rim thickness factor 1",
-        margin=_planet_rim,
-        cures=("a smaller bore of the planets", "a larger module"),
-    ),
+        source="AGMA 2001-D04, rim thickness factor 1"),
     "ring_rim": Constraint(
+        lambda s: s.around.r_ring - s.gears.ring_root_radius_mm - 3.5 * s.gears.module_mm,
+        ("a thicker ring", "a smaller module"), laid_out=True,
         says="wall behind the ring's roots >= 3.5 modules",
-        source="ISO 6336-3, rim thickness factor 1 of internal gears",
-        margin=_ring_rim,
-        cures=("a thicker ring", "a smaller module"),
-        laid_out=True,
-    ),
-    "ring_interference": Constraint(
+        source="ISO 6336-3, rim thickness factor 1 of internal gears"),
+    "ring_interference": Constraint(_ring_interference, ("more planet teeth", "profile shift"),
         says="the ring's tips meet the planet's flanks outside its base circle",
-        source="involute interference of internal gears: Colbourne, The Geometry of Involute Gears, ch. 8",
-        margin=_ring_interference,
-        cures=("more planet teeth", "profile shift"),
-    ),
+        source="involute interference of internal gears: Colbourne, The Geometry of Involute Gears, ch. 8"),
     "contact_ratio": Constraint(
-        says="contact ratio of either mesh at least 1.2",
-        source="Shigley, section 13-6",
-        margin=_contact_ratio,
-        cures=("more teeth",),
-    ),
-    "within_stator": Constraint(
+        lambda s: np.minimum(*contact_ratios(s.gears)) - s.settings.contact_ratio_min,
+        ("more teeth",),
+        says="contact ratio of either mesh at least 1.2", source="Shigley, section 13-6"),
+    "within_stator": Constraint(_within_stator, ("a longer stator", "a stronger steel", "more planets"), of_width=True,
         says="face width <= height of the stator that the gears sit in (ISSPG)",
-        source="paper, section II-A: the ISSPG is integrated within the stator",
-        margin=_within_stator,
-        cures=("a longer stator", "a stronger steel", "more planets"),
-        of_width=True,
-    ),
+        source="paper, section II-A: the ISSPG is integrated within the stator"),
     "bearing": Constraint(
-        says="the catalogue has a main bearing of the bore needed",
-        source="bearing catalogue, ISO 15",
-        margin=_bearing,
-        cures=("a larger bearing in the catalogue",),
-        laid_out=True,
-    ),
-    "bearing_room": Constraint(
+        lambda s: np.where(np.isfinite(s.around.r_bore), 0.0, -1.0),
+        ("a larger bearing in the catalogue",), laid_out=True,
+        says="the catalogue has a main bearing of the bore needed", source="bearing catalogue, ISO 15"),
+    "bearing_room": Constraint(_bearing_room, ("a bearing of smaller section", "a wider motor"), laid_out=True,
         says="the main bearing passes the ring's shoulder (ESSPG), its seat stays inside the casing (ISSPG)",
-        source="assembly",
-        margin=_bearing_room,
-        cures=("a bearing of smaller section", "a wider motor"),
-        laid_out=True,
-    ),
+        source="assembly"),
     "face_width": Constraint(
+        lambda s: face_limit_mm(s.gears, s.settings) - s.face_width_mm,
+        ("a larger sun", "a larger face_over_sun_max"),
         says="face width <= 1.5 sun diameters and 40 modules",
         source="Niemann/Winter, Maschinenelemente II; limits in data/actuator_parts.toml, table rating",
-        margin=_face_width,
-        cures=("a larger sun", "a larger face_over_sun_max"),
-        rule_sets=("iso6336",),
-        of_width=True,
-    ),
-    "flank_strength": Constraint(
-        says="S_H of every flank at least flank_safety within the face width allowed",
-        source="ISO 6336-2, ISO 6336-6",
-        margin=_strength("flank_strength"),
-        cures=("a larger sun", "a harder steel", "more planets"),
-        rule_sets=("iso6336",),
-        of_width=True,
-    ),
-    "root_strength": Constraint(
-        says="S_F of every root at least root_safety within the face width allowed",
-        source="ISO 6336-3, ISO 6336-6",
-        margin=_strength("root_strength"),
-        cures=("a larger module in a thicker ring", "a stronger steel", "more planets"),
-        rule_sets=("iso6336",),
-        of_width=True,
-    ),
-    "overload_strength": Constraint(
+        rule_sets=_RATED, of_width=True),
+    "flank_strength": Constraint(_strength("flank_strength"), ("a larger sun", "a harder steel", "more planets"),
+        says="S_H of every flank at least flank_safety within the face width allowed", source="ISO 6336-2, ISO 6336-6",
+        rule_sets=_RATED, of_width=True),
+    "root_strength": Constraint(_strength("root_strength"),
+        ("a larger module in a thicker ring", "a stronger steel", "more planets"),
+        says="S_F of every root at least root_safety within the face width allowed", source="ISO 6336-3, ISO 6336-6",
+        rule_sets=_RATED, of_width=True),
+    "overload_strength": Constraint(_strength("overload_strength"), ("a softer end stop", "a stronger steel"),
         says="S_H and S_F at least those required against static failure under one overload",
-        source="ISO 6336-2 and -3, static limits",
-        margin=_strength("overload_strength"),
-        cures=("a softer end stop", "a stronger steel"),
-        rule_sets=("iso6336",),
-        of_width=True,
-    ),
+        source="ISO 6336-2 and -3, static limits", rule_sets=_RATED, of_width=True),
     "output_bearing": Constraint(
+        lambda s: output_margin(s.gears.ratio * s.motor.peak_torque_n_m, s.around, s.settings),
+        ("a larger sprocket", "a stronger bearing in the catalogue"),
         says="L10, s0 and tilt of both bearings of the knee's output keep their limits",
-        source="ISO 281, ISO 76, SKF; limits in data/service.toml",
-        margin=_output_bearing,
-        cures=("a larger sprocket", "a stronger bearing in the catalogue"),
-        rule_sets=("iso6336",),
-        laid_out=True,
-    ),
-    "planet_bearing": Constraint(
+        source="ISO 281, ISO 76, SKF; limits in data/service.toml", rule_sets=_RATED, laid_out=True),
+    "planet_bearing": Constraint(_planet_bearing, ("more planets", "a wider face", "thicker pins"),
         says="L10 and s0 of the planets' needles keep their limits, or pv of their bushes",
-        source="ISO 281, ISO 76; limits in data/service.toml",
-        margin=_planet_bearing,
-        cures=("more planets", "a wider face", "thicker pins"),
-        rule_sets=("iso6336",),
-        of_width=True,
-    ),
-}
+        source="ISO 281, ISO 76; limits in data/service.toml", rule_sets=_RATED, of_width=True),
+}  # fmt: skip
 """Name -> rule. Three of the paper's constraints are not here: I (ratio) selects the interval, II (Nr = Ns + 2 Np) and
 the ranges of module and planets in V hold for every candidate."""
 
 
 def active_rules(settings: ActuatorSettings) -> tuple[ConstraintName, ...]:
-    """The rules of a search, in the order of ``CONSTRAINTS``."""
+    """Return the rules of a search, in the order of ``CONSTRAINTS``."""
     return tuple(
         name
         for name, rule in CONSTRAINTS.items()
@@ -359,15 +264,7 @@ def active_rules(settings: ActuatorSettings) -> tuple[ConstraintName, ...]:
 def violations(
     sets: CandidateSets, names: tuple[ConstraintName, ...] | None = None
 ) -> tuple[tuple[ConstraintName, ...], NDArray[np.bool_]]:
-    """Which of the active constraints each gear set breaks.
-
-    Args:
-        sets: the gear sets.
-        names: the rules asked for; default all active ones.
-
-    Returns:
-        The names, and an array of shape (names, sets), True where broken.
-    """
+    """Return the rules asked for, by default all active ones, and where they are broken, shape (names, sets)."""
     names = active_rules(sets.settings) if names is None else names
     shape = np.shape(sets.gears.sun_teeth)
     broken = [np.broadcast_to(CONSTRAINTS[name].margin(sets), shape) < -TOLERANCE_MM for name in names]

@@ -20,7 +20,7 @@ from pareto_monoped.design import DEFAULT_RULES, RuleSet
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
-    """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
+    """Return the two lightest sets of every interval (in tenths), and what stands in the way of better."""
     gears = candidates(radial_room_mm(motor, family, settings), settings)
     judged = Judge(motor=motor, family=family, settings=settings).judge(gears)
     names, broken, mass, nearness = judged.names, judged.broken, judged.mass_kg, judged.nearness
@@ -53,12 +53,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
 
 
 def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> ActuatorMap:
-    """The whole map of one motor. The search is exhaustive, so every entry is the optimum of its interval.
-
-    Args:
-        motor: the motor; families for which it has no data are left out.
-        settings: default ``ActuatorSettings()``.
-    """
+    """Search the map of a motor exhaustively, so that every entry is the optimum of its interval."""
     settings = settings or ActuatorSettings()
     present: dict[Family, bool] = {"ISSPG": motor.frameless is not None, "ESSPG": motor.framed is not None}
     searched = {family: _search(motor, family, settings) for family in FAMILIES if present[family]}
@@ -96,12 +91,7 @@ def _built(motor: Motor, winners: Mapping[int, Candidate], settings: ActuatorSet
 
 
 def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None = None) -> ActuatorMap:
-    """The map of a motor under a set of rules, with default settings otherwise; kept for the next call.
-
-    Args:
-        motor: the motor.
-        rules: the set of rules.
-        source: where the motor comes from, for the message; default its name.
+    """Return the map of a motor under a set of rules, with default settings otherwise; kept for the next call.
 
     Raises:
         MotorError: the motor has no gearbox at any ratio.
@@ -118,7 +108,7 @@ def _kept_map(motor: Motor, rules: RuleSet) -> ActuatorMap:
 
 
 def map_for(motor_name_or_path: str, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:
-    """The map of a shipped motor or of one in a TOML file under a set of rules; cached.
+    """Return the map of a shipped motor or of one in a TOML file under a set of rules; cached.
 
     Raises:
         MotorError: see ``load_motor`` and ``map_of``.

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pareto_monoped.actuator.assumptions import (
     DutyData,
@@ -19,7 +19,7 @@ from pareto_monoped.actuator.assumptions import (
     default_service,
 )
 from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import Positive, Strict, checked, read_shipped
 from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, unknown_name
 from pareto_monoped.geometry.gears import ExternalGear
@@ -27,19 +27,14 @@ from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES
 from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.materials import MATERIALS, Materials
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
-
 ISO_54_SERIES_1_MM = (0.5, 0.6, 0.8, 1.0)
 ISO_54_SERIES_2_MM = (0.55, 0.7, 0.75, 0.9, 1.125)
 """Modules of ISO 54 (and DIN 780) between 0.5 and 1.2 mm: those of the first series, preferred, and of the second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GearData:
+class GearData(Strict):
     """Strength and fixed proportions of the gears; sources in ``data/actuator_parts.toml``."""
-
-    __pydantic_config__ = _STRICT
 
     factor_of_safety: Positive
     service_factor: Positive
@@ -56,10 +51,8 @@ class GearData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CarrierData:
+class CarrierData(Strict):
     """Carrier, secondary carrier and pins, in mm."""
-
-    __pydantic_config__ = _STRICT
 
     bearing_clearance_mm: Positive
     flange_clearance_mm: Positive
@@ -78,10 +71,8 @@ class CarrierData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CasingData:
+class CasingData(Strict):
     """Casing, backplate and ring housing, in mm."""
-
-    __pydantic_config__ = _STRICT
 
     plate_mm: Positive
     rim_mm: Positive
@@ -102,10 +93,8 @@ class CasingData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CouplingData:
+class CouplingData(Strict):
     """Coupling between motor and sun, in mm."""
-
-    __pydantic_config__ = _STRICT
 
     radius_mm: Positive
     thickness_mm: Positive
@@ -116,10 +105,8 @@ class CouplingData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SplineData:
+class SplineData(Strict):
     """Splines of the sun's shaft in the coupling: toothed as gears of 20 degrees, in mm."""
-
-    __pydantic_config__ = _STRICT
 
     module_mm: Positive
     external_teeth: Annotated[int, Field(ge=6)]
@@ -139,10 +126,8 @@ class SplineData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class InterfaceData:
+class InterfaceData(Strict):
     """Patterns of bolts and dowels towards the links."""
-
-    __pydantic_config__ = _STRICT
 
     output_bolt_circle_mm: Positive
     output_bolt_count: int
@@ -152,10 +137,8 @@ class InterfaceData:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PartData:
+class PartData(Strict):
     """Everything in ``data/actuator_parts.toml``."""
-
-    __pydantic_config__ = _STRICT
 
     gears: GearData
     carrier: CarrierData
@@ -171,7 +154,7 @@ class PartData:
 
 @lru_cache(maxsize=1)
 def default_parts() -> PartData:
-    """The shipped part data."""
+    """Return the shipped part data."""
     return checked(PartData, read_shipped("actuator_parts.toml", what="part data"), source="part data")
 
 
@@ -246,7 +229,7 @@ class ActuatorSettings:
         return chosen_steels(self.parts.rating) if self.steels is None else self.steels
 
     def tooth_thinning_mm(self, module_mm: Numbers) -> Numbers:
-        """By how much each tooth is drawn thinner on the reference circle; the paper's gears all by the same."""
+        """Return by how much each tooth is thinned on the reference circle; under ``paper``, all by the same."""
         return self.parts.gears.backlash_mm if self.rules == "paper" else self.parts.gears.backlash_modules * module_mm
 
     @property

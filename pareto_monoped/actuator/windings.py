@@ -40,51 +40,43 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
+
+from pareto_monoped.config import Positive, Strict
 
 ResistanceKind = Literal["line_to_line", "phase"]
 """Between two terminals, or of one phase of the star (for a delta: of the star that replaces it, a third of a branch).
 """
-
 PHASES_IN_SERIES = 2.0
 """Phases of a star between two terminals."""
-
 PER_PHASE_AMPLITUDE = math.sqrt(3.0) / 2.0
 """Torque per ampere of a sinusoidal phase current's amplitude, over k_t."""
-
 PER_PHASE_RMS = math.sqrt(2.0) * PER_PHASE_AMPLITUDE
 """Torque per ampere of its RMS value, over k_t."""
 
 
 def torque_constant_n_m_per_a(kv_rpm_per_v: float) -> float:
-    """k_t of the speed constant: 60 / (2 pi Kv)."""
+    """Return k_t of the speed constant: 60 / (2 pi Kv)."""
     return 60.0 / (2.0 * math.pi * kv_rpm_per_v)
 
 
 def line_to_line_ohm(resistance_ohm: float, kind: ResistanceKind) -> float:
-    """The line-to-line resistance from a published one."""
+    """Return the line-to-line resistance from a published one."""
     return PHASES_IN_SERIES * resistance_ohm if kind == "phase" else resistance_ohm
 
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Temperature = Annotated[float, Field(ge=-60.0, le=400.0, allow_inf_nan=False)]
-
 COPPER_DEGC = 235.0
 """Copper's resistance is proportional to this plus its temperature (IEC 60034-1)."""
-
 REFERENCE_DEGC = 25.0
 """At which resistances are published; data sheets that do not say so were measured in a room."""
-
 _REL_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThermalData:
+class ThermalData(Strict):
     """Measured thermal properties of a motor. No default stands for a measurement."""
 
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
-    #: winding_heat_capacity_j_per_k, housing_heat_capacity_j_per_k: of the two masses
     winding_heat_capacity_j_per_k: Positive
     housing_heat_capacity_j_per_k: Positive
     winding_to_housing_k_per_w: Positive  #: resistance between them
@@ -107,30 +99,20 @@ class ThermalData:
         return self.winding_limit_degc - self.ambient_degc
 
     def total_k_per_w(self, continuous_heat_w: float) -> float:
-        """Thermal resistance with which the winding stays at its limit for ever.
-
-        Args:
-            continuous_heat_w: heat of the winding at 25 C that the continuous current makes.
-        """
+        """Return the resistance that holds the winding at its limit under the continuous current's heat at 25 C."""
         return self.rise_k / (continuous_heat_w * resistance_growth(self.winding_limit_degc))
 
     def lasting_heat_w(self, *, continuous_heat_w: float) -> float:
-        """Heat of the winding at 25 C with which it stays at its limit for ever.
-
-        Args:
-            continuous_heat_w: that of the continuous current, which it is without ``housing_to_ambient_k_per_w``.
-        """
+        """Return the heat at 25 C with which the winding stays at its limit, by default the continuous current's."""
         if self.housing_to_ambient_k_per_w is None:
             return continuous_heat_w
         whole = self.winding_to_housing_k_per_w + self.housing_to_ambient_k_per_w
         return self.rise_k / (whole * resistance_growth(self.winding_limit_degc))
 
     def time_to_limit_s(self, heat_w: float, *, continuous_heat_w: float) -> float:
-        """How long a cold winding takes to its limit; infinite if it never gets there.
+        """Return how long a cold winding takes to its limit; infinite if it never gets there.
 
-        Args:
-            heat_w: heat of the winding at 25 C.
-            continuous_heat_w: the same for the continuous current; used without ``housing_to_ambient_k_per_w``.
+        ``continuous_heat_w``: the same for the continuous current; used without ``housing_to_ambient_k_per_w``.
 
         Raises:
             ValueError: ``winding_to_housing_k_per_w`` alone is more than the continuous current allows, and nothing is
@@ -167,12 +149,12 @@ class ThermalData:
 
 
 def resistance_growth(temperature_degc: float) -> float:
-    """Copper's resistance over that at 25 C."""
+    """Return the copper's resistance over that at 25 C."""
     return (COPPER_DEGC + temperature_degc) / (COPPER_DEGC + REFERENCE_DEGC)
 
 
 def _when(rise: Callable[[float], float], wanted: float) -> float:
-    """When a growing function of time reaches a value, by bisection."""
+    """Return when a growing function of time reaches a value, by bisection."""
     low, high = 0.0, 1.0
     while rise(high) < wanted:
         low, high = high, 2.0 * high

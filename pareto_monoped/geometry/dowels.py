@@ -10,7 +10,7 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import cylinder
 from pareto_monoped.geometry.shapes import Numbers, Pattern
-from pareto_monoped.materials import ALLOYS, Alloy, Material
+from pareto_monoped.materials import ALLOYS, MATERIALS, Alloy, Material
 
 LENGTHS_MM = np.array([5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40], dtype=np.float64)
 """Lengths in which pins are sold (ISO 8734)."""
@@ -49,13 +49,13 @@ class Dowel:
         return ALLOYS["dowel"]
 
     def holes(self, pitch_circle_mm: Numbers, count: Numbers, phase_rad: float) -> Pattern:
-        """Holes for dowels on a circle."""
+        """Return the holes for dowels on a circle."""
         return Pattern(
             radius_mm=self.radius_mm, pitch_radius_mm=0.5 * pitch_circle_mm, count=count, phase_rad=phase_rad
         )
 
     def length_mm(self, room_mm: Numbers) -> Numbers:
-        """The longest catalogue length that fits.
+        """Return the longest catalogue length that fits.
 
         Raises:
             DesignError: even the shortest is too long.
@@ -78,29 +78,16 @@ def dowel_part(
     end_mm: Numbers,
     room_mm: Numbers,
     direction: float,
-    material: Material,
-    count: Numbers,
-    pitch_radius_mm: Numbers,
-    phase_rad: Numbers,
+    holes: Pattern,
     partner: str,
+    material: Material = MATERIALS.steel,
     group: Group = Group.FIXED,
     note: str = "",
 ) -> Part:
-    """A circle of bought dowels, each of the greatest length for which its holes have room.
+    """Build a circle of bought dowels, each of the greatest length for which its holes have room.
 
-    Args:
-        name: of the part.
-        dowel: its size.
-        end_mm: height of the end at which it begins, such as the bottom of its blind hole.
-        room_mm: from there to as far as it may reach.
-        direction: in which it reaches along z, -1 or 1.
-        material: of the pin.
-        count: how many on the circle.
-        pitch_radius_mm: radius of the circle.
-        phase_rad: angle of the first one.
-        partner: name of the part of the same unit in which it is pressed and bonded.
-        group: what it moves with.
-        note: what else the maker should know.
+    ``end_mm``: height of the end at which it begins, such as the bottom of its blind hole; ``room_mm``: from there to
+    as far as it may reach; ``partner``: name of the part of the same unit in which it is pressed and bonded.
 
     Raises:
         DesignError: no catalogue length fits.
@@ -115,9 +102,9 @@ def dowel_part(
         material=material,
         prisms=(cylinder(dowel.radius_mm, end_mm, end_mm + direction * length),),
         process="bought",
-        count=count,
-        pitch_radius_mm=pitch_radius_mm,
-        phase_rad=phase_rad,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
         group=group,
         grade=dowel.alloy,
         fits=(dowel.fit,),

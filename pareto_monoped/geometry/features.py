@@ -1,11 +1,8 @@
 """What a maker does to a part beside its prisms: holes with their threads and mouths, chamfers, countersunk heads.
 
-The cylinders of holes and shafts stand in the prisms of the part. A feature says what they are and adds their cones.
-All heights are along z in the part's frame, in millimetres; every number may be an array of shape (n,).
-
-Cones on cylinders: what a countersink or chamfer takes away, and what a countersunk head adds, with exact integrals.
-
-Millimetres. Every number may be an array of shape (n,), as in ``shapes``.
+The cylinders of holes and shafts stand in the prisms of the part. A feature says what they are and adds their cones,
+with exact integrals. Heights are along z in the part's frame, in millimetres; every number may be an array of shape
+(n,).
 """
 
 from dataclasses import dataclass
@@ -33,7 +30,7 @@ class Bevel:
     hole: bool  #: whether the cylinder is a hole, with material outside, or a shaft, with material inside
 
     def integrals(self) -> tuple[Numbers, ...]:
-        """What the ring adds to the integrals of ``Prism``, in the same order; negative where it takes away.
+        """Return what the ring adds to the integrals of ``Prism``, in the same order; negative where it takes away.
 
         With R the radius that goes linearly from a in the face to b at the end, the disc between has the area pi R^2
         and the second moment pi R^4 / 4 about either diameter. Its integrals along z are polynomials in a and b:
@@ -55,14 +52,14 @@ class Bevel:
         return _spread(self.at, ring, across, height, face**2 * ring + 2.0 * face * along * ring_t + along**2 * ring_tt)
 
     def volume_mm3(self) -> Numbers:
-        """The first of ``integrals``, for searches that weigh thousands of parts."""
+        """Return the first of ``integrals``, for searches that weigh thousands of parts."""
         a, b = np.asarray(self.edge_mm, dtype=np.float64), np.asarray(self.at.radius_mm, dtype=np.float64)
         size = (-1.0 if self.hole else 1.0) * np.pi * np.abs(self.end_mm - self.face_mm) * (a - b)
         count = self.at.count if isinstance(self.at, Pattern) else 1.0
         return count * (size * (a + 2.0 * b) / 3.0)
 
     def centres_mm(self) -> list[tuple[float, float]]:
-        """Where the axes are, for a bevel of plain numbers."""
+        """Return where the axes are, for a bevel of plain numbers."""
         if isinstance(self.at, Pattern):
             return self.at.centres_mm()
         return [(float(self.at.x_mm), float(self.at.y_mm))]
@@ -71,15 +68,7 @@ class Bevel:
 def _spread(
     at: Circle | Pattern, volume: Numbers, across: Numbers, height: Numbers, heights: Numbers
 ) -> tuple[Numbers, ...]:
-    """The integrals over a ring on each axis, from those of one about its own.
-
-    Args:
-        at: the axes.
-        volume: integral of 1.
-        across: of xx, which is that of yy.
-        height: of z.
-        heights: of zz.
-    """
+    """Return the integrals over a ring on each axis, from those of 1, xx (which equals yy), z and zz about its own."""
     flat = Moments(volume, 0.0, 0.0, across, across, 0.0)
     if isinstance(at, Pattern):
         # As in ``Pattern.moments``, the two second moments are taken as equal.
@@ -87,24 +76,11 @@ def _spread(
         flat = Moments(volume, 0.0, 0.0, spread, spread, 0.0).scaled(at.count)
         height, heights = height * at.count, heights * at.count
     flat = flat.moved(at.x_mm, at.y_mm)
-    return (
-        flat.area,
-        flat.x,
-        flat.y,
-        height,
-        flat.xx,
-        flat.yy,
-        heights,
-        flat.xy,
-        height * at.x_mm,
-        height * at.y_mm,
-    )
+    return (flat.area, flat.x, flat.y, height, flat.xx, flat.yy, heights, flat.xy, height * at.x_mm, height * at.y_mm)
 
 
 COARSE_PITCHES_MM = {2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25}
 """Pitch of the metric coarse thread by its diameter (ISO 261)."""
-
-
 CHAMFER_MM = 0.3
 """Width of the chamfers at 45 degrees that lead one part into another: no more than the least corner radius of small
 bearings' rings (ISO 582: 0.3 mm); our own choice."""
@@ -124,8 +100,7 @@ class Cone(StrEnum):
 class Thread:
     """A metric thread in a hole."""
 
-    #: diameter_mm, pitch_mm: nominal (ISO 261)
-    diameter_mm: float
+    diameter_mm: float  #: nominal (ISO 261)
     pitch_mm: float
     tolerance: str = "6H"  #: class after ISO 965-1
     left_hand: bool = False  #: whether it is left-handed
@@ -146,7 +121,7 @@ class Mouth:
 
     @classmethod
     def at_90_degrees(cls, radius_mm: Numbers, hole_mm: Numbers, kind: Cone = Cone.CHAMFER) -> "Mouth":
-        """A cone of 90 degrees: as deep as it is wider than the hole of radius ``hole_mm``."""
+        """Return a cone of 90 degrees: as deep as it is wider than the hole of radius ``hole_mm``."""
         return cls(radius_mm=radius_mm, depth_mm=radius_mm - hole_mm, kind=kind)
 
 
@@ -156,12 +131,10 @@ class Hole:
 
     #: Where they are, all of one radius: that of the bore, clearance hole or tapping drill
     shapes: tuple[Circle | Pattern, ...]
-    #: low_mm, high_mm: heights of their ends
-    low_mm: Numbers
-    high_mm: Numbers
-    #: low, high: the cones at these ends; None: a plain edge, or the bottom of the hole
-    low: Mouth | None = None
-    high: Mouth | None = None
+    low_mm: Numbers  #: height of their lower ends
+    high_mm: Numbers  #: height of their upper ends
+    low: Mouth | None = None  #: cone at the lower end; None: a plain edge, or the bottom of the hole
+    high: Mouth | None = None  #: at the upper end, likewise
     thread: Thread | None = None  #: what is cut into them
     #: Usable depth of the thread from the end at which the screw enters; None: all of the hole
     thread_mm: Numbers | None = None
@@ -236,15 +209,7 @@ def bored(
     enters: Literal["low", "high", "both"],
     pressed: bool = False,
 ) -> Hole:
-    """Bores that take a bearing, bush or pin, or another part's step, with a cone where it enters.
-
-    Args:
-        shape: as it stands in the prisms.
-        low_mm: height of its lower end.
-        high_mm: height of its upper end.
-        enters: the end or ends at which something enters.
-        pressed: whether it is pressed in: a lead-in instead of a chamfer.
-    """
+    """Return the bores that take a part, with a chamfer where it enters, or a lead-in if it is pressed in."""
     width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
     mouth = Mouth(radius_mm=shape.radius_mm + width, depth_mm=depth, kind=Cone.LEAD_IN if pressed else Cone.CHAMFER)
     return Hole(
@@ -257,14 +222,7 @@ def bored(
 
 
 def turned(radius_mm: Numbers, face_mm: Numbers, inwards: float, *, pressed: bool = False) -> ShaftEnd:
-    """The end of a turned part around its axis, with a cone that leads it into a bore.
-
-    Args:
-        radius_mm: of the cylinder, the prism that ends in the face.
-        face_mm: height of its end face.
-        inwards: 1 if its material lies above the face, -1 if below.
-        pressed: whether it is pressed in: a lead-in instead of a chamfer.
-    """
+    """Return a turned part's end with a chamfer or, if pressed, a lead-in; ``inwards`` is 1 above the face."""
     width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
     return ShaftEnd(
         at=Circle(radius_mm=radius_mm),

@@ -219,10 +219,7 @@ class ExternalGear(_Teeth):
         root = self.root_radius_mm
         polar = _teeth_polar_mm4(self, root, self.tip_radius_mm, self.backlash_mm)
         fillets = _fillets_mm2(self, root, 1.0)
-        return _round_moments(
-            self.area_mm2(),
-            0.5 * np.pi * np.square(root) ** 2 + polar + fillets * np.square(root),
-        )
+        return _round_moments(self.area_mm2(), 0.5 * np.pi * np.square(root) ** 2 + polar + fillets * np.square(root))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -266,10 +263,7 @@ class InternalGear(_Teeth):
         tip, root = self.tip_radius_mm, self.root_radius_mm
         polar = _teeth_polar_mm4(self, tip, root, -_array(self.backlash_mm))
         fillets = _fillets_mm2(self, root, -1.0)
-        return _round_moments(
-            self.area_mm2(),
-            0.5 * np.pi * np.square(tip) ** 2 + polar - fillets * np.square(root),
-        )
+        return _round_moments(self.area_mm2(), 0.5 * np.pi * np.square(tip) ** 2 + polar - fillets * np.square(root))
 
 
 def _area_mm2(gear: ExternalGear | InternalGear) -> Numbers:

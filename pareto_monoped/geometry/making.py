@@ -1,8 +1,6 @@
-"""What a workshop must know of a part besides its shape: fits, and the accuracy of its teeth.
+"""What a workshop must know of a part besides its shape: fits with their limits (ISO 286), and how teeth are made.
 
-Limits of the tolerance classes that the parts use (ISO 286-1 and -2).
-
-How much thinner than drawn the drawings let teeth become. Millimetres.
+Millimetres.
 """
 
 from bisect import bisect_left
@@ -29,7 +27,7 @@ class Fit:
         return "" if np.ndim(self.diameter_mm) else f"{float(self.diameter_mm):g} {self.zone}"
 
     def holds(self, diameter_mm: float) -> bool:
-        """Whether a face of this diameter has the tolerance."""
+        """Return whether a face of this diameter has the tolerance."""
         return bool(np.isclose(float(self.diameter_mm), diameter_mm, rtol=0.0, atol=1e-6))
 
 
@@ -40,11 +38,7 @@ _RACEWAY_ROUND, _RACEWAY_CYLINDRICAL = 0.25, 0.5
 
 
 def raceway_note(tolerance_mm: float) -> str:
-    """Form of a raceway in words.
-
-    Args:
-        tolerance_mm: width of its diameter's tolerance.
-    """
+    """Return the form of a raceway in words."""
     round_mm, cylindrical_mm = (share * tolerance_mm for share in (_RACEWAY_ROUND, _RACEWAY_CYLINDRICAL))
     return (
         f"raceway of the needles: ground, Ra {RACEWAY_RA_UM:g} um, round within {round_mm:.3f} mm, cylindrical within "
@@ -56,8 +50,7 @@ def raceway_note(tolerance_mm: float) -> str:
 class ToothMaking:
     """How the teeth of one outline of a part are made, with what their rating takes for granted."""
 
-    #: teeth, module_mm: of the outline
-    teeth: int
+    teeth: int  #: of the outline
     module_mm: float
     accuracy_class: int  #: ISO 1328-1
     making: str  #: the steps in their order
@@ -69,9 +62,8 @@ class ToothMaking:
     core_hardness: str = ""  #: with its scale
     layer: str = ""  #: which depth of hardening is meant; '' without one
     layer_mm: tuple[float, float] = (0.0, 0.0)  #: its limits, in the finished tooth
-    #: flank_rz_um, root_rz_um: greatest Rz of flanks and fillets
-    flank_rz_um: float = 0.0
-    root_rz_um: float = 0.0
+    flank_rz_um: float = 0.0  #: greatest Rz of the flanks
+    root_rz_um: float = 0.0  #: greatest Rz of the fillets
     runout_mm: float = 0.0  #: greatest radial runout of the teeth to the datum axis
 
     @property
@@ -113,7 +105,6 @@ _HOLES_UM = {
     "N": (-4, -4, -4, -5, -7, -8, -9, -10),
 }
 """Fundamental deviations of holes of grade 7: the lower limit up to ``H``, the upper from ``J`` (ISO 286-1)."""
-
 _R6_UM = (-10, -12, -16, -20, -24, -29)
 """Upper limits of holes R6 up to 50 mm (ISO 286-2), the seats of drawn cups."""
 _COARSE = ("h12", "h13", "H12", "H13")
@@ -129,7 +120,7 @@ class Limits:
 
 
 def limits(diameter_mm: float, zone: str) -> Limits:
-    """Limits of a tolerance class, such as ``H7`` for a hole or ``m6`` for a shaft.
+    """Return the limits of a tolerance class, such as ``H7`` for a hole or ``m6`` for a shaft.
 
     Raises:
         DesignError: the size or the class is not in the tables.
@@ -153,17 +144,14 @@ def limits(diameter_mm: float, zone: str) -> Limits:
 
 
 def interference_mm(diameter_mm: float, hole: str, shaft: str) -> tuple[float, float]:
-    """Least and greatest interference of a fit; negative where there is clearance."""
+    """Return the least and greatest interference of a fit; negative where there is clearance."""
     bore, journal = limits(diameter_mm, hole), limits(diameter_mm, shaft)
     return journal.lower_mm - bore.upper_mm, journal.upper_mm - bore.lower_mm
 
 
 # DIN 3967: largest pitch diameter, and the tolerance of the tooth thickness by series.
 _LARGEST_MM = np.array([10.0, 50.0, 125.0, 280.0])
-_TOLERANCE_MM = {
-    23: np.array([0.008, 0.012, 0.016, 0.020]),
-    24: np.array([0.012, 0.020, 0.025, 0.030]),
-}
+_TOLERANCE_MM = {23: np.array([0.008, 0.012, 0.016, 0.020]), 24: np.array([0.012, 0.020, 0.025, 0.030])}
 RATED_SERIES = 23
 """Of rated gears: our own choice, the finest that suits teeth of ISO 1328-1 class 6; thinner roots are weaker."""
 GENERAL_SERIES = 24
@@ -173,11 +161,6 @@ LARGEST_PITCH_DIAMETER_MM = float(_LARGEST_MM[-1])
 
 
 def thickness_tolerance_mm(pitch_diameter_mm: Numbers, series: int) -> Numbers:
-    """By how much a tooth may be thinner than drawn (ring: a space wider), along the pitch circle.
-
-    Args:
-        pitch_diameter_mm: one or an array; beyond the table, its last value counts.
-        series: of DIN 3967.
-    """
+    """Return by how much a tooth may be thinner than drawn along the pitch circle; constant beyond the table."""
     place = np.minimum(np.searchsorted(_LARGEST_MM, pitch_diameter_mm), len(_LARGEST_MM) - 1)
     return _TOLERANCE_MM[series][place]

@@ -8,7 +8,7 @@ Local frame: x and y in the plane of the shapes, z along the extrusion, which is
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, reduce
+from functools import lru_cache, partial, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from pareto_monoped.geometry.features import Bevel, Feature
 from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
-from pareto_monoped.geometry.shapes import Moments, Numbers, Shape
+from pareto_monoped.geometry.shapes import Circle, Moments, Numbers, Shape
 from pareto_monoped.geometry.tightening import Fastening
-from pareto_monoped.materials import Alloy, GearGrade, Material
+from pareto_monoped.materials import ALLOYS, MATERIALS, Alloy, GearGrade, Material
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,21 +31,21 @@ class Prism:
     holes: tuple[Shape, ...] = ()
 
     def moments(self) -> Moments:
-        """Area integrals of the cross-section."""
+        """Return the area integrals of the cross-section."""
         total = self.outline.moments()
         for hole in self.holes:
             total = total - hole.moments()
         return total
 
     def volume_mm3(self) -> Numbers:
-        """The first of ``integrals``, for searches that weigh thousands of parts."""
+        """Return the first of ``integrals``, for searches that weigh thousands of parts."""
         area = self.outline.area_mm2()
         for hole in self.holes:
             area = area - hole.area_mm2()
         return area * (np.asarray(self.z1_mm, dtype=np.float64) - self.z0_mm)
 
     def integrals(self) -> tuple[Numbers, ...]:
-        """Volume integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
+        """Return the integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
         area = self.moments()
         z0, z1 = np.asarray(self.z0_mm, dtype=np.float64), np.asarray(self.z1_mm, dtype=np.float64)
         length, z_first, z_second = z1 - z0, 0.5 * (z1**2 - z0**2), (z1**3 - z0**3) / 3.0
@@ -63,6 +63,16 @@ class Prism:
         )
 
 
+def layer(outline: Shape, low_mm: Numbers, high_mm: Numbers, *holes: Shape) -> Prism:
+    """Build a prism from its lower to its upper height."""
+    return Prism(outline=outline, z0_mm=low_mm, z1_mm=high_mm, holes=holes)
+
+
+def disc(radius_mm: Numbers, low_mm: Numbers, high_mm: Numbers, *holes: Shape) -> Prism:
+    """Build a cylinder around the z axis from its lower to its upper height."""
+    return layer(Circle(radius_mm=radius_mm), low_mm, high_mm, *holes)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ball:
     """A ball centred on the y axis, cut flat at a height, with a pocket: a foot moulded onto a tongue."""
@@ -73,11 +83,11 @@ class Ball:
     pocket: Prism | None = None  #: a prism that is cut out; it lies wholly inside the ball
 
     def volume_mm3(self) -> Numbers:
-        """The first of ``integrals``."""
+        """Return the first of ``integrals``."""
         return self.integrals()[0]
 
     def integrals(self) -> tuple[Numbers, ...]:
-        """As of ``Prism``: integrals over slices of radius sqrt(R^2 - t^2) for t from -R to the cut, in closed form."""
+        """Return the integrals of ``Prism``, over slices of radius sqrt(R^2 - t^2) for t from -R to the cut."""
         r, c, y = self.radius_mm, self.top_mm, self.y_mm
         volume = np.pi * (r**2 * c - c**3 / 3.0 + 2.0 * r**3 / 3.0)
         first = np.pi * (0.5 * r**2 * c**2 - 0.25 * c**4 - 0.25 * r**4)
@@ -110,7 +120,7 @@ class MassProperties:
 
     @classmethod
     def zero(cls) -> "MassProperties":
-        """Nothing: the neutral element of addition."""
+        """Return nothing, the neutral element of addition."""
         return cls(mass_kg=np.zeros(()), first_kg_m=np.zeros(3), second_kg_m2=np.zeros((3, 3)))
 
     def __add__(self, other: "MassProperties") -> "MassProperties":
@@ -121,13 +131,13 @@ class MassProperties:
         )
 
     def rows(self, chosen: NDArray[np.intp]) -> "MassProperties":
-        """Some rows of properties that have a leading axis."""
+        """Return some rows of properties that have a leading axis."""
         return MassProperties(
             mass_kg=self.mass_kg[chosen], first_kg_m=self.first_kg_m[chosen], second_kg_m2=self.second_kg_m2[chosen]
         )
 
     def scaled(self, factor: Numbers) -> "MassProperties":
-        """The same distribution with its density times ``factor``."""
+        """Return the same distribution with its density times ``factor``."""
         scale = np.asarray(factor, dtype=np.float64)
         return MassProperties(
             mass_kg=self.mass_kg * scale,
@@ -138,7 +148,7 @@ class MassProperties:
     def placed(
         self, rotation: NDArray[np.float64] | None = None, translation_m: NDArray[np.float64] | None = None
     ) -> "MassProperties":
-        """The same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
+        """Return the same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
         first, second = self.first_kg_m, self.second_kg_m2
         if rotation is not None:
             first = _turned(first, rotation)
@@ -147,7 +157,7 @@ class MassProperties:
         return turned if translation_m is None else turned.repeated([np.asarray(translation_m, dtype=np.float64)])
 
     def repeated(self, places_m: Sequence[NDArray[np.float64]]) -> "MassProperties":
-        """The same body at several places, each a translation of shape (..., 3)."""
+        """Return the same body at several places, each a translation of shape (..., 3)."""
         mass, moved = self.mass_kg, reduce(np.add, places_m)
         squares = reduce(np.add, [place[..., :, None] * place[..., None, :] for place in places_m])
         cross = self.first_kg_m[..., :, None] * moved[..., None, :]
@@ -184,11 +194,7 @@ class MassProperties:
 
 
 def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Every vector along the last axis, rotated.
-
-    Written out because the order of the sum in a matrix product may depend on the number of rows. A robot must weigh
-    the same to the last bit in any population.
-    """
+    """Rotate every vector along the last axis; written out, so that the sum's order does not depend on their number."""
     return np.stack(
         [turn[i, 0] * vectors[..., 0] + turn[i, 1] * vectors[..., 1] + turn[i, 2] * vectors[..., 2] for i in range(3)],
         axis=-1,
@@ -196,7 +202,7 @@ def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[
 
 
 def total(parts: Iterable[MassProperties]) -> MassProperties:
-    """The sum of many mass properties."""
+    """Return the sum of many mass properties."""
     result = MassProperties.zero()
     for part in parts:
         result = result + part
@@ -244,7 +250,7 @@ class Part:
         return tuple(bevel for feature in self.features for bevel in feature.bevels)
 
     def volume_mm3(self) -> Numbers:
-        """Volume of one instance."""
+        """Return the volume of one instance."""
         volume: Numbers = 0.0
         solids: tuple[Prism | Ball | Bevel, ...] = (*self.prisms, *self.balls, *self.bevels)
         for solid in solids:
@@ -252,34 +258,31 @@ class Part:
         return volume
 
     def unit_mass_kg(self) -> Numbers:
-        """Mass of one instance."""
+        """Return the mass of one instance."""
         if self.catalogue_mass_kg is not None:
             return self.catalogue_mass_kg
         return self.volume_mm3() * 1e-9 * self.material.density_kg_per_m3
 
     def mass_kg(self) -> Numbers:
-        """Mass of all instances."""
+        """Return the mass of all instances."""
         return self.count * len(self.places_mm) * self.unit_mass_kg()
 
     def mass_properties(self) -> MassProperties:
-        """All instances together, about the origin of the unit's frame.
-
-        Instances on a circle count as a ring. This is exact for three and more, and for two about the z axis.
-        """
+        """Return all instances about the unit's origin; a circle counts as a ring, exact for three, or two about z."""
         try:
             return _remembered(self)
         except TypeError:  # arrays have no hash
             return self._everywhere()
 
     def _everywhere(self) -> MassProperties:
-        """The instances of all places, about the origin of the unit's frame."""
+        """Return the instances of all places, about the origin of the unit's frame."""
         circle = self._circle()
         if self.places_mm is _HERE:
             return circle
         return circle.repeated([np.stack(np.broadcast_arrays(*place), axis=-1) * 1e-3 for place in self.places_mm])
 
     def _circle(self) -> MassProperties:
-        """The instances of one place, about the centre of their circle."""
+        """Return the instances of one place, about the centre of their circle."""
         one = _uniform((*self.prisms, *self.balls, *self.bevels), self.material.density_kg_per_m3)
         if self.catalogue_mass_kg is not None:
             one = one.scaled(np.asarray(self.catalogue_mass_kg, dtype=np.float64) / one.mass_kg)
@@ -299,6 +302,13 @@ class Part:
         return MassProperties(mass_kg=everything.mass_kg, first_kg_m=first, second_kg_m2=second + around)
 
 
+# What most parts of links and base are made of, and how.
+sheet_part = partial(Part, material=MATERIALS.aluminium, grade=ALLOYS["aw_6082_t6"], process="laser cut")
+machined_part = partial(Part, material=MATERIALS.aluminium, grade=ALLOYS["aw_6082_t6"], process="machined")
+strong_part = partial(Part, material=MATERIALS.aluminium, grade=ALLOYS["aw_7075_t6"], process="machined")
+steel_part = partial(Part, material=MATERIALS.steel, process="bought")
+
+
 @lru_cache(maxsize=1024)
 def _remembered(part: Part) -> MassProperties:
     """The mass properties of a part of plain numbers, computed once: most parts do not depend on a link's length."""
@@ -306,7 +316,7 @@ def _remembered(part: Part) -> MassProperties:
 
 
 def _uniform(solids: tuple[Prism | Ball | Bevel, ...], density_kg_per_m3: float) -> MassProperties:
-    """Mass properties of solids of one density about the origin, in SI."""
+    """Return the mass properties of solids of one density about the origin, in SI."""
     columns = zip(*(solid.integrals() for solid in solids), strict=True)
     sums = [np.asarray(reduce(np.add, column), dtype=np.float64) for column in columns]
     m, mx, my, mz, xx, yy, zz, xy, xz, yz = np.broadcast_arrays(*sums)

@@ -11,10 +11,9 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, polygon
 from pareto_monoped.geometry.tightening import Fastening, thread_size
-from pareto_monoped.materials import Material
+from pareto_monoped.materials import MATERIALS, Material
 
 Head = Literal["cap", "countersunk", "hexagon"]
-
 LENGTHS_MM = np.array([3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60], dtype=np.float64)
 """Lengths in which screws are sold (the standards below have the same series)."""
 HEXAGON_HEIGHT_MM = {3.0: 2.0, 4.0: 2.8, 5.0: 3.5}
@@ -33,13 +32,12 @@ class Screw:
     shank: float  #: nominal
     hole: float  #: clearance hole (ISO 273, fine)
     core: float  #: tapping hole; a screw inside a thread is drawn with this radius, so that it overlaps nothing
-    #: head, head_height: cap screw (ISO 4762)
-    head: float
-    head_height: float
+    head: float  #: of a cap screw (ISO 4762)
+    head_height: float  #: likewise
     countersunk: float  #: of a countersunk head in its face, the cone drawn sharp
 
     def flush(self, *, seat_mm: Numbers, grip_mm: Numbers, thread_mm: Numbers, direction: float) -> tuple[Prism, ...]:
-        """A screw on the z axis without its head: through a grip into a thread, in ``direction`` (-1 or 1)."""
+        """Build a screw on the z axis without its head: through a grip into a thread, in ``direction`` (-1 or 1)."""
         split = seat_mm + direction * grip_mm
         return (cylinder(self.shank, seat_mm, split), cylinder(self.core, split, split + direction * thread_mm))
 
@@ -49,7 +47,7 @@ class Screw:
         return f"M{2.0 * self.shank:g}"
 
     def fastening(self, head: Head, property_class: str) -> Fastening:
-        """How it is tightened and locked."""
+        """Return how it is tightened and locked."""
         return Fastening(
             thread=thread_size(2.0 * self.shank),
             property_class=property_class,
@@ -65,7 +63,7 @@ class Screw:
         return Thread(diameter_mm=diameter, pitch_mm=COARSE_PITCHES_MM.get(diameter, 2.0 * (self.shank - self.core)))
 
     def countersink(self, hole_mm: float) -> Mouth:
-        """The mouth of a hole of radius ``hole_mm`` that takes a countersunk head flush with its face."""
+        """Return the mouth of a hole of radius ``hole_mm`` that takes a countersunk head flush with its face."""
         return Mouth.at_90_degrees(self.countersunk, hole_mm, Cone.COUNTERSINK)
 
     @property
@@ -82,15 +80,7 @@ def clearance(
     *,
     countersunk: Literal["low", "high"] | None = None,
 ) -> Hole:
-    """Clearance holes for a screw, if asked for countersunk at one end.
-
-    Args:
-        screw: what goes through them.
-        shapes: as they stand in the prisms; their radius is ``screw.hole``, or that of a sleeve nut.
-        low_mm: height of their lower ends.
-        high_mm: height of their upper ends.
-        countersunk: the end that takes the head.
-    """
+    """Return the clearance holes for a screw, if asked for countersunk at one end; the shapes have their radius."""
     sink = None if countersunk is None else screw.countersink(float(shapes[0].radius_mm))
     return Hole(
         shapes=shapes,
@@ -110,16 +100,7 @@ def tapped(
     enters: Literal["low", "high", "both"],
     usable_mm: Numbers | None = None,
 ) -> Hole:
-    """Tapped holes for a screw, chamfered where it enters.
-
-    Args:
-        screw: what is driven into them.
-        shapes: as they stand in the prisms; their radius is ``screw.core``.
-        low_mm: height of their lower ends.
-        high_mm: height of their upper ends.
-        enters: the end or ends at which the thread begins.
-        usable_mm: depth of the thread; None: all of the hole.
-    """
+    """Return the tapped holes for a screw, chamfered where it enters; ``usable_mm`` is by default the whole depth."""
     return Hole(
         shapes=shapes,
         low_mm=low_mm,
@@ -132,25 +113,18 @@ def tapped(
 
 
 def cylinder(radius_mm: float, one_mm: Numbers, other_mm: Numbers) -> Prism:
-    """A cylinder on the z axis between two heights in either order."""
+    """Build a cylinder on the z axis between two heights in either order."""
     return between(Circle(radius_mm=radius_mm), one_mm, other_mm)
 
 
 def between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -> Prism:
-    """A prism between two heights in either order."""
+    """Build a prism between two heights in either order."""
     low, high = np.minimum(one_mm, other_mm)[()], np.maximum(one_mm, other_mm)[()]
     return Prism(outline=outline, z0_mm=low, z1_mm=high, holes=holes)
 
 
 def hexagon(flats_mm: float, turn_rad: float = 0.0) -> Path:
-    """A hexagon around the origin, drawn sharp, with two of its flats across the x axis.
-
-    Of a circle of screws, flats therefore face the circle's axis.
-
-    Args:
-        flats_mm: width across flats.
-        turn_rad: angle by which it is turned from there.
-    """
+    """Return a hexagon around the origin, drawn sharp, two of its flats across the x axis: it faces a circle's axis."""
     corner = flats_mm / np.sqrt(3.0)
     angles = turn_rad + np.pi / 6.0 + np.pi / 3.0 * np.arange(6)
     return polygon([(float(corner * np.cos(angle)), float(corner * np.sin(angle))) for angle in angles])
@@ -164,7 +138,7 @@ M5 = Screw(shank=2.5, hole=2.65, core=2.1, head=4.25, head_height=5.0, countersu
 
 
 def screw_for(diameter_mm: float, core_mm: float) -> Screw:
-    """The screw for a motor's thread, with the core radius that the actuator draws there."""
+    """Return the screw for a motor's thread, with the core radius that the actuator draws there."""
     known = {2.0 * screw.shank: screw for screw in (M25, M3, M4, M5)}
     # Between the standard sizes: proportions that are no smaller than those of ISO 4762 and ISO 10642 from M3 up.
     other = Screw(
@@ -179,7 +153,7 @@ def screw_for(diameter_mm: float, core_mm: float) -> Screw:
 
 
 def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
-    """The longest catalogue length that fits grip and thread, measured from the seat or the flush face.
+    """Return the longest catalogue length that fits grip and thread, measured from the seat or the flush face.
 
     Raises:
         DesignError: even the shortest screw is too long.
@@ -202,7 +176,7 @@ def screw_part(
     grip_mm: Numbers,
     room_mm: Numbers,
     direction: float,
-    material: Material,
+    material: Material = MATERIALS.steel,
     count: Numbers = 1,
     pitch_radius_mm: Numbers = 0.0,
     phase_rad: Numbers = 0.0,
@@ -213,26 +187,10 @@ def screw_part(
     grade: str = "8.8",
     note: str = "",
 ) -> Part:
-    """A bought screw, of the greatest length for which the thread has room.
+    """Build a bought screw, of the greatest length for which the thread has room.
 
-    Args:
-        name: of the part.
-        screw: its size.
-        head: ``cap`` and ``hexagon`` stand on the seat; ``countersunk`` is flush with it.
-        seat_mm: height of the seat.
-        grip_mm: from the seat to the beginning of the thread.
-        room_mm: depth of the thread.
-        direction: of driving along z, -1 or 1.
-        material: of the screw.
-        count: see ``Part``, as for the next four.
-        pitch_radius_mm: radius of the circle.
-        phase_rad: angle of the first screw on it.
-        places_mm: centres of the circle.
-        group: what it moves with.
-        role: ``SCREW`` or ``STATOR_SCREW``.
-        visibility: where it is drawn.
-        grade: property class (ISO 898-1).
-        note: what else the maker should know.
+    ``head``: ``cap`` and ``hexagon`` stand on the seat; ``countersunk`` is flush with it; ``grip_mm``: from the seat to
+    the beginning of the thread; ``room_mm``: depth of the thread; ``direction``: of driving along z, -1 or 1.
 
     Raises:
         DesignError: no catalogue length fits the grip and leaves a thread.

@@ -44,13 +44,13 @@ class Moments:
         return self + other.scaled(-1.0)
 
     def scaled(self, factor: Numbers) -> "Moments":
-        """All integrals times ``factor``."""
+        """Return all integrals times ``factor``."""
         return Moments(
             self.area * factor, self.x * factor, self.y * factor, self.xx * factor, self.yy * factor, self.xy * factor
         )
 
     def moved(self, x_mm: Numbers, y_mm: Numbers) -> "Moments":
-        """The integrals of the region moved by (x_mm, y_mm), by the parallel axis theorem."""
+        """Return the integrals of the region moved by (x_mm, y_mm), by the parallel axis theorem."""
         return Moments(
             self.area,
             self.x + self.area * x_mm,
@@ -65,11 +65,11 @@ class Shape(Protocol):
     """A flat region that knows its moments; the CAD knows how to draw each kind."""
 
     def moments(self) -> Moments:
-        """The region's integrals about the local origin."""
+        """Return the region's integrals about the local origin."""
         ...
 
     def area_mm2(self) -> Numbers:
-        """The first of ``moments``, to the last bit, for searches that weigh thousands of parts."""
+        """Return the first of ``moments``, to the last bit, for searches that weigh thousands of parts."""
         ...
 
 
@@ -82,11 +82,11 @@ class Circle:
     y_mm: Numbers = 0.0
 
     def area_mm2(self) -> Numbers:
-        """The first of ``moments``."""
+        """Return the first of ``moments``."""
         return np.pi * np.square(self.radius_mm)
 
     def moments(self) -> Moments:
-        """Closed form."""
+        """Return the integrals in closed form."""
         area = self.area_mm2()
         second = 0.25 * area * np.square(self.radius_mm)
         return Moments(area, 0.0, 0.0, second, second, 0.0).moved(self.x_mm, self.y_mm)
@@ -108,17 +108,17 @@ class Pattern:
     y_mm: Numbers = 0.0
 
     def area_mm2(self) -> Numbers:
-        """The first of ``moments``."""
+        """Return the first of ``moments``."""
         return self.count * np.pi * np.square(self.radius_mm)
 
     def moments(self) -> Moments:
-        """Closed form."""
+        """Return the integrals in closed form."""
         area = self.area_mm2()
         second = area * (0.25 * np.square(self.radius_mm) + 0.5 * np.square(self.pitch_radius_mm))
         return Moments(area, 0.0, 0.0, second, second, 0.0).moved(self.x_mm, self.y_mm)
 
     def centres_mm(self) -> list[tuple[float, float]]:
-        """The centres of the discs, for a pattern of plain numbers."""
+        """Return the centres of the discs, for a pattern of plain numbers."""
         angles = self.phase_rad + 2.0 * np.pi * np.arange(int(self.count)) / int(self.count)
         return [
             (float(self.x_mm + self.pitch_radius_mm * np.cos(a)), float(self.y_mm + self.pitch_radius_mm * np.sin(a)))
@@ -155,12 +155,12 @@ class Path:
     _known: Moments | None = field(default=None, init=False, repr=False, compare=False)
 
     def area_mm2(self) -> Numbers:
-        """The first of ``moments``."""
+        """Return the first of ``moments``."""
         many = any(isinstance(value, np.ndarray) for piece in self.pieces for value in _numbers(piece))
         return _enclosed_mm2(self.pieces) if many and self._known is None else self.moments().area
 
     def moments(self) -> Moments:
-        """Green's theorem: each piece with the origin spans a sector, and the sectors add up."""
+        """Add up the sectors that the pieces span with the origin, by Green's theorem."""
         if self._known is None:
             try:
                 known = _remembered(self.pieces)
@@ -173,33 +173,30 @@ class Path:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """The same path repeated evenly around the origin, turned each time: webs, spokes.
-
-    Moments as of ``Pattern``: exact for three and more.
-    """
+    """The same path repeated evenly around the origin, turned each time: webs, spokes. Moments as of ``Pattern``."""
 
     path: Path  #: one of them, drawn around the +x axis
     count: Numbers  #: how many; those of an array may be 0
     phase_rad: Numbers = 0.0  #: by which the first is turned
 
     def area_mm2(self) -> Numbers:
-        """The first of ``moments``."""
+        """Return the first of ``moments``."""
         return self.count * self.path.area_mm2()
 
     def moments(self) -> Moments:
-        """Those of one path, averaged over all angles."""
+        """Return those of one path, averaged over all angles."""
         one = self.path.moments()
         second = 0.5 * self.count * (one.xx + one.yy)
         return Moments(self.count * one.area, 0.0, 0.0, second, second, 0.0)
 
     def paths(self) -> list[Path]:
-        """Each path where it lies, for plain numbers."""
+        """Return each path where it lies, for plain numbers."""
         step = 2.0 * np.pi / int(self.count)
         return [turned(self.path, float(self.phase_rad) + k * step) for k in range(int(self.count))]
 
 
 def turned(path: Path, angle_rad: float) -> Path:
-    """A path of plain numbers turned about the origin."""
+    """Return a path of plain numbers turned about the origin."""
     cos, sin = float(np.cos(angle_rad)), float(np.sin(angle_rad))
 
     def at(x: Numbers, y: Numbers) -> tuple[float, float]:
@@ -216,7 +213,7 @@ def turned(path: Path, angle_rad: float) -> Path:
 
 
 def polygon(points: Sequence[tuple[Numbers, Numbers]]) -> Path:
-    """The polygon through points (x, y), anticlockwise."""
+    """Return the polygon through points (x, y), anticlockwise."""
     return Path(tuple(Line(*one, *other) for one, other in zip(points, (*points[1:], points[0]), strict=True)))
 
 
@@ -241,7 +238,7 @@ _remembered = lru_cache(maxsize=256)(_boundary)
 
 
 def _enclosed_mm2(pieces: tuple[Line | Arc, ...]) -> Numbers:
-    """The area of ``_boundary`` alone: the same terms in the same order, a fifth of the work."""
+    """Return the area of ``_boundary`` alone: the same terms in the same order, a fifth of the work."""
     lines = [_numbers(piece) for piece in pieces if isinstance(piece, Line)]
     arcs = [_numbers(piece) for piece in pieces if isinstance(piece, Arc)]
     total: Numbers = 0.0
@@ -257,7 +254,7 @@ def _enclosed_mm2(pieces: tuple[Line | Arc, ...]) -> Numbers:
 
 
 def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
-    """The columns of a table of numbers, each of shape (pieces, ...)."""
+    """Return the columns of a table of numbers, each of shape (pieces, ...)."""
     shape = next((value.shape for row in rows for value in row if isinstance(value, np.ndarray) and value.ndim), ())
     table = np.empty((len(rows[0]), len(rows), *shape))
     for piece, row in enumerate(rows):
@@ -274,14 +271,14 @@ def _added(moments: Moments) -> Moments:
 def _twice_mm2(
     x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Twice the areas of triangles between the origin and straight lines."""
+    """Return twice the areas of triangles between the origin and straight lines."""
     return x0 * y1 - x1 * y0
 
 
 def _triangles(
     x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
 ) -> Moments:
-    """Triangles between the origin and straight lines, one row per line."""
+    """Return the triangles between the origin and straight lines, one row per line."""
     twice = _twice_mm2(x0, y0, x1, y1)
     return Moments(
         twice / 2.0,
@@ -318,7 +315,7 @@ def _arc_sectors(
 
 
 def rectangle(*, width_mm: Numbers, height_mm: Numbers, x_mm: Numbers = 0.0, y_mm: Numbers = 0.0) -> Path:
-    """A rectangle centred at (x_mm, y_mm)."""
+    """Return a rectangle centred at (x_mm, y_mm)."""
     left, right = x_mm - 0.5 * width_mm, x_mm + 0.5 * width_mm
     low, high = y_mm - 0.5 * height_mm, y_mm + 0.5 * height_mm
     return Path(
@@ -332,7 +329,7 @@ def rectangle(*, width_mm: Numbers, height_mm: Numbers, x_mm: Numbers = 0.0, y_m
 
 
 def hull(*, top_radius_mm: Numbers, bottom_radius_mm: Numbers, length_mm: Numbers, y_mm: Numbers = 0.0) -> Path:
-    """The convex hull of two discs: the outline of a link or a slot.
+    """Return the convex hull of two discs: the outline of a link or a slot.
 
     The top disc is centred at (0, y_mm), the bottom one ``length_mm`` below it; ``length_mm`` must exceed the
     difference of the radii. Lines are the outer tangents.

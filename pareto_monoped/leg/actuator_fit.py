@@ -1,7 +1,4 @@
-"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and their motor's driver.
-
-The motor drivers that the base can carry, and the choice by the motor's voltage and current.
-"""
+"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and the motor's driver."""
 
 from dataclasses import dataclass
 
@@ -22,23 +19,21 @@ class MotorDriver:
 
     name: str  #: of the board, as it is ordered
     mass_kg: float  #: of the bare board
-    #: width_mm, length_mm, height_mm: of the board with everything on it; the length runs along its longer side
-    width_mm: float
-    length_mm: float
+    width_mm: float  #: of the board with everything on it
+    length_mm: float  #: along its longer side
     height_mm: float
-    #: hole_width_mm, hole_length_mm: distances of its four mounting holes along width and length
-    hole_width_mm: float
-    hole_length_mm: float
+    hole_width_mm: float  #: between its mounting holes, along the width
+    hole_length_mm: float  #: along the length
     screw: Screw  #: for these holes
     voltage_v: float  #: largest supply voltage
     peak_current_a: float  #: largest phase current, for a few seconds
 
     def carries(self, motor: Motor) -> bool:
-        """Whether it stands the motor's rated voltage and its peak current."""
+        """Return whether it stands the motor's rated voltage and its peak current."""
         return motor.rated_voltage_v <= self.voltage_v and peak_current_a(motor) <= self.peak_current_a
 
     def limit(self, motor: Motor) -> str:
-        """What a motor cannot do with it, in words, where it does not carry the motor."""
+        """Return what a motor cannot do with it, in words, where it does not carry the motor."""
         needed = peak_current_a(motor)
         if motor.rated_voltage_v > self.voltage_v:
             return f"takes {self.voltage_v:g} V, less than the {motor.rated_voltage_v:g} V of {motor.name}"
@@ -80,10 +75,7 @@ MOTOR_DRIVERS = (
 
 
 def peak_current_a(motor: Motor) -> float:
-    """Phase current, as an amplitude, at the motor's peak torque.
-
-    Drivers feed sinusoidal currents and are rated by their amplitude.
-    """
+    """Return the phase current at the motor's peak torque, as an amplitude, by which drivers are rated."""
     return motor.peak_torque_n_m / (PER_PHASE_AMPLITUDE * motor.torque_constant_n_m_per_a)
 
 
@@ -99,20 +91,16 @@ _THREAD_SPARE_MM = 0.5  # between a screw's end and the end of its thread; our o
 class ActuatorFit:
     """Dimensions that a leg takes from the actuators of a joint."""
 
-    #: mount_pitch_radius_mm, mount_holes: bolts between the actuator's housing and a plate (M3)
-    mount_pitch_radius_mm: float
+    mount_pitch_radius_mm: float  #: of the bolts between the actuator's housing and a plate (M3)
     mount_holes: int
     mount_thread_mm: float  #: usable depth of their threads in the housing
-    #: mount_dowel_mm, mount_dowels: dowels in gaps between these bolts, as deep as their threads
-    mount_dowel_mm: float
+    mount_dowel_mm: float  #: of the dowels in gaps between these bolts, as deep as their threads
     mount_dowels: int
     housing_radius_mm: float  #: of the actuator's case
-    #: output_pitch_radius_mm, output_holes: bolts between output flange and coupling (M3)
-    output_pitch_radius_mm: float
+    output_pitch_radius_mm: float  #: of the bolts between output flange and coupling (M3)
     output_holes: int
     output_thread_mm: float  #: usable depth of their threads in the flange
-    #: output_dowel_mm, output_dowels: dowels in gaps between these bolts, as deep as their threads
-    output_dowel_mm: float
+    output_dowel_mm: float  #: of the dowels in gaps between these bolts, as deep as their threads
     output_dowels: int
     coupler_radius_mm: float  #: of the output flange
     #: back_pitch_radius_mm, back_holes, back_screw_mm: bolts of the motor's own mounting pattern, at the back, and
@@ -143,7 +131,7 @@ class ActuatorFit:
 
 
 def actuator_fit(actuator_map: ActuatorMap) -> ActuatorFit:
-    """What a leg takes from the actuators of a map.
+    """Return what a leg takes from the actuators of a map.
 
     All actuators of a map have the same output. Where its two families have different mounts, the leg fits the mount of
     the lowest ratio; an export refuses the other one.

@@ -7,7 +7,7 @@ import numpy as np
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
@@ -16,7 +16,6 @@ from pareto_monoped.leg.electronics import DRIVER_PLATE_MM, driver_parts
 from pareto_monoped.leg.journal import LIP, bearing_part, far_cheek_z_mm
 from pareto_monoped.leg.sandwich import Place, holes_at
 from pareto_monoped.leg.stop_parts import base_stop_parts, hip_seat_screws
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the rods, mm. They stand above the hip, see ``LegDimensions.lower_rod_mm``.
 ROD_THREAD = 10.0  # usable depth, 2.5 diameters in aluminium
@@ -32,13 +31,12 @@ _SLOT_RISE = 16.0  # of the centre of its upper end above the lower rods
 
 
 def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The base frame in the frame of the base: origin on the hip axis in the middle plane, y up, z along the axis.
+    """Build the base frame in the frame of the base: origin on the hip axis in the middle plane, y up, z along the
+    axis.
 
     The hip actuator is placed at ``z = d.hip_mount_mm`` with its output towards +z.
 
-    Args:
-        knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
-        d: dimensions.
+    ``knee_actuator_length_m``: from the mounting face to the back of the knee actuator, float or shape (n,).
     """
     far_mm = far_cheek_z_mm(knee_actuator_length_m, d)
     return (
@@ -52,18 +50,18 @@ def base_parts(knee_actuator_length_m: Numbers, d: LegDimensions) -> tuple[Part,
 
 
 def _rod_places(d: LegDimensions) -> tuple[Place, ...]:
-    """Where the rods stand: two as close to the hip axis as the thigh lets them, two above."""
+    """Return where the rods stand: two as close to the hip axis as the thigh lets them, two above."""
     return tuple((side * x, y, 0.0) for x, y in (d.lower_rod_mm, d.upper_rod_mm) for side in (-1.0, 1.0))
 
 
 def _cheek_outline(bottom_radius_mm: float, d: LegDimensions) -> Path:
-    """From a disc around the hip axis up to the round end around the rods."""
+    """Return the outline from a disc around the hip axis up to the round end around the rods."""
     top_mm = d.lower_rod_mm[1] + _TOP_RISE
     return hull(top_radius_mm=_TOP_RADIUS, bottom_radius_mm=bottom_radius_mm, length_mm=top_mm, y_mm=top_mm)
 
 
 def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
-    """What both cheeks have: a slot that lightens them, and the holes of the rods' screws."""
+    """Return what both cheeks have: a slot that lightens them, and the holes of the rods' screws."""
     slot = hull(
         top_radius_mm=_SLOT_RADIUS,
         bottom_radius_mm=_SLOT_RADIUS,
@@ -74,7 +72,7 @@ def _common_holes(d: LegDimensions) -> tuple[Shape, ...]:
 
 
 def _reliefs(d: LegDimensions) -> Pattern:
-    """The holes that lighten the near cheek: one below each gap between the screws, where its dowels are."""
+    """Return the holes that lighten the near cheek: one below each gap between the screws, where its dowels are."""
     low = d.hip.coupler_radius_mm + _BORE_PLAY + _RELIEF_TO_BORE
     high = d.hip.mount_pitch_radius_mm - 0.5 * d.hip.mount_dowel_mm - _RELIEF_TO_DOWELS
     radius = min(_RELIEF_MOST, 0.5 * (high - low))
@@ -82,7 +80,7 @@ def _reliefs(d: LegDimensions) -> Pattern:
 
 
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
-    """The plate that the hip actuator is bolted to, with the screws."""
+    """Build the plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
     mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.mount_pitch_radius_mm, count=d.hip.mount_holes)
     mount_dowels = replace(d.hip.mount_dowel, count=d.hip.mount_dowels // 2)
@@ -94,34 +92,26 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
             end_mm=z0 - d.hip.mount_thread_mm,
             room_mm=d.hip.mount_thread_mm + d.cheek_mm,
             direction=1.0,
-            material=MATERIALS.steel,
-            count=mount_dowels.count,
-            pitch_radius_mm=mount_dowels.pitch_radius_mm,
-            phase_rad=mount_dowels.phase_rad,
+            holes=mount_dowels,
             partner="base_near_cheek",
             note="into every second of the holes in the hip actuator's case; ream them together",
         ),
-        Part(
+        sheet_part(
             name="base_near_cheek",
             role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="laser cut",
             prisms=(
-                Prism(
-                    outline=_cheek_outline(d.hip.rim_radius_mm, d),
-                    z0_mm=z0,
-                    z1_mm=z1,
-                    holes=(
-                        Circle(radius_mm=d.hip.coupler_radius_mm + _BORE_PLAY),
-                        mount,
-                        mount_dowels,
-                        _reliefs(d),
-                        *_common_holes(d),
-                        *seats,
-                    ),
+                layer(
+                    _cheek_outline(d.hip.rim_radius_mm, d),
+                    z0,
+                    z1,
+                    Circle(radius_mm=d.hip.coupler_radius_mm + _BORE_PLAY),
+                    mount,
+                    mount_dowels,
+                    _reliefs(d),
+                    *_common_holes(d),
+                    *seats,
                 ),
             ),
-            grade=ALLOYS["aw_6082_t6"],
             # The actuator's screws come from the thigh's side, those of the hip's seats from the actuator's.
             features=(
                 clearance(M3, (mount,), z0, z1, countersunk="high"),
@@ -138,7 +128,6 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=d.cheek_mm,
             room_mm=d.hip.mount_thread_mm,
             direction=-1.0,
-            material=MATERIALS.steel,
             count=d.hip.mount_holes,
             pitch_radius_mm=d.hip.mount_pitch_radius_mm,
             grade="10.9",
@@ -148,22 +137,19 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The plate that carries the journal, with its bearing."""
+    """Build the plate that carries the journal, with its bearing."""
     outline, common = _cheek_outline(d.bearing_outer_radius_mm + _FAR_WALL, d), _common_holes(d)
     seat = Circle(radius_mm=d.bearing_outer_radius_mm)
     lip = Circle(radius_mm=d.bearing_outer_radius_mm - LIP)
     seat_end = z0_mm + d.bearing_width_mm
     return (
-        Part(
+        machined_part(
             name="base_far_cheek",
             role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="machined",
             prisms=(
-                Prism(outline=outline, z0_mm=z0_mm, z1_mm=seat_end, holes=(seat, *common)),
-                Prism(outline=outline, z0_mm=seat_end, z1_mm=z0_mm + d.far_cheek_mm, holes=(lip, *common)),
+                layer(outline, z0_mm, seat_end, seat, *common),
+                layer(outline, seat_end, z0_mm + d.far_cheek_mm, lip, *common),
             ),
-            grade=ALLOYS["aw_6082_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
             features=(bored(seat, z0_mm, seat_end, enters="low"),),
             note=f"{d.far_cheek_mm:g} mm plate",
@@ -173,20 +159,17 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The rods between the cheeks' inner faces, with a screw at either end."""
+    """Build the rods between the cheeks' inner faces, with a screw at either end."""
     places = _rod_places(d)
     lower, upper = places[:2], places[2:]
     near_mm = d.hip_mount_mm + d.cheek_mm
     thread = Circle(radius_mm=M4.core)
     return (
-        Part(
+        machined_part(
             name="base_rod",
             role=Role.ROD,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(Prism(outline=Circle(radius_mm=d.rod_radius_mm), z0_mm=near_mm, z1_mm=far_mm, holes=(thread,)),),
+            prisms=(disc(d.rod_radius_mm, near_mm, far_mm, thread),),
             places_mm=places,
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 tapped(M4, (thread,), near_mm, far_mm, enters="both", usable_mm=ROD_THREAD),
                 turned(d.rod_radius_mm, near_mm, 1.0),
@@ -204,7 +187,6 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 grip_mm=grip_mm + under_mm,
                 room_mm=ROD_THREAD,
                 direction=direction,
-                material=MATERIALS.steel,
                 places_mm=where,
                 note=note,
             )

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part, strong_part
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M5
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
@@ -34,40 +34,33 @@ _NUT_SIDE = 7.44  # side of a square of the nut's area
 _SLOT_PLAY = 0.1  # of the chain's link in the fork, to either side
 _PIN_PLAY = 0.05  # radial, of the turnbuckle's pin in the chain
 _GAP = 0.45  # between the fork and the next link's plates
-
 _Place = tuple[Numbers, Numbers, Numbers]
 
 
 def links_of(d: LegDimensions) -> int:
-    """Number of links of either piece; it begins and ends with an inner link, so that the number is odd."""
+    """Return the number of links of either piece; it begins and ends with an inner link, so that the number is odd."""
     return d.chain.teeth // 2 + 2 * _STRAIGHT
 
 
 def reach_mm(d: LegDimensions) -> float:
-    """From a sprocket's axis to the last pins of its piece, with the knee in the middle of its range."""
+    """Return the distance from a sprocket's axis to the last pins of its piece, the knee in the middle of its range."""
     return _STRAIGHT * d.chain.pitch_mm
 
 
 def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """Both pieces of the chain and the turnbuckles.
+    """Build both pieces of the chain and the turnbuckles between axes ``length_mm`` apart, float or shape (n,).
 
     They are drawn with the turnbuckles in the middle of the strands, where they are with the knee in the middle of its
     range. The chain's pieces are the same for every thigh; the bars are cut to length.
-
-    Args:
-        length_mm: between the axes, float or shape (n,).
-        d: dimensions.
     """
     radius, links = d.chain.pitch_radius_mm, links_of(d)
     places = tuple((side * radius, -0.5 * length_mm, 0.0) for side in (-1.0, 1.0))
     reach = reach_mm(d)
     return (
         *(
-            Part(
+            steel_part(
                 name=f"chain_{end}",
                 role=Role.CHAIN,
-                material=MATERIALS.steel,
-                process="bought",
                 prisms=_piece(y_mm, sign, reach, radius, d),
                 catalogue_mass_kg=d.chain.kg_per_m * 1e-3 * links * d.chain.pitch_mm + 0.0 * length_mm,
                 joint=Joint(kind=JointKind.ENGAGED, how="around the teeth of", partner=sprocket),
@@ -84,19 +77,16 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions) -> tuple[Part, ...]:
-    """The turnbuckles of both strands, ``pins_mm`` long between their pins."""
+    """Build the turnbuckles of both strands, ``pins_mm`` long between their pins."""
     half_bar = 0.5 * pins_mm - FORK_ROOT - TRAVEL - _NUT - _SPARE
     cut = f", {2.0 * float(half_bar):.1f} mm long" if np.ndim(half_bar) == 0 else ""
     return (
-        Part(
+        strong_part(
             name="turnbuckle_bar",
             role=Role.TURNBUCKLE,
-            material=MATERIALS.aluminium,
-            process="machined",
             prisms=_bar(half_bar),
             places_mm=places,
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
-            grade=ALLOYS["aw_7075_t6"],
             note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped {THREAD.name} "
             f"right-hand and left-hand, {_TAPPED:g} mm deep, drawn as square bores; "
             f"travel {TRAVEL:g} mm at either end to either side",
@@ -112,7 +102,7 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
 def _fastened(
     end: str, side: float, pins_mm: Numbers, half_bar_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions
 ) -> tuple[Part, Part]:
-    """Fork and locknut at the upper (side 1) or lower end (-1) of both turnbuckles."""
+    """Build the fork and locknut at the upper (side 1) or lower end (-1) of both turnbuckles."""
     hand = "right-hand" if side > 0.0 else "left-hand"
 
     def shifted(by_mm: Numbers) -> tuple[_Place, ...]:
@@ -130,11 +120,9 @@ def _fastened(
             note=f"fork with {hand} {THREAD.name} - 6g stud, drawn as a square of its area; its pin goes through both "
             "cheeks and the chain's inner link and is riveted",
         ),
-        Part(
+        steel_part(
             name=f"turnbuckle_nut_{end}",
             role=Role.TURNBUCKLE,
-            material=MATERIALS.steel,
-            process="bought",
             prisms=_nut(side),
             places_mm=shifted(half_bar_mm),
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner=f"turnbuckle_end_{end}"),
@@ -144,15 +132,7 @@ def _fastened(
 
 
 def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: LegDimensions) -> tuple[Prism, ...]:
-    """A piece of chain as its rows of link plates around a sprocket, and the rollers of its free strands as bars.
-
-    Args:
-        y_mm: of the sprocket's axis.
-        sign: 1 at the hip, where the strands run down from the sprocket; -1 at the knee.
-        reach_mm: from the axis to the last pins.
-        radius_mm: on which the pins run.
-        d: dimensions.
-    """
+    """Build link plates around a sprocket and rollers of the free strands; ``sign`` is 1 at the hip, -1 at the knee."""
     half_inner, half_pin, half_plate = 0.5 * d.chain.inner_width_mm, 0.5 * d.chain.pin_mm, 0.5 * d.chain.plate_mm
     end = reach_mm - half_plate - _GAP
     rows = _around(y_mm, sign, end, radius_mm - half_plate, radius_mm + half_plate)
@@ -160,31 +140,31 @@ def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: L
 
     def bars(first_mm: Numbers, last_mm: Numbers, half_mm: float, *, pinned: bool) -> tuple[Prism, ...]:
         return tuple(
-            Prism(
-                outline=rectangle(
+            layer(
+                rectangle(
                     width_mm=d.chain.roller_mm,
                     height_mm=last_mm - first_mm,
                     x_mm=x,
                     y_mm=y_mm - sign * 0.5 * (first_mm + last_mm),
                 ),
-                z0_mm=-half_mm,
-                z1_mm=half_mm,
-                holes=(Circle(radius_mm=pin, x_mm=x, y_mm=y_mm - sign * reach_mm),) if pinned else (),
+                -half_mm,
+                half_mm,
+                *((Circle(radius_mm=pin, x_mm=x, y_mm=y_mm - sign * reach_mm),) if pinned else ()),
             )
             for x in (-radius_mm, radius_mm)
         )
 
     return (
-        Prism(outline=rows, z0_mm=-half_pin, z1_mm=-half_inner),
+        layer(rows, -half_pin, -half_inner),
         # From where on no tooth reaches the strand, whatever the sprocket's angle; then the last link in its fork.
         *bars(2.0 * d.chain.pitch_mm, end, half_inner, pinned=False),
         *bars(end, reach_mm + 0.5 * d.chain.roller_mm, 0.5 * d.chain.inner_link_mm, pinned=True),
-        Prism(outline=rows, z0_mm=half_inner, z1_mm=half_pin),
+        layer(rows, half_inner, half_pin),
     )
 
 
 def _around(y_mm: Numbers, sign: float, reach_mm: Numbers, inner_mm: float, outer_mm: float) -> Shape:
-    """A band around half of a sprocket that runs on straight to both sides."""
+    """Return a band around half of a sprocket that runs on straight to both sides."""
     end, pi = y_mm - sign * reach_mm, math.pi
     start = 0.0 if sign > 0.0 else pi  # the angle at which the outer arc begins
     one, other = sign * outer_mm, sign * inner_mm
@@ -203,28 +183,20 @@ def _around(y_mm: Numbers, sign: float, reach_mm: Numbers, inner_mm: float, oute
 
 
 def _bar(half_mm: Numbers) -> tuple[Prism, ...]:
-    """A bar along y with square ends, whose threads are drawn as square bores."""
+    """Build a bar along y with square ends, whose threads are drawn as square bores."""
     half, stud = 0.5 * BAR_WIDTH, 0.5 * _STUD
     wall = half - stud
     middle = half_mm - _TAPPED
     ends = tuple(side * (half_mm - 0.5 * _TAPPED) for side in (-1.0, 1.0))
     return (
-        Prism(
-            outline=rectangle(width_mm=BAR_WIDTH, height_mm=2.0 * middle),
-            z0_mm=-0.5 * BAR_FLAT,
-            z1_mm=0.5 * BAR_FLAT,
-        ),
+        layer(rectangle(width_mm=BAR_WIDTH, height_mm=2.0 * middle), -0.5 * BAR_FLAT, 0.5 * BAR_FLAT),
         *(
-            Prism(
-                outline=rectangle(width_mm=wall, height_mm=_TAPPED, x_mm=side * (half - 0.5 * wall), y_mm=y_mm),
-                z0_mm=-stud,
-                z1_mm=stud,
-            )
+            layer(rectangle(width_mm=wall, height_mm=_TAPPED, x_mm=side * (half - 0.5 * wall), y_mm=y_mm), -stud, stud)
             for y_mm in ends
             for side in (-1.0, 1.0)
         ),
         *(
-            Prism(outline=rectangle(width_mm=BAR_WIDTH, height_mm=_TAPPED, y_mm=y_mm), z0_mm=low, z1_mm=high)
+            layer(rectangle(width_mm=BAR_WIDTH, height_mm=_TAPPED, y_mm=y_mm), low, high)
             for y_mm in ends
             for low, high in ((-half, -stud), (stud, half))
         ),
@@ -237,37 +209,35 @@ def _across(low_mm: float, high_mm: float, side: float, half_width_mm: float) ->
 
 
 def _nut(side: float) -> tuple[Prism, ...]:
-    """A nut from the bar's end on; its hexagon is drawn as a square of the same area."""
+    """Build a nut from the bar's end on; its hexagon is drawn as a square of the same area."""
     half, stud = 0.5 * _NUT_SIDE, 0.5 * _STUD
     wall = half - stud
     whole = _across(0.0, _NUT, side, half)
     return (
-        Prism(outline=whole, z0_mm=-half, z1_mm=-stud),
+        layer(whole, -half, -stud),
         *(
-            Prism(
-                outline=rectangle(
-                    width_mm=wall, height_mm=_NUT, x_mm=sign * (half - 0.5 * wall), y_mm=side * 0.5 * _NUT
-                ),
-                z0_mm=-stud,
-                z1_mm=stud,
+            layer(
+                rectangle(width_mm=wall, height_mm=_NUT, x_mm=sign * (half - 0.5 * wall), y_mm=side * 0.5 * _NUT),
+                -stud,
+                stud,
             )
             for sign in (-1.0, 1.0)
         ),
-        Prism(outline=whole, z0_mm=stud, z1_mm=half),
+        layer(whole, stud, half),
     )
 
 
 def _end(side: float, d: LegDimensions) -> tuple[Prism, ...]:
-    """A fork around the chain's last link, around its pin, with a stud towards the turnbuckle's middle."""
+    """Build a fork around the chain's last link, around its pin, with a stud towards the turnbuckle's middle."""
     stud = 0.5 * _STUD
     half_slot = 0.5 * d.chain.inner_link_mm + _SLOT_PLAY
     half_fork = half_slot + CHEEK
     tip = FORK_ROOT + TRAVEL + _NUT + _SPARE + _STUD_DEPTH
     cheek = _across(-FORK_BOTTOM, HALF_FORK, side, HALF_FORK)
     return (
-        Prism(outline=cheek, z0_mm=-half_fork, z1_mm=-half_slot),
-        Prism(outline=Circle(radius_mm=0.5 * d.chain.pin_diameter_mm), z0_mm=-half_slot, z1_mm=half_slot),
-        Prism(outline=cheek, z0_mm=half_slot, z1_mm=half_fork),
-        Prism(outline=_across(-FORK_ROOT, -FORK_BOTTOM, side, HALF_FORK), z0_mm=-half_fork, z1_mm=half_fork),
-        Prism(outline=_across(-tip, -FORK_ROOT, side, stud), z0_mm=-stud, z1_mm=stud),
+        layer(cheek, -half_fork, -half_slot),
+        disc(0.5 * d.chain.pin_diameter_mm, -half_slot, half_slot),
+        layer(cheek, half_slot, half_fork),
+        layer(_across(-FORK_ROOT, -FORK_BOTTOM, side, HALF_FORK), -half_fork, half_fork),
+        layer(_across(-tip, -FORK_ROOT, side, stud), -stud, stud),
     )

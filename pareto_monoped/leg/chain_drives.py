@@ -20,8 +20,7 @@ class ChainDrive:
     roller_mm: float  #: diameter of the rollers
     inner_width_mm: float  #: width between the inner plates
     inner_link_mm: float  #: width over the inner plates
-    #: pin_mm, pin_diameter_mm: length and diameter of the pins
-    pin_mm: float
+    pin_mm: float  #: length of the pins
     pin_diameter_mm: float
     plate_mm: float  #: height of a plate
     kg_per_m: float  #: mass per length, from makers' catalogues
@@ -83,10 +82,7 @@ CHAIN_DRIVES = tuple(
 
 
 def chain_drive_for(knee_torque_n_m: float) -> ChainDrive:
-    """The smallest chain drive for a motor's largest torque at the knee, with what the knee's stop adds.
-
-    If none is strong enough, it is the strongest one: then ``chain_safety`` bounds the jumps (``strength.chain``).
-    """
+    """Return the smallest drive for the knee's torque with its stop, or the strongest (see ``strength.chain``)."""
     for drive in CHAIN_DRIVES:
         if _STOP_SHARE * knee_torque_n_m <= drive.torque_limit_n_m:
             return drive

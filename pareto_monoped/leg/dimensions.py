@@ -23,8 +23,6 @@ _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into th
 _LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
 _LEAST_ROD_CIRCLE_MM = 70.0  # 0.9 mm from a rod to an ear with the bumper fully squeezed
 _UPPER_ROD_X, _UPPER_ROD_RISE = 18.0, 30.0  # from the middle, and above the lower rods
-
-
 THIGH_HALF_WIDTH_MM = 24.0
 """Of the bar of the thigh's plates, our own layout."""
 # Width of the metal beside the windows of these plates: 9 mm for the 44 N m of the VT8020, and in proportion for more.
@@ -40,12 +38,10 @@ class LegDimensions:
     that a link weighs what the reference link does.
     """
 
-    #: hip, knee: what the actuators of either joint need
     hip: ActuatorFit
     knee: ActuatorFit
     chain: ChainDrive  #: the thigh's chain and its sprockets
-    #: bearing_bore_radius_mm, bearing_outer_radius_mm, bearing_width_mm, bearing_kg: of the bearings of knee and base
-    bearing_bore_radius_mm: float
+    bearing_bore_radius_mm: float  #: of the bearings of knee and base
     bearing_outer_radius_mm: float
     bearing_width_mm: float
     bearing_kg: float
@@ -65,12 +61,10 @@ class LegDimensions:
     thigh_core_half_width_mm: float = 19.5
     thigh_core_window_half_width_mm: float = 16.0
     knee_radius_mm: float = 35.5  #: of the thigh plates at the knee; covers the chain, which reaches out to 34.1 mm
-    #: shank_top_radius_mm, shank_bottom_radius_mm, shank_window_half_width_mm: the shank's plates
-    shank_top_radius_mm: float = 24.0
+    shank_top_radius_mm: float = 24.0  #: of the shank's plates
     shank_bottom_radius_mm: float = 18.0
     shank_window_half_width_mm: float = 7.5
-    #: shank_core_half_width_mm, shank_core_window_half_width_mm: the shank's printed core
-    shank_core_half_width_mm: float = 17.0
+    shank_core_half_width_mm: float = 17.0  #: of the shank's printed core
     shank_core_window_half_width_mm: float = 12.5
     #: Free depth of the shank's fork below the knee axis, enough for the thigh at the end of ``stops.knee_stop``
     fork_mm: float = 113.0
@@ -85,7 +79,7 @@ class LegDimensions:
         return 0.5 * self.gap_mm + self.plate_mm
 
     def of(self, joint: str) -> ActuatorFit:
-        """What the actuators of ``hip`` or ``knee`` need."""
+        """Return what the actuators of ``hip`` or ``knee`` need."""
         return {"hip": self.hip, "knee": self.knee}[joint]
 
     @property
@@ -101,18 +95,12 @@ class LegDimensions:
 
     @property
     def first_bridge_mm(self) -> float:
-        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the wider actuator's case.
-
-        Keys for its bolts pass either actuator.
-        """
+        """Distance of the thigh's first bridge from the hip axis: keys for its bolts pass either actuator's case."""
         return max(self.hip.housing_radius_mm, self.knee.housing_radius_mm) + 8.5
 
     @property
     def rod_circle_mm(self) -> float:
-        """Distance of the base's lower rods from the hip axis.
-
-        10.5 mm from the rods to the thigh's round hip end, and enough for its ears at the end of the stops' travel.
-        """
+        """Distance of the base's lower rods from the hip axis: clear of the thigh's hip end and ears."""
         return max(self.rim_radius_mm + 15.5, _LEAST_ROD_CIRCLE_MM)
 
     @property
@@ -153,7 +141,7 @@ class LegDimensions:
 
 @lru_cache(maxsize=64)
 def leg_dimensions(maps: Maps) -> LegDimensions:
-    """The leg that fits the motors of both joints.
+    """Return the leg that fits the motors of both joints.
 
     Its plates are drilled for their actuators, the chain carries the knee's largest torque, and the wider actuator sets
     the places of the base's rods.

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.parts import Part, sheet_part
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.actuator_fit import MotorDriver
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.sandwich import Place, holes_at, rounded
-from pareto_monoped.materials import ALLOYS, MATERIALS
+from pareto_monoped.materials import MATERIALS
 
 DRIVER_PLATE_MM = 2.0
 """Thickness of a driver's plate, the least for a flush countersunk M3; our own choice."""
@@ -40,23 +40,20 @@ _CLEAR_OF_HOLES = 4.0  # from the board's holes to what stands on it
 class BoardPlace:
     """Where cables pass a driver's board, in the frame of the base."""
 
-    #: plate_mm, inner_mm: height z of the plate's outer face, and of the board's face towards it
-    plate_mm: float
-    inner_mm: float
-    #: low_mm, high_mm: height y of the board's lower and upper edge
-    low_mm: float
-    high_mm: float
-    #: tie_x_mm, tie_y_mm: middle of a pair of holes for a tie, on either side
-    tie_x_mm: float
+    plate_mm: float  #: height z of the plate's outer face
+    inner_mm: float  #: height z of the board's face towards it
+    low_mm: float  #: height y of the board's lower edge
+    high_mm: float  #: of its upper edge
+    tie_x_mm: float  #: middle of a pair of holes for a tie, on either side
     tie_y_mm: float
 
     def behind_mm(self, off_mm: float) -> float:
-        """Height z of a cable's middle line that lies so far off the plate."""
+        """Return the height z of a cable's middle line that lies so far off the plate."""
         return self.plate_mm + float(np.sign(self.inner_mm - self.plate_mm)) * off_mm
 
 
 def board_place(joint: str, face_mm: float, direction: float, d: LegDimensions) -> BoardPlace:
-    """The place of a driver's board; see ``driver_parts``."""
+    """Return the place of a driver's board; see ``driver_parts``."""
     driver = d.of(joint).driver
     plate, middle = face_mm + direction * DRIVER_PLATE_MM, _lower_row_mm(d) + 0.5 * driver.hole_length_mm
     return BoardPlace(
@@ -70,26 +67,16 @@ def board_place(joint: str, face_mm: float, direction: float, d: LegDimensions) 
 
 
 def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:
-    """The driver of one motor on the outside of a cheek, in the frame of the base.
-
-    Args:
-        joint: whose driver it is, ``hip`` or ``knee``: the parts' names begin with it.
-        face_mm: height z of the cheek's outer face, float or shape (n,).
-        direction: outwards along z, -1 or 1.
-        d: dimensions.
-    """
+    """Build the driver of ``joint`` on the outside of a cheek, in the base's frame; ``direction`` is outwards."""
     driver = d.of(joint).driver
     holes = _hole_places(driver, d)
     back, under = face_mm + direction * DRIVER_PLATE_MM, face_mm + direction * (DRIVER_PLATE_MM + _STANDOFF)
     over = under + direction * _BOARD
     return (
-        Part(
+        sheet_part(
             name=f"{joint}_driver_plate",
             role=Role.BRACKET,
-            material=MATERIALS.aluminium,
-            process="laser cut",
             prisms=(between(_plate_outline(driver, d), face_mm, back, *_plate_holes(driver, d)),),
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 clearance(
                     driver.screw,
@@ -110,7 +97,6 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
                 grip_mm=DRIVER_PLATE_MM,
                 room_mm=_THREAD,
                 direction=direction,
-                material=MATERIALS.steel,
                 places_mm=holes,
                 note="flush, into the standoff",
             )
@@ -135,7 +121,6 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
                 grip_mm=_BOARD,
                 room_mm=_THREAD,
                 direction=-direction,
-                material=MATERIALS.steel,
                 places_mm=holes,
                 note="through the board into the standoff",
             )
@@ -144,7 +129,7 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
 
 
 def _gently_tightened(screw: Part) -> Part:
-    """A screw in a standoff, whose thread and board bear less than the screw."""
+    """Build a screw in a standoff, whose thread and board bear less than the screw."""
     full = screw.fastening
     assert full is not None
     share = _STANDOFF_N_M[full.thread.diameter_mm] / full.torque_n_m
@@ -153,18 +138,16 @@ def _gently_tightened(screw: Part) -> Part:
 
 
 def _lower_row_mm(d: LegDimensions) -> float:
-    """Height y of the board's lower holes."""
     return d.lower_rod_mm[1] + _ABOVE_ROD
 
 
 def _hole_places(driver: MotorDriver, d: LegDimensions) -> tuple[Place, ...]:
-    """The board's four mounting holes."""
     x, low = 0.5 * driver.hole_width_mm, _lower_row_mm(d)
     return tuple((side * x, y, 0.0) for y in (low, low + driver.hole_length_mm) for side in (-1.0, 1.0))
 
 
 def _plate_outline(driver: MotorDriver, d: LegDimensions) -> Shape:
-    """A rectangle around the board's holes; the upper rods lie within."""
+    """Return a rectangle around the board's holes; the upper rods lie within."""
     return rounded(
         half_width_mm=max(0.5 * driver.hole_width_mm, d.upper_rod_mm[0]) + _RIM,
         high_mm=_lower_row_mm(d) + driver.hole_length_mm + _RIM,
@@ -174,7 +157,7 @@ def _plate_outline(driver: MotorDriver, d: LegDimensions) -> Shape:
 
 
 def _plate_holes(driver: MotorDriver, d: LegDimensions) -> tuple[Shape, ...]:
-    """For the rods' screws, the standoffs' screws and cable ties, and the window that lightens the plate."""
+    """Return the holes for screws of rods and standoffs and for cable ties, and the window that saves weight."""
     rod_x, rod_y = d.upper_rod_mm
     low, high = _lower_row_mm(d), _lower_row_mm(d) + driver.hole_length_mm
     ties = tuple((side * x, high, 0.0) for x in _TIES_X for side in (-1.0, 1.0))
@@ -193,7 +176,7 @@ def _plate_holes(driver: MotorDriver, d: LegDimensions) -> tuple[Shape, ...]:
 
 
 def _board(joint: str, under_mm: Numbers, over_mm: Numbers, direction: float, d: LegDimensions) -> Part:
-    """The driver: a bare board, and a block for what stands on it between the rows of its screws."""
+    """Build the driver: a bare board, and a block for what stands on it between the rows of its screws."""
     driver = d.of(joint).driver
     middle = _lower_row_mm(d) + 0.5 * driver.hole_length_mm
     block = driver.hole_length_mm - 2.0 * _CLEAR_OF_HOLES

@@ -4,7 +4,7 @@ import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, disc, machined_part, strong_part
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
@@ -21,7 +21,6 @@ from pareto_monoped.leg.sprocket import (
     support_parts,
 )
 from pareto_monoped.leg.sprocket import BORE_RADIUS as NECK_RADIUS
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the couplings, mm.
 _RADIUS = 15.0  # 3 mm outside the circle of their screws
@@ -31,12 +30,12 @@ _DOWEL_STANDS_OUT = 1.0  # of the outer plate's inner face at most, between the 
 
 
 def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
-    """What joins the thigh to both actuators, whose output flanges are flush with their mounting faces."""
+    """Build what joins the thigh to both actuators, whose output flanges are flush with their mounting faces."""
     return (*_hip_coupling(d), _knee_mount_screw(d), _knee_mount_dowels(d), *_knee_drive(d))
 
 
 def _coupling_holes(fit: ActuatorFit, dowels: Pattern) -> tuple[Shape, ...]:
-    """Holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
+    """Return the holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
     return (
         Pattern(radius_mm=M3.hole, pitch_radius_mm=fit.output_pitch_radius_mm, count=fit.output_holes),
         dowels,
@@ -50,7 +49,7 @@ def _coupling_holes(fit: ActuatorFit, dowels: Pattern) -> tuple[Shape, ...]:
 
 
 def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns the thigh: a coupling between the hip's output and the inner plate, with its screws."""
+    """Build what turns the thigh: a coupling between the hip's output and the inner plate, with its screws."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bore, seat, holes = (
         Circle(radius_mm=_BORE_RADIUS),
@@ -63,15 +62,10 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
         (BOSS_RADIUS, -face, FRONT, (seat,)),
     )
     return (
-        Part(
+        machined_part(
             name="hip_coupling",
             role=Role.COUPLING,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=tuple(
-                Prism(outline=Circle(radius_mm=radius), z0_mm=z0, z1_mm=z1, holes=cut) for radius, z0, z1, cut in layers
-            ),
-            grade=ALLOYS["aw_6082_t6"],
+            prisms=tuple(disc(radius, z0, z1, *cut) for radius, z0, z1, cut in layers),
             fits=(_output_dowel(d.hip).hole_fit, Fit(diameter_mm=2.0 * SEAT_RADIUS, zone="R6", seat=True)),
             note="between hip output and inner plate",
         ),
@@ -92,7 +86,6 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=-half_gap - d.hip_mount_mm,
             room_mm=d.hip.output_thread_mm,
             direction=-1.0,
-            material=MATERIALS.steel,
             count=d.hip.output_holes,
             pitch_radius_mm=d.hip.output_pitch_radius_mm,
             grade="10.9",
@@ -102,7 +95,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _output_dowel(fit: ActuatorFit) -> Dowel:
-    """Between an output flange and what it turns: these dowels carry its torque, the screws only clamp."""
+    """Return the dowel between an output flange and what it turns; dowels carry the torque, the screws only clamp."""
     return Dowel(diameter_mm=fit.output_dowel_mm)
 
 
@@ -117,7 +110,7 @@ def _output_dowels(
     partner: str,
     group: Group = Group.FIXED,
 ) -> Part:
-    """The dowels into an output flange, in the middle of their holes, which begin at ``end_mm``."""
+    """Build the dowels into an output flange, in the middle of their holes, which begin at ``end_mm``."""
     spare_mm = room_mm - float(_output_dowel(fit).length_mm(room_mm))
     return dowel_part(
         name,
@@ -125,10 +118,7 @@ def _output_dowels(
         end_mm=end_mm + direction * 0.5 * spare_mm,
         room_mm=room_mm,
         direction=direction,
-        material=MATERIALS.steel,
-        count=holes.count,
-        pitch_radius_mm=holes.pitch_radius_mm,
-        phase_rad=holes.phase_rad,
+        holes=holes,
         group=group,
         partner=partner,
         note="ream its holes together",
@@ -144,17 +134,14 @@ def _knee_mount_dowels(d: LegDimensions) -> Part:
         end_mm=d.knee_mount_mm + d.knee.mount_thread_mm,
         room_mm=d.knee.mount_thread_mm + d.plate_mm + _DOWEL_STANDS_OUT,
         direction=-1.0,
-        material=MATERIALS.steel,
-        count=holes.count,
-        pitch_radius_mm=holes.pitch_radius_mm,
-        phase_rad=holes.phase_rad,
+        holes=holes,
         partner="thigh_plate_outer",
         note="ream its holes together",
     )
 
 
 def _knee_mount_screw(d: LegDimensions) -> Part:
-    """The screws that carry the knee actuator on the outer plate."""
+    """Build the screws that carry the knee actuator on the outer plate."""
     return screw_part(
         "knee_mount_screw",
         M3,
@@ -163,7 +150,6 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
         grip_mm=d.plate_mm,
         room_mm=d.knee.mount_thread_mm,
         direction=1.0,
-        material=MATERIALS.steel,
         count=d.knee.mount_holes,
         pitch_radius_mm=d.knee.mount_pitch_radius_mm,
         grade="8.8",
@@ -172,36 +158,23 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
 
 
 def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns with the knee actuator's output: sprocket, coupling, screws."""
+    """Build what turns with the knee actuator's output: sprocket, coupling, screws."""
     half_tooth, holes = 0.5 * d.chain.sprocket_width_mm, _coupling_holes(d.knee, d.drive_dowel)
     return (
         *support_parts(d, _RADIUS, holes),
-        Part(
+        strong_part(
             name="drive_sprocket",
             role=Role.SPROCKET,
-            material=MATERIALS.aluminium,
-            process="machined",
             prisms=sprocket_prisms(d, M3.head + HEAD_PLAY),
             group=Group.KNEE_DRIVE,
-            grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=2.0 * NECK_RADIUS, zone="H7"), _output_dowel(d.knee).hole_fit),
             note=f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
         ),
-        Part(
+        machined_part(
             name="drive_coupling",
             role=Role.COUPLING,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=_RADIUS),
-                    z0_mm=half_tooth + FLANGE,
-                    z1_mm=d.knee_mount_mm,
-                    holes=(Circle(radius_mm=_BORE_RADIUS), *holes),
-                ),
-            ),
+            prisms=(disc(_RADIUS, half_tooth + FLANGE, d.knee_mount_mm, Circle(radius_mm=_BORE_RADIUS), *holes),),
             group=Group.KNEE_DRIVE,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(_output_dowel(d.knee).hole_fit,),
             note="between knee output and drive sprocket",
         ),
@@ -223,7 +196,6 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=d.knee_mount_mm + half_tooth - d.sprocket_recess_mm,
             room_mm=d.knee.output_thread_mm,
             direction=1.0,
-            material=MATERIALS.steel,
             count=d.knee.output_holes,
             pitch_radius_mm=d.knee.output_pitch_radius_mm,
             group=Group.KNEE_DRIVE,

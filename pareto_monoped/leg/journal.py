@@ -1,19 +1,17 @@
-"""The journal on the knee actuator's back, by which the base's far cheek carries the actuator's free end.
-
-The ball bearing that carries both ends of the knee's axle and the knee actuator's free end.
+"""The journal on the knee actuator's back, by which the base's far cheek carries its free end, and the bearing
+there.
 """
 
 from dataclasses import replace
 
 from pareto_monoped.geometry.features import turned
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, disc, steel_part, strong_part
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import Screw, screw_for, screw_part
+from pareto_monoped.geometry.screws import screw_for, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.sandwich import Place
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
 LIP = 2.0  # height of a seat's lip, which holds the outer ring only
@@ -23,18 +21,13 @@ SHOULDER_RADIUS = 11.8  # of an axle's shoulder, which touches the inner ring on
 def bearing_part(
     name: str, d: LegDimensions, *, z0_mm: Numbers = 0.0, places_mm: tuple[Place, ...] | None = None
 ) -> Part:
-    """A bearing from ``z0_mm`` on along z, or one at each place."""
-    part = Part(
+    """Build a bearing from ``z0_mm`` on along z, or one at each place."""
+    part = steel_part(
         name=name,
         role=Role.BEARING,
-        material=MATERIALS.steel,
-        process="bought",
         prisms=(
-            Prism(
-                outline=Circle(radius_mm=d.bearing_outer_radius_mm),
-                z0_mm=z0_mm,
-                z1_mm=z0_mm + d.bearing_width_mm,
-                holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
+            disc(
+                d.bearing_outer_radius_mm, z0_mm, z0_mm + d.bearing_width_mm, Circle(radius_mm=d.bearing_bore_radius_mm)
             ),
         ),
         catalogue_mass_kg=d.bearing_kg,
@@ -53,53 +46,39 @@ _THREAD = 6.0  # M5 x 10 in the backplate of an ISSPG, M5 x 12 through that of a
 
 
 def far_cheek_z_mm(knee_actuator_length_m: Numbers, d: LegDimensions) -> Numbers:
-    """Height z of the far cheek's inner face, where the journal's seat begins."""
+    """Return the height z of the far cheek's inner face, where the journal's seat begins."""
     return _flange_z_mm(knee_actuator_length_m, d) + _HEAD_ROOM
 
 
 def _flange_z_mm(knee_actuator_length_m: Numbers, d: LegDimensions) -> Numbers:
-    """Height z of the flange's outer face, the seat of the screws."""
+    """Return the height z of the flange's outer face, the seat of the screws."""
     return d.knee_mount_mm + 1000.0 * knee_actuator_length_m + _FLANGE
 
 
 def journal_parts(
     knee_actuator_length_m: Numbers, d: LegDimensions, *, back_clearance_mm: Numbers = 0.0
 ) -> tuple[Part, ...]:
-    """The journal and its screws, in the frame of the thigh, to which the journal belongs.
+    """Build the journal and its screws, in the frame of the thigh, to which the journal belongs.
 
-    Args:
-        knee_actuator_length_m: from the mounting face to the back of the knee actuator, float or shape (n,).
-        d: dimensions.
-        back_clearance_mm: how much of the knee actuator's back the screws pass through before their threads begin,
-            float or shape (n,).
+    ``knee_actuator_length_m``: from the mounting face to the back of the knee actuator, float or shape (n,);
+    ``back_clearance_mm``: how much of the knee actuator's back the screws pass through before their threads begin,
+    float or shape (n,).
     """
     back = d.knee_mount_mm + 1000.0 * knee_actuator_length_m
     flange, seat = _flange_z_mm(knee_actuator_length_m, d), far_cheek_z_mm(knee_actuator_length_m, d)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - _WALL)
-    screw = _motor_screw(d.knee.back_screw_mm)
+    # Its core fits the threads that the actuator draws, 0.8 mm below nominal.
+    screw = screw_for(d.knee.back_screw_mm, 0.5 * d.knee.back_screw_mm - 0.4)
     holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.knee.back_pitch_radius_mm, count=d.knee.back_holes)
     return (
-        Part(
+        strong_part(
             name="journal",
             role=Role.SHAFT,
-            material=MATERIALS.aluminium,
-            process="machined",
             prisms=(
-                Prism(
-                    outline=Circle(radius_mm=d.knee.back_pitch_radius_mm + _FLANGE_RIM),
-                    z0_mm=back,
-                    z1_mm=flange,
-                    holes=(bore, holes),
-                ),
-                Prism(outline=Circle(radius_mm=SHOULDER_RADIUS), z0_mm=flange, z1_mm=seat, holes=(bore,)),
-                Prism(
-                    outline=Circle(radius_mm=d.bearing_bore_radius_mm),
-                    z0_mm=seat,
-                    z1_mm=seat + d.bearing_width_mm,
-                    holes=(bore,),
-                ),
+                disc(d.knee.back_pitch_radius_mm + _FLANGE_RIM, back, flange, bore, holes),
+                disc(SHOULDER_RADIUS, flange, seat, bore),
+                disc(d.bearing_bore_radius_mm, seat, seat + d.bearing_width_mm, bore),
             ),
-            grade=ALLOYS["aw_7075_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
             features=(turned(d.bearing_bore_radius_mm, seat + d.bearing_width_mm, -1.0),),
             note="the bore takes the knee actuator's cables",
@@ -112,14 +91,8 @@ def journal_parts(
             grip_mm=_FLANGE + back_clearance_mm,
             room_mm=_THREAD,
             direction=-1.0,
-            material=MATERIALS.steel,
             count=d.knee.back_holes,
             pitch_radius_mm=d.knee.back_pitch_radius_mm,
             note="into the knee motor's own mounting pattern",
         ),
     )
-
-
-def _motor_screw(diameter_mm: float) -> Screw:
-    """The cap screw for holes of a motor; its core fits the threads that the actuator draws, 0.8 mm below nominal."""
-    return screw_for(diameter_mm, 0.5 * diameter_mm - 0.4)

@@ -5,7 +5,7 @@ import numpy as np
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, disc, layer, machined_part, steel_part, strong_part
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import (
     HEXAGON_FLATS_MM,
@@ -22,7 +22,6 @@ from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.journal import SHOULDER_RADIUS, bearing_part
 from pareto_monoped.leg.sprocket import relief_holes, sprocket_outline
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of the cups, mm.
 _CUP_WALL = 5.0  # around the bearing
@@ -34,20 +33,16 @@ AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between the
 _DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
 DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
 # The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
-# Heads and nuts press the plates less than ``strength.bolted`` allows.
+# Heads and nuts press the plates less than ``strength.threads`` allows.
 _NUT_HEIGHT = 3.2
 _NUT_TURN = np.pi / 12.0  # of its hexagon: each nut turns a flat to one neighbour and a corner to the other
 _NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread
 
 
 def cup_holes(y_mm: Numbers, radius_mm: float, d: LegDimensions) -> Pattern:
-    """Holes for the screws of a bearing cup around a knee axis at height ``y_mm``."""
+    """Return the holes for the screws of a bearing cup around a knee axis at height ``y_mm``."""
     return Pattern(
-        radius_mm=radius_mm,
-        pitch_radius_mm=_cup_pitch_radius_mm(d),
-        count=_CUP_SCREWS,
-        phase_rad=np.pi / 4,
-        y_mm=y_mm,
+        radius_mm=radius_mm, pitch_radius_mm=_cup_pitch_radius_mm(d), count=_CUP_SCREWS, phase_rad=np.pi / 4, y_mm=y_mm
     )
 
 
@@ -56,28 +51,18 @@ def _cup_pitch_radius_mm(d: LegDimensions) -> float:
 
 
 def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The bearings of the knee and their cups, which are screwed to the insides of the thigh's plates."""
+    """Build the bearings of the knee and their cups, which are screwed to the insides of the thigh's plates."""
     half_gap = 0.5 * d.gap_mm
     y_mm = -thigh_length_mm
     places = ((0.0, y_mm, half_gap - d.bearing_width_mm), (0.0, y_mm, -half_gap))
     seat, threads = Circle(radius_mm=d.bearing_outer_radius_mm), cup_holes(0.0, M25.core, d)
     return (
-        Part(
+        machined_part(
             name="knee_bearing_cup",
             role=Role.HOUSING,
             visibility=Visibility.INSIDE,
-            material=MATERIALS.aluminium,
-            process="machined",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=d.bearing_outer_radius_mm + _CUP_WALL),
-                    z0_mm=0.0,
-                    z1_mm=d.bearing_width_mm,
-                    holes=(seat, threads),
-                ),
-            ),
+            prisms=(disc(d.bearing_outer_radius_mm + _CUP_WALL, 0.0, d.bearing_width_mm, seat, threads),),
             places_mm=places,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
             # One cup stands the other way round.
             features=(
@@ -96,7 +81,6 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
                 grip_mm=d.plate_mm,
                 room_mm=_CUP_THREAD,
                 direction=direction,
-                material=MATERIALS.steel,
                 count=_CUP_SCREWS,
                 pitch_radius_mm=_cup_pitch_radius_mm(d),
                 phase_rad=np.pi / 4,
@@ -110,63 +94,52 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
 
 
 def axle_holes() -> Pattern:
-    """The holes of the bolts that clamp the whole knee."""
+    """Return the holes of the bolts that clamp the whole knee."""
     return Pattern(radius_mm=M4.hole, pitch_radius_mm=_BOLT_PITCH_RADIUS, count=_BOLTS, phase_rad=np.pi / 4)
 
 
 def axle_dowels() -> Pattern:
-    """The holes of the dowels by which the axle turns a plate of the shank."""
+    """Return the holes of the dowels by which the axle turns a plate of the shank."""
     return AXLE_DOWEL.holes(2.0 * _DOWEL_PITCH_RADIUS, _BOLTS, 0.0)
 
 
 def axle_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns in the thigh's knee bearings: the axle with its teeth, clamped between the shank's plates."""
+    """Build what turns in the thigh's knee bearings: the axle with its teeth, clamped between the shank's plates."""
     return (_axle(d), *_dowels(d), _spacer(d), _axle_bolt(d))
 
 
 def _axle(d: LegDimensions) -> Part:
-    """Axle and sprocket in one piece: no joint between them has to carry the chain's torque.
-
-    It goes in from the inside of the thigh before the second plate closes the sandwich, as any axle with shoulders.
-    """
-    half_gap, half_tooth, shoulder = 0.5 * d.shank_gap_mm, 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d)
+    """Build axle and sprocket in one piece, put in from the inside of the thigh before the second plate closes it."""
+    half_gap, half_tooth, shoulder = (
+        0.5 * d.shank_gap_mm,
+        0.5 * d.chain.sprocket_width_mm,
+        0.5 * d.gap_mm - d.bearing_width_mm,
+    )
     bolts, dowels, blind = axle_holes(), axle_dowels(), half_gap - DOWEL_DEPTH
 
     def both(radius_mm: float, low_mm: float, high_mm: float, *holes: Pattern) -> tuple[Prism, Prism]:
-        disc = Circle(radius_mm=radius_mm)
         return (
-            Prism(outline=disc, z0_mm=-high_mm, z1_mm=-low_mm, holes=(bolts, *holes)),
-            Prism(outline=disc, z0_mm=low_mm, z1_mm=high_mm, holes=(bolts, *holes)),
+            disc(radius_mm, -high_mm, -low_mm, bolts, *holes),
+            disc(radius_mm, low_mm, high_mm, bolts, *holes),
         )
 
-    return Part(
+    return strong_part(
         name="knee_axle",
         role=Role.SPROCKET,
-        material=MATERIALS.aluminium,
-        process="machined",
         prisms=(
-            Prism(
-                outline=sprocket_outline(d.chain),
-                z0_mm=-half_tooth,
-                z1_mm=half_tooth,
-                holes=(bolts, relief_holes(d)),
-            ),
+            layer(sprocket_outline(d.chain), -half_tooth, half_tooth, bolts, relief_holes(d)),
             *both(SHOULDER_RADIUS, half_tooth, shoulder),
             *both(d.bearing_bore_radius_mm, shoulder, blind),
             *both(d.bearing_bore_radius_mm, blind, half_gap, dowels),
         ),
-        grade=ALLOYS["aw_7075_t6"],
         fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True), AXLE_DOWEL.hole_fit),
-        features=(
-            turned(d.bearing_bore_radius_mm, half_gap, -1.0),
-            turned(d.bearing_bore_radius_mm, -half_gap, 1.0),
-        ),
+        features=(turned(d.bearing_bore_radius_mm, half_gap, -1.0), turned(d.bearing_bore_radius_mm, -half_gap, 1.0)),
         note=f"axle and sprocket in one piece; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
     )
 
 
 def _dowels(d: LegDimensions) -> tuple[Part, ...]:
-    """The dowels between axle and plates, flush with the plates' outer faces."""
+    """Build the dowels between axle and plates, flush with the plates' outer faces."""
     holes, face = axle_dowels(), 0.5 * d.shank_gap_mm + d.shank_plate_mm
     return tuple(
         dowel_part(
@@ -175,10 +148,7 @@ def _dowels(d: LegDimensions) -> tuple[Part, ...]:
             end_mm=sign * face,
             room_mm=d.shank_plate_mm + DOWEL_DEPTH,
             direction=-sign,
-            material=MATERIALS.steel,
-            count=holes.count,
-            pitch_radius_mm=holes.pitch_radius_mm,
-            phase_rad=holes.phase_rad,
+            holes=holes,
             partner="knee_axle",
             note="holes reamed together with the plate",
         )
@@ -187,44 +157,24 @@ def _dowels(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _spacer(d: LegDimensions) -> Part:
-    """The spacers that clamp the bearings' inner rings between axle and shank."""
+    """Build the spacers that clamp the bearings' inner rings between axle and shank."""
     half_gap, half_thigh_gap = 0.5 * d.shank_gap_mm, 0.5 * d.gap_mm
-    return Part(
+    return machined_part(
         name="knee_spacer",
         role=Role.SPACER,
-        material=MATERIALS.aluminium,
-        process="machined",
-        prisms=(
-            Prism(
-                outline=Circle(radius_mm=SHOULDER_RADIUS),
-                z0_mm=0.0,
-                z1_mm=half_gap - half_thigh_gap,
-                holes=(Circle(radius_mm=d.bearing_bore_radius_mm),),
-            ),
-        ),
+        prisms=(disc(SHOULDER_RADIUS, 0.0, half_gap - half_thigh_gap, Circle(radius_mm=d.bearing_bore_radius_mm)),),
         places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
-        grade=ALLOYS["aw_6082_t6"],
         note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
     )
 
 
-def _shoulder_z_mm(d: LegDimensions) -> float:
-    """Height z of the axle's shoulder, on which the bearing's inner ring sits."""
-    return 0.5 * d.gap_mm - d.bearing_width_mm
-
-
 def _axle_bolt(d: LegDimensions) -> Part:
-    """The bolts through shank plates, spacers and axle.
-
-    They clamp what the dowels carry. The property class is therefore the lowest one, that of the nut.
-    """
+    """Build the bolts through shank plates, spacers and axle; they only clamp, in the lowest property class."""
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
     length = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
-    return Part(
+    return steel_part(
         name="knee_bolt",
         role=Role.BOLT,
-        material=MATERIALS.steel,
-        process="bought",
         prisms=(
             cylinder(M4.head, -face - M4.head_height, -face),
             cylinder(M4.shank, -face, face),

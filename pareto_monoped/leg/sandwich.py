@@ -1,9 +1,4 @@
-"""The sandwich that both links are made of: two plates on a core, with windows and bolted bridges between them.
-
-Outlines of the links: windows with round corners, plates around holes.
-
-Outlines with round corners, drawn like a belt around pulleys.
-"""
+"""The sandwich that both links are made of: two plates on a core, with windows, bolted bridges and round outlines."""
 
 import math
 from collections.abc import Sequence
@@ -13,16 +8,16 @@ from itertools import pairwise
 import numpy as np
 
 from pareto_monoped.geometry.features import CountersunkHead
-from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.parts import Part, layer, steel_part
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import Screw, cylinder, screw_length_mm
-from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape
+from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_length_mm
+from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.geometry.tightening import LOCKER, Fastening
 from pareto_monoped.materials import MATERIALS
 
 
 def rounded(*, half_width_mm: Numbers, high_mm: Numbers, low_mm: Numbers, corner_mm: Numbers) -> Path:
-    """A rectangle with round corners, upright on the y axis from ``low_mm`` to ``high_mm``."""
+    """Return a rectangle with round corners, upright on the y axis from ``low_mm`` to ``high_mm``."""
     w, r, pi = half_width_mm, corner_mm, np.pi
     return Path(
         (
@@ -39,12 +34,7 @@ def rounded(*, half_width_mm: Numbers, high_mm: Numbers, low_mm: Numbers, corner
 
 
 def rounded_hull(points_mm: Sequence[tuple[float, float]], radius_mm: float) -> Path:
-    """The convex hull of discs of one radius, such as a plate with a rim around its outermost holes.
-
-    Args:
-        points_mm: centres (x, y) of the discs, not all on a line.
-        radius_mm: of the discs.
-    """
+    """Return the convex hull of discs of one radius, such as a plate with a rim around its outermost holes."""
     from shapely import MultiPoint
     from shapely.geometry.polygon import orient
 
@@ -82,17 +72,15 @@ _WINDOW_END = 0.5  # least straight half of a window's ends: without it, the cor
 
 
 def sleeve_hole(screw: Screw) -> float:
-    """Radius of the hole for a sleeve nut."""
+    """Return the radius of the hole for a sleeve nut."""
     return screw.shank + _SLEEVE_WALL + _SLEEVE_PLAY
 
 
 def sleeve_fastening(screw: Screw, plate_on_core_mm: float | None) -> Fastening:
-    """How a screw is tightened in its sleeve nut, which is weaker than the screw.
+    """Return how a screw is tightened in its sleeve nut, which is weaker than the screw.
 
-    Args:
-        screw: which.
-        plate_on_core_mm: thickness of the plates that press a printed core, on the area to which the pressure of the
-            heads has spread; None if all that is clamped is metal.
+    ``plate_on_core_mm``: thickness of the plates that press a printed core, on the area to which the pressure of the
+    heads has spread; None if all that is clamped is metal.
     """
     hole, sleeve = sleeve_hole(screw), screw.shank + _SLEEVE_WALL
     most = _SLEEVE_MPA * math.pi * (sleeve**2 - screw.shank**2)
@@ -112,32 +100,19 @@ def sleeve_bolt(
     *,
     plate_on_core_mm: float | None = None,
 ) -> Part:
-    """A countersunk screw in a countersunk sleeve nut, flush on both sides of a stack centred on z = 0.
-
-    Args:
-        name: of the part.
-        screw: its size.
-        half_stack_mm: half of what is clamped.
-        places_mm: where they stand.
-        plate_on_core_mm: see ``sleeve_fastening``.
-    """
+    """Build a countersunk screw in a countersunk sleeve nut, flush on both sides of a stack centred on z = 0."""
     stack = 2.0 * half_stack_mm
     sleeve = float(screw_length_mm(stack, -_OVERLAP[0]))
     long = float(screw_length_mm(stack - sleeve, _OVERLAP[1]))
-    return Part(
+    return steel_part(
         name=name,
         role=Role.BOLT,
-        material=MATERIALS.steel,
-        process="bought",
         prisms=(
             cylinder(screw.shank + _SLEEVE_WALL, -half_stack_mm, sleeve - half_stack_mm),
             cylinder(screw.shank, sleeve - half_stack_mm, half_stack_mm),
         ),
         places_mm=places_mm,
-        features=(
-            _head(screw.shank + _SLEEVE_WALL, screw, -half_stack_mm),
-            _head(screw.shank, screw, half_stack_mm),
-        ),
+        features=(_head(screw.shank + _SLEEVE_WALL, screw, -half_stack_mm), _head(screw.shank, screw, half_stack_mm)),
         fastening=sleeve_fastening(screw, plate_on_core_mm),
         note=f"{screw.name} x {long:g} countersunk (ISO 10642) 8.8 in a countersunk sleeve nut {screw.name} x "
         f"{sleeve:g}, flush, {stack:g} mm together",
@@ -145,24 +120,24 @@ def sleeve_bolt(
 
 
 def _head(shank_mm: float, screw: Screw, face_mm: float) -> CountersunkHead:
-    """The flush head of a screw or of its sleeve nut, which has the same cone."""
+    """Return the flush head of a screw or of its sleeve nut, which has the same cone."""
     return CountersunkHead(
         shank_mm=shank_mm, radius_mm=screw.countersunk, face_mm=face_mm, inwards=-math.copysign(1.0, face_mm)
     )
 
 
 def bolts_at(heights: tuple[Numbers, ...]) -> tuple[Place, ...]:
-    """Two bolts side by side on every bridge."""
+    """Return two bolts side by side on every bridge."""
     return tuple((side * BRIDGE_BOLT_X, y, 0.0) for y in heights for side in (-1.0, 1.0))
 
 
 def holes_at(places: tuple[Place, ...], radius_mm: float) -> tuple[Circle, ...]:
-    """A hole at every place."""
+    """Return a hole at every place."""
     return tuple(Circle(radius_mm=radius_mm, x_mm=x, y_mm=y) for x, y, _ in places)
 
 
 def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple[Shape, ...]:
-    """A window between every two neighbouring bridges."""
+    """Return a window between every two neighbouring bridges."""
     corner_mm = min(WINDOW_CORNER, half_width_mm - _WINDOW_END)
     return tuple(
         rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=corner_mm)
@@ -170,11 +145,36 @@ def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple
     )
 
 
-def with_rungs(heights: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
-    """The bridges of a plate, with a rung as high as these in the middle between every two of them.
+def core_part(
+    name: str,
+    top_mm: Numbers,
+    end_mm: Numbers,
+    gap_mm: float,
+    half_widths_mm: tuple[float, float],
+    bridges: tuple[Numbers, ...],
+) -> Part:
+    """Build the printed core between two plates; ``half_widths_mm`` are its own and that of its windows."""
+    half, window = half_widths_mm
+    return Part(
+        name=name,
+        role=Role.CORE,
+        material=MATERIALS.printed_plastic,
+        process="3D printed",
+        prisms=(
+            layer(
+                rectangle(width_mm=2.0 * half, height_mm=top_mm - end_mm, y_mm=0.5 * (top_mm + end_mm)),
+                -0.5 * gap_mm,
+                0.5 * gap_mm,
+                *windows_between(bridges, window),
+                *holes_at(bolts_at(bridges), sleeve_hole(M3)),
+            ),
+        ),
+        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
+    )
 
-    The higher a window, the more its sides bend under a force across the link (``strength.links``).
-    """
+
+def with_rungs(heights: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
+    """Return a plate's bridges with a rung between every two: sides of high windows bend more (``strength.links``)."""
     halves = tuple(height for high, low in pairwise(heights) for height in (high, 0.5 * (high + low)))
     return (*halves, heights[-1])
 
@@ -187,8 +187,7 @@ _WHOLE_ARC = 3.0  # rad; a longer arc is drawn as two
 class Pulley:
     """A round corner of an outline."""
 
-    #: x_mm, y_mm: its centre
-    x_mm: Numbers
+    x_mm: Numbers  #: of its centre
     y_mm: Numbers
     radius_mm: float  #: above zero
     inside: bool = True  #: whether the corner bulges outward, its centre inside the outline; otherwise it is a fillet
@@ -205,13 +204,12 @@ class Pulley:
 
 
 def belt(pulleys: Sequence[Pulley]) -> Path:
-    """The outline that runs anticlockwise around pulleys on straight common tangents.
+    """Return the outline that runs anticlockwise around pulleys on straight common tangents.
 
     With the outward normal n of a tangent, the belt leaves a pulley of centre c and signed radius s at c + s n. Both
     ends of a tangent lie on it: n (c2 - c1) = s1 - s2.
 
-    Args:
-        pulleys: in the order in which the belt meets them; one may be met twice.
+    ``pulleys``: in the order in which the belt meets them; one may be met twice.
     """
     normals = [_normal_rad(one, other) for one, other in pairwise((*pulleys, pulleys[0]))]
     pieces: list[Line | Arc] = []
@@ -223,26 +221,23 @@ def belt(pulleys: Sequence[Pulley]) -> Path:
 
 
 def mirrored(pulleys: Sequence[Pulley]) -> tuple[Pulley, ...]:
-    """The pulleys of the outline's image on the other side of the y axis."""
+    """Return the pulleys of the outline's image on the other side of the y axis."""
     return tuple(pulley.mirrored for pulley in reversed(pulleys))
 
 
 def _normal_rad(one: Pulley, other: Pulley) -> Numbers:
-    """Angle of the outward normal of the tangent from one pulley to the next."""
+    """Return the angle of the outward normal of the tangent from one pulley to the next."""
     across, along = other.x_mm - one.x_mm, other.y_mm - one.y_mm
     share = (one.signed_mm - other.signed_mm) / np.hypot(across, along)
     return np.arctan2(along, across) - np.arccos(share)
 
 
 def _touch(pulley: Pulley, normal_rad: Numbers) -> tuple[Numbers, Numbers]:
-    return (
-        pulley.x_mm + pulley.signed_mm * np.cos(normal_rad),
-        pulley.y_mm + pulley.signed_mm * np.sin(normal_rad),
-    )
+    return (pulley.x_mm + pulley.signed_mm * np.cos(normal_rad), pulley.y_mm + pulley.signed_mm * np.sin(normal_rad))
 
 
 def _corner(pulley: Pulley, before_rad: Numbers, after_rad: Numbers) -> list[Line | Arc]:
-    """The belt's arc on a pulley, between the normals of the tangents before and after it."""
+    """Return the belt's arc on a pulley, between the normals of the tangents before and after it."""
     if pulley.inside:
         start, turn = before_rad, _turn(after_rad - before_rad)
     else:
@@ -253,5 +248,5 @@ def _corner(pulley: Pulley, before_rad: Numbers, after_rad: Numbers) -> list[Lin
 
 
 def _turn(angle_rad: Numbers) -> Numbers:
-    """An angle from 0 to a full turn; one that rounding has left just below 0 is no full turn."""
+    """Return an angle from 0 to a full turn; one that rounding has left just below 0 is no full turn."""
     return np.mod(angle_rad + _ROUNDING, 2.0 * np.pi) - _ROUNDING

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.parts import Ball, Part, Prism, layer, machined_part, sheet_part
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, clearance
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Shape, rectangle
@@ -15,6 +15,7 @@ from pareto_monoped.leg.sandwich import (
     Pulley,
     belt,
     bolts_at,
+    core_part,
     holes_at,
     rounded,
     sleeve_bolt,
@@ -22,7 +23,7 @@ from pareto_monoped.leg.sandwich import (
     windows_between,
 )
 from pareto_monoped.leg.stop_parts import shank_stop_bolts, shank_stop_parts
-from pareto_monoped.materials import ALLOYS, MATERIALS
+from pareto_monoped.materials import MATERIALS
 
 # Our own layout of the fork, mm below the knee axis.
 FORK_WINDOW_TOP = 28.0  # below the round end of the plates
@@ -39,13 +40,13 @@ _TONGUE_WIDTH, _TONGUE_DEPTH, _TONGUE_HALF_THICKNESS = 16.0, 15.0, 5.0  # of the
 
 
 def bridges_of(length_mm: Numbers, d: LegDimensions) -> tuple[Numbers, Numbers]:
-    """Heights of the bridges at either end of the core, mm from the knee axis."""
+    """Return the heights of the bridges at either end of the core, mm from the knee axis."""
     core_end = d.foot_flat_mm - length_mm + _BLOCK_HEIGHT + _FOOT_GAP
     return -d.fork_mm - BRIDGE, core_end + BRIDGE
 
 
 def bottom_axis_mm(length_mm: Numbers, d: LegDimensions) -> Numbers:
-    """Height of the axis of the plates' lower round end, mm from the knee axis."""
+    """Return the height of the axis of the plates' lower round end, mm from the knee axis."""
     return _bottom_mm(d.foot_flat_mm - length_mm, d)
 
 
@@ -54,19 +55,17 @@ def _bottom_mm(flat_mm: Numbers, d: LegDimensions) -> Numbers:
 
 
 def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block, fasteners.
-
-    Args:
-        shank_length_m: knee axis to the centre of the foot, float or shape (n,).
-        d: dimensions.
-    """
+    """Build the shank from knee axis to foot centre, without the foot; the length is a float or of shape (n,)."""
     flat = d.foot_flat_mm - 1000.0 * shank_length_m
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
-    bridges = bridges_of(1000.0 * shank_length_m, d)
+    bridges, core = (
+        bridges_of(1000.0 * shank_length_m, d),
+        (d.shank_core_half_width_mm, d.shank_core_window_half_width_mm),
+    )
     foot_bolts = tuple((0.0, flat + up, 0.0) for up in (_BLOCK_BOLT, _BLOCK_HEIGHT - _BLOCK_BOLT))
     return (
         *_plates(flat, bridges, foot_bolts, d),
-        _core(bridges[1] - BRIDGE, bridges, d),
+        core_part("shank_core", -d.fork_mm, bridges[1] - BRIDGE, d.shank_gap_mm, core, bridges),
         sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges), plate_on_core_mm=d.shank_plate_mm),
         *axle_parts(d),
         _foot_block(flat, foot_bolts, d),
@@ -78,7 +77,7 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 def _plates(
     flat_mm: Numbers, bridges: tuple[Numbers, ...], foot_bolts: tuple[Place, ...], d: LegDimensions
 ) -> tuple[Part, ...]:
-    """Both plates, from the knee to the foot's flat: mirror images, as their screws are countersunk outside."""
+    """Build both plates, from the knee to the foot's flat: mirror images, as their screws are countersunk outside."""
     half_gap = 0.5 * d.shank_gap_mm
     fork_window = rounded(
         half_width_mm=d.shank_window_half_width_mm,
@@ -102,17 +101,14 @@ def _plates(
         ("far", half_gap, "high"),
     )
     return tuple(
-        Part(
+        sheet_part(
             name=f"shank_plate_{side}",
             role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="laser cut",
-            prisms=(Prism(outline=outline, z0_mm=low, z1_mm=low + d.shank_plate_mm, holes=holes),),
+            prisms=(layer(outline, low, low + d.shank_plate_mm, *holes),),
             features=tuple(
                 clearance(screw, shapes, low, low + d.shank_plate_mm, countersunk=outside)
                 for screw, shapes in ((M3, bolted), (M4, thick))
             ),
-            grade=ALLOYS["aw_6082_t6"],
             fits=(AXLE_DOWEL.hole_fit,),
             note=f"{d.shank_plate_mm:g} mm sheet",
         )
@@ -121,7 +117,7 @@ def _plates(
 
 
 def _outline(flat_mm: Numbers, d: LegDimensions) -> Path:
-    """Two round ends joined by straight edges, with an ear in front for the striker's upper bolt."""
+    """Return two round ends joined by straight edges, with an ear in front for the striker's upper bolt."""
     (x, y, _), _ = shank_stop_bolts(d)
     bottom = Pulley(x_mm=0.0, y_mm=_bottom_mm(flat_mm, d), radius_mm=d.shank_bottom_radius_mm)
     return belt(
@@ -134,56 +130,28 @@ def _outline(flat_mm: Numbers, d: LegDimensions) -> Path:
     )
 
 
-def _core(end_mm: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Part:
-    """The printed core between the plates, from the fork to the foot's block."""
-    return Part(
-        name="shank_core",
-        role=Role.CORE,
-        material=MATERIALS.printed_plastic,
-        process="3D printed",
-        prisms=(
-            Prism(
-                outline=rectangle(
-                    width_mm=2.0 * d.shank_core_half_width_mm,
-                    height_mm=-d.fork_mm - end_mm,
-                    y_mm=0.5 * (end_mm - d.fork_mm),
-                ),
-                z0_mm=-0.5 * d.shank_gap_mm,
-                z1_mm=0.5 * d.shank_gap_mm,
-                holes=(
-                    *windows_between(bridges, d.shank_core_window_half_width_mm),
-                    *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-                ),
-            ),
-        ),
-        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
-    )
-
-
 def _foot_block(flat_mm: Numbers, foot_bolts: tuple[Place, ...], d: LegDimensions) -> Part:
-    """The block between the plates, on whose tongue the foot is moulded."""
+    """Build the block between the plates, on whose tongue the foot is moulded."""
     middle = flat_mm + 0.5 * _BLOCK_HEIGHT
-    return Part(
+    return machined_part(
         name="foot_block",
         role=Role.BRACKET,
-        material=MATERIALS.aluminium,
-        process="machined",
         prisms=(
-            Prism(
-                outline=rectangle(width_mm=_BLOCK_WIDTH, height_mm=_BLOCK_HEIGHT, y_mm=middle),
-                z0_mm=-0.5 * d.shank_gap_mm,
-                z1_mm=0.5 * d.shank_gap_mm,
-                holes=(*holes_at(foot_bolts, sleeve_hole(M4)), Circle(radius_mm=_BLOCK_HOLE_RADIUS, y_mm=middle)),
+            layer(
+                rectangle(width_mm=_BLOCK_WIDTH, height_mm=_BLOCK_HEIGHT, y_mm=middle),
+                -0.5 * d.shank_gap_mm,
+                0.5 * d.shank_gap_mm,
+                *holes_at(foot_bolts, sleeve_hole(M4)),
+                Circle(radius_mm=_BLOCK_HOLE_RADIUS, y_mm=middle),
             ),
             _tongue(flat_mm),
         ),
-        grade=ALLOYS["aw_6082_t6"],
         note="holds the foot between the shank plates",
     )
 
 
 def foot_part(shank_length_m: Numbers, d: LegDimensions) -> Part:
-    """The rubber foot in the shank's frame, for lengths as in ``shank_parts``."""
+    """Build the rubber foot in the shank's frame, for lengths as in ``shank_parts``."""
     y_mm = -1000.0 * shank_length_m
     return Part(
         name="foot",
@@ -192,12 +160,7 @@ def foot_part(shank_length_m: Numbers, d: LegDimensions) -> Part:
         process="moulded",
         prisms=(),
         balls=(
-            Ball(
-                radius_mm=d.foot_radius_mm,
-                y_mm=y_mm,
-                top_mm=d.foot_flat_mm,
-                pocket=_tongue(y_mm + d.foot_flat_mm),
-            ),
+            Ball(radius_mm=d.foot_radius_mm, y_mm=y_mm, top_mm=d.foot_flat_mm, pocket=_tongue(y_mm + d.foot_flat_mm)),
         ),
         note="60 Shore A",
         joint=Joint(kind=JointKind.MOULDED, how="moulded onto the tongue of", partner="foot_block"),
@@ -205,9 +168,9 @@ def foot_part(shank_length_m: Numbers, d: LegDimensions) -> Part:
 
 
 def _tongue(flat_mm: Numbers) -> Prism:
-    """The tongue of the foot's block, which fills the pocket of the foot, below the foot's flat."""
-    return Prism(
-        outline=rectangle(width_mm=_TONGUE_WIDTH, height_mm=_TONGUE_DEPTH, y_mm=flat_mm - 0.5 * _TONGUE_DEPTH),
-        z0_mm=-_TONGUE_HALF_THICKNESS,
-        z1_mm=_TONGUE_HALF_THICKNESS,
+    """Build the tongue of the foot's block, which fills the pocket of the foot, below the foot's flat."""
+    return layer(
+        rectangle(width_mm=_TONGUE_WIDTH, height_mm=_TONGUE_DEPTH, y_mm=flat_mm - 0.5 * _TONGUE_DEPTH),
+        -_TONGUE_HALF_THICKNESS,
+        _TONGUE_HALF_THICKNESS,
     )

@@ -1,9 +1,9 @@
-"""The sprockets of hip and knee: their teeth (ISO 606) and lightening holes; bore and screw holes of the hip's.
+"""The sprockets of hip and knee (ISO 606), and shaft and needle bearing that support the far side of the knee's
+drive.
 
-The far side of the knee's drive: a hardened shaft through the sprocket, and its needle bearing in the hip coupling.
-
-The chain then pulls between two supports, the knee actuator's main bearing and this one, so that neither has to carry
-a tilting moment. The shaft's flange is clamped between sprocket and drive coupling by the screws of the drive.
+The chain pulls between two supports, the knee actuator's main bearing and this one in the hip coupling, so that neither
+has to carry a tilting moment. The shaft's flange is clamped between sprocket and drive coupling by the screws of the
+drive.
 """
 
 from functools import lru_cache
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.needles import roller_bearing
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Path, Pattern, Shape
@@ -29,7 +29,7 @@ HEAD_PLAY = 0.1  # around a sunk screw head
 
 @lru_cache(maxsize=8)
 def sprocket_outline(drive: ChainDrive) -> Path:
-    """A chain sprocket around the origin, with the middle of a tooth gap on the +x axis.
+    """Return a chain sprocket around the origin, with the middle of a tooth gap on the +x axis.
 
     Seats and tip after ISO 606: pitch diameter p / sin(180 deg / z), least seat radius 0.505 d1, tip diameter half way
     between its limits d + p (1 - 1.6 / z) - d1 and d + 1.25 p - d1. The seat spans 140 degrees, the greatest of ISO 606
@@ -67,42 +67,33 @@ def sprocket_outline(drive: ChainDrive) -> Path:
 
 
 def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
-    """The holes of its screws."""
+    """Return the holes of its screws."""
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.knee.output_pitch_radius_mm, count=d.knee.output_holes)
 
 
 def relief_holes(d: LegDimensions) -> Pattern:
-    """The holes that lighten a sprocket."""
+    """Return the holes that lighten a sprocket."""
     return Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=d.chain.teeth)
 
 
 def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
-    """The sprocket, with holes for its screws and dowels.
-
-    A wide one is counterbored at -z, so that screws of the same length suit any width.
-
-    Args:
-        d: dimensions.
-        head_mm: radius of that counterbore.
-    """
+    """Build the sprocket; a wide one is counterbored at -z, so that screws of the same length suit any width."""
     half, recess = 0.5 * d.chain.sprocket_width_mm, d.sprocket_recess_mm
 
-    def layer(z0_mm: float, z1_mm: float, screw_radius_mm: float) -> Prism:
-        return Prism(
-            outline=sprocket_outline(d.chain),
-            z0_mm=z0_mm,
-            z1_mm=z1_mm,
-            holes=(
-                Circle(radius_mm=BORE_RADIUS),
-                sprocket_screws(d, screw_radius_mm),
-                d.drive_dowel,
-                relief_holes(d),
-            ),
+    def toothed(z0_mm: float, z1_mm: float, screw_radius_mm: float) -> Prism:
+        return layer(
+            sprocket_outline(d.chain),
+            z0_mm,
+            z1_mm,
+            Circle(radius_mm=BORE_RADIUS),
+            sprocket_screws(d, screw_radius_mm),
+            d.drive_dowel,
+            relief_holes(d),
         )
 
     seat = recess - half
-    whole = layer(seat, half, M3.hole)
-    return (whole,) if recess == 0.0 else (layer(-half, seat, head_mm), whole)
+    whole = toothed(seat, half, M3.hole)
+    return (whole,) if recess == 0.0 else (toothed(-half, seat, head_mm), whole)
 
 
 BEARING = roller_bearing("HK1210")
@@ -119,18 +110,12 @@ _OVERRUN = 0.5  # of the shaft beyond the bearing
 
 
 def middle_mm() -> float:
-    """Height of the bearing's middle; the chain runs at 0."""
+    """Return the height of the bearing's middle; the chain runs at 0."""
     return 0.5 * (FRONT + BACK)
 
 
 def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape, ...]) -> tuple[Part, ...]:
-    """Shaft and bearing.
-
-    Args:
-        d: dimensions.
-        flange_radius_mm: of the shaft's flange, that of the drive coupling.
-        holes: of the drive's screws, and what lightens the coupling between them.
-    """
+    """Build shaft and bearing; ``holes`` are those of the drive's screws, and what lightens the coupling."""
     half = 0.5 * d.chain.sprocket_width_mm
     bore = Circle(radius_mm=SUPPORT_BORE_RADIUS)
     layers = (
@@ -144,9 +129,7 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
             role=Role.SHAFT,
             material=MATERIALS.steel,
             process="machined",
-            prisms=tuple(
-                Prism(outline=Circle(radius_mm=radius), z0_mm=z0, z1_mm=z1, holes=cut) for radius, z0, z1, cut in layers
-            ),
+            prisms=tuple(disc(radius, z0, z1, *cut) for radius, z0, z1, cut in layers),
             group=Group.KNEE_DRIVE,
             grade=ALLOYS["case_18crnimo7_6"],
             fits=(
@@ -156,19 +139,10 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
             # Makers of needle bearings ask 0.3 mm of raceways at least.
             note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground",
         ),
-        Part(
+        steel_part(
             name="drive_bearing",
             role=Role.BEARING,
-            material=MATERIALS.steel,
-            process="bought",
-            prisms=(
-                Prism(
-                    outline=Circle(radius_mm=SEAT_RADIUS),
-                    z0_mm=BACK,
-                    z1_mm=FRONT,
-                    holes=(Circle(radius_mm=SHAFT_RADIUS),),
-                ),
-            ),
+            prisms=(disc(SEAT_RADIUS, BACK, FRONT, Circle(radius_mm=SHAFT_RADIUS)),),
             catalogue_mass_kg=BEARING.mass_kg,
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="hip_coupling"),
             note=f"{BEARING.designation}, {BEARING.inner_diameter_mm:g} x {BEARING.outer_diameter_mm:g} x "

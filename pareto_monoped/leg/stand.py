@@ -10,7 +10,7 @@ cheeks, and each arm passes it to its carriages as a couple of sideways forces.
 
 from dataclasses import dataclass
 
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, layer, sheet_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M4, screw_length_mm
 from pareto_monoped.geometry.shapes import Shape
@@ -18,7 +18,6 @@ from pareto_monoped.leg.base import ROD_THREAD
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.electronics import DRIVER_PLATE_MM
 from pareto_monoped.leg.sandwich import holes_at, rounded_hull
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 ARM_MM = 5.0
 """Thickness of an arm; our own choice: M3 x 8 reach 3 mm into a carriage."""
@@ -29,23 +28,14 @@ class Carriage:
     """A carriage of a miniature linear guide."""
 
     name: str  #: of carriage and rail
-    #: length_mm, width_mm: of the carriage
     length_mm: float
     width_mm: float
-    #: hole_length_mm, hole_width_mm: of its four threads along and across the rail
-    hole_length_mm: float
-    hole_width_mm: float
+    hole_length_mm: float  #: between its four threads, along the rail
+    hole_width_mm: float  #: across the rail
     thread_mm: float  #: depth of these M3 threads
 
 
-MGN12H = Carriage(
-    name="MGN12H",
-    length_mm=45.4,
-    width_mm=27.0,
-    hole_length_mm=20.0,
-    hole_width_mm=20.0,
-    thread_mm=3.5,
-)
+MGN12H = Carriage(name="MGN12H", length_mm=45.4, width_mm=27.0, hole_length_mm=20.0, hole_width_mm=20.0, thread_mm=3.5)
 """HIWIN, miniature guideways, series MGN: long carriage of size 12."""
 
 # Our own layout, mm.
@@ -57,22 +47,19 @@ _CORNER = 5.0
 
 
 def carriage_places(d: LegDimensions) -> tuple[tuple[float, float, float], ...]:
-    """The middles of an arm's two carriages, in the frame of the base."""
+    """Return the middles of an arm's two carriages, in the frame of the base."""
     x, y = d.lower_rod_mm
     return tuple((-x - _RAIL_TO_ROD, y + 0.5 * side * _CARRIAGES_APART + 15.0, 0.0) for side in (-1.0, 1.0))
 
 
 def rod_places(d: LegDimensions) -> tuple[tuple[float, float, float], ...]:
-    """The rods whose screws hold an arm: the rear lower one and both upper ones.
-
-    The driver's plate then lies on the arm with both of its screws.
-    """
+    """Return the rods whose screws hold an arm: the rear lower one and both upper ones, as of the driver's plate."""
     (x, y), (upper_x, upper_y) = d.lower_rod_mm, d.upper_rod_mm
     return (-x, y, 0.0), (-upper_x, upper_y, 0.0), (upper_x, upper_y, 0.0)
 
 
 def arm(d: LegDimensions) -> Part:
-    """An arm, in the frame of the base with its back at z = 0; both sides have the same one."""
+    """Build an arm, in the frame of the base with its back at z = 0; both sides have the same one."""
     bolts = tuple(
         (x + 0.5 * across * MGN12H.hole_width_mm, y + 0.5 * along * MGN12H.hole_length_mm, 0.0)
         for x, y, _ in carriage_places(d)
@@ -81,27 +68,21 @@ def arm(d: LegDimensions) -> Part:
     )
     rods = rod_places(d)
     points = [(x, y) for x, y, _ in (*bolts, *rods)]
-    return Part(
+    return sheet_part(
         name="test_stand_arm",
         role=Role.BRACKET,
-        material=MATERIALS.aluminium,
-        process="laser cut",
         prisms=(
-            Prism(
-                outline=rounded_hull(points, _RIM),
-                z0_mm=0.0,
-                z1_mm=ARM_MM,
-                holes=(_window(d), *holes_at(rods, M4.hole), *holes_at(bolts, M3.hole)),
+            layer(
+                rounded_hull(points, _RIM), 0.0, ARM_MM, _window(d), *holes_at(rods, M4.hole), *holes_at(bolts, M3.hole)
             ),
         ),
         count=2,
-        grade=ALLOYS["aw_6082_t6"],
         note=f"{ARM_MM:g} mm sheet",
     )
 
 
 def _window(d: LegDimensions) -> Shape:
-    """What lightens an arm, between the carriages and the rods."""
+    """Return what lightens an arm, between the carriages and the rods."""
     (x, low, _), (_, high, _) = carriage_places(d)
     left = x + 0.5 * MGN12H.hole_width_mm + _WINDOW_RIM + _CORNER
     right = -d.lower_rod_mm[0] - _WINDOW_RIM - _CORNER
@@ -111,7 +92,7 @@ def _window(d: LegDimensions) -> Shape:
 
 
 def rod_screws(d: LegDimensions) -> tuple[tuple[str, int, str], ...]:
-    """The screws that hold both arms in place of the rods' own: where, how many, which."""
+    """Return the screws that hold both arms in place of the rods' own: where, how many, which."""
     rows = []
     for side, cheek_mm in (("near", d.cheek_mm), ("far", d.far_cheek_mm)):
         for row, count, plate_mm in (("rear lower rod", 1, 0.0), ("upper rods", 2, DRIVER_PLATE_MM)):
@@ -121,6 +102,6 @@ def rod_screws(d: LegDimensions) -> tuple[tuple[str, int, str], ...]:
 
 
 def carriage_screw() -> str:
-    """The screw of an arm's carriages."""
+    """Return the screw of an arm's carriages."""
     length = float(screw_length_mm(ARM_MM, MGN12H.thread_mm))
     return f"{M3.name} x {length:g} cap screw (ISO 4762) 8.8"

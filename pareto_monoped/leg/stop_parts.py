@@ -1,13 +1,11 @@
-"""The parts of the end stops: bumpers, their seats, and strikers.
+"""The parts of the end stops: bumpers, their seats, and strikers; ``strength.stops`` computes what they carry.
 
 A bumper lies between the end lips of its seat and is bonded to its floor. Seats and strikers of the thigh straddle its
 plates: their wings stand on the plates' edges, which carry the force, and their feet reach in between, where a bolt
 holds them.
-
-What they carry is computed in ``strength.stop_seats``.
 """
 
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, disc, layer, machined_part
 from pareto_monoped.geometry.roles import Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3, M4, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, polygon
@@ -24,7 +22,6 @@ from pareto_monoped.leg.stops import (
     knee_stop,
     knee_strikers,
 )
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout of all faces, mm: along the face, behind it, or along the joint's axis.
 LIP, LIP_THICKNESS = 3.0, 1.5  # of a seat at either end of its bumper, above its floor
@@ -51,14 +48,13 @@ def _half_length_mm(stop: JointStop) -> float:
 
 
 def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
-    """The bumper on a seat."""
     half, bumper = _half_length_mm(stop), stop.bumper
     return Part(
         name=name,
         role=Role.BUMPER,
         material=bumper.elastomer,
         process="bought",
-        prisms=(Prism(outline=Circle(radius_mm=0.5 * bumper.diameter_mm), z0_mm=-half, z1_mm=half),),
+        prisms=(disc(0.5 * bumper.diameter_mm, -half, half),),
         places_mm=(bumper_place(seat, stop),),
         note=f"FKM {bumper.elastomer.hardness_shore_a:g} Shore A, round bar {bumper.diameter_mm:g} mm, "
         f"cut to {bumper.length_mm:g} mm",
@@ -67,58 +63,50 @@ def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
 
 
 def _both_sides(outline: Path, one_mm: float, other_mm: float) -> tuple[Prism, Prism]:
-    """A layer of a part and its image below the middle plane."""
+    """Build a layer of a part and its image below the middle plane."""
     return (
-        Prism(outline=outline, z0_mm=-other_mm, z1_mm=-one_mm),
-        Prism(outline=outline, z0_mm=one_mm, z1_mm=other_mm),
+        layer(outline, -other_mm, -one_mm),
+        layer(outline, one_mm, other_mm),
     )
 
 
 def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: JointStop) -> Part:
-    """A seat or striker on the edges of the thigh's plates; a seat has lips."""
+    """Build a seat or striker on the edges of the thigh's plates; a seat has lips."""
     face, half_gap, half = placed.centred, 0.5 * d.gap_mm, _half_length_mm(stop)
     end = stop.half_face_mm
     foot = face.polygon(
-        (-end, 0.0),
-        (end, 0.0),
-        (end, WING),
-        (HALF_FOOT, FOOT_DEPTH),
-        (-HALF_FOOT, FOOT_DEPTH),
-        (-end, WING),
+        (-end, 0.0), (end, 0.0), (end, WING), (HALF_FOOT, FOOT_DEPTH), (-HALF_FOOT, FOOT_DEPTH), (-end, WING)
     )
     x, y = face.point(0.0, BOLT_DEPTH)
     hole = Circle(radius_mm=sleeve_hole(M3), x_mm=x, y_mm=y)
     wings = _both_sides(_strip(face, end, 0.0, WING), half_gap, half)
     ends = _both_sides(_strip(face, end, -LIP, WING), half, half + LIP_THICKNESS) if role is not Role.STRIKER else ()
-    return Part(
+    return machined_part(
         name=name,
         role=role,
-        material=MATERIALS.aluminium,
-        process="machined",
-        prisms=(Prism(outline=foot, z0_mm=-half_gap, z1_mm=half_gap, holes=(hole,)), *wings, *ends),
+        prisms=(layer(foot, -half_gap, half_gap, hole), *wings, *ends),
         places_mm=((placed.x_mm, placed.y_mm, 0.0),),
-        grade=ALLOYS["aw_6082_t6"],
         note="stands on the edges of the thigh's plates",
     )
 
 
 def _strip(face: Face, end_mm: float, front_mm: float, back_mm: float) -> Path:
-    """A strip along a face, from ``front_mm`` to ``back_mm`` behind it."""
+    """Return a strip along a face, from ``front_mm`` to ``back_mm`` behind it."""
     return face.polygon((-end_mm, front_mm), (end_mm, front_mm), (end_mm, back_mm), (-end_mm, back_mm))
 
 
 def thigh_stop_faces(length_mm: Numbers, d: LegDimensions) -> tuple[Face, ...]:
-    """All faces of stops on the thigh's edges: hip in front, hip behind, knee's extension, knee's flexion."""
+    """Return all faces of stops on the thigh's edges: hip in front, hip behind, knee's extension, knee's flexion."""
     return (*hip_strikers(d), *(seat.at(-length_mm) for seat in knee_seats(d)))
 
 
 def thigh_stop_bolts(length_mm: Numbers, d: LegDimensions) -> tuple[Place, ...]:
-    """Where bolts hold the seats and strikers of the thigh."""
+    """Return where bolts hold the seats and strikers of the thigh."""
     return tuple((*face.point(0.0, BOLT_DEPTH), 0.0) for face in thigh_stop_faces(length_mm, d))
 
 
 def thigh_stop_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The hip's strikers and the knee's bumpers with their seats; their bolts are the thigh's."""
+    """Build the hip's strikers and the knee's bumpers with their seats; their bolts are the thigh's."""
     front, rear, extension, flexion = thigh_stop_faces(length_mm, d)
     hip, knee = hip_stop(d), knee_stop(d)
     return (
@@ -136,11 +124,7 @@ def thigh_stop_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 
 def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """The knee's striker between the plates of the shank's fork, with its bolts.
-
-    It has a head behind the face for either end of the range, each on a bolt, and a web that joins them, so that
-    neither turns on its bolt.
-    """
+    """Build the knee's striker in the shank's fork: a bolted head for either end of the range, and a web between."""
     half_gap = 0.5 * d.shank_gap_mm
     extension, flexion = knee_strikers(d)
     end = knee_stop(d).half_face_mm
@@ -149,22 +133,18 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
     def head(face: Face, hole: Circle) -> tuple[Prism, ...]:
         outline = face.polygon((-end, 0.0), (end, 0.0), (end, TOE), (HALF_HEAD, HEAD), (-HALF_HEAD, HEAD), (-end, TOE))
         return tuple(
-            Prism(outline=outline, z0_mm=low, z1_mm=high, holes=(hole,))
-            for low, high in ((-half_gap, -_HALF_SPINE), (_HALF_SPINE, half_gap))
+            layer(outline, low, high, hole) for low, high in ((-half_gap, -_HALF_SPINE), (_HALF_SPINE, half_gap))
         )
 
     return (
-        Part(
+        machined_part(
             name="knee_striker",
             role=Role.STRIKER,
-            material=MATERIALS.aluminium,
-            process="machined",
             prisms=(
                 *head(extension, holes[0]),
-                Prism(outline=_striker_outline(d), z0_mm=-_HALF_SPINE, z1_mm=_HALF_SPINE, holes=holes),
+                layer(_striker_outline(d), -_HALF_SPINE, _HALF_SPINE, *holes),
                 *head(flexion, holes[1]),
             ),
-            grade=ALLOYS["aw_6082_t6"],
             note="meets the bumpers of extension and flexion",
         ),
         sleeve_bolt("knee_striker_bolt", M4, half_gap + d.shank_plate_mm, shank_stop_bolts(d)),
@@ -172,13 +152,13 @@ def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def shank_stop_bolts(d: LegDimensions) -> tuple[Place, ...]:
-    """Where bolts hold the shank's striker."""
+    """Return where bolts hold the shank's striker."""
     extension, flexion = knee_strikers(d)
     return (*extension.point(*_HEAD_BOLT), 0.0), (*flexion.point(*_HEAD_BOLT), 0.0)
 
 
 def _striker_outline(d: LegDimensions) -> Path:
-    """Both heads of the knee's striker and the web between them."""
+    """Return both heads of the knee's striker and the web between them."""
     extension, flexion = knee_strikers(d)
     end = knee_stop(d).half_face_mm
     points = (
@@ -198,7 +178,7 @@ def _striker_outline(d: LegDimensions) -> Path:
 
 
 def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """The hip's bumpers with their seats, which hang on the rods, and the screws that hold these on the near cheek."""
+    """Build the hip's bumpers with their seats, which hang on the rods, and the screws into the near cheek."""
     stop = hip_stop(d)
     front, rear = hip_seats(d)
     screw = screw_part(
@@ -209,7 +189,6 @@ def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
         grip_mm=d.cheek_mm,
         room_mm=_SCREW_THREAD,
         direction=1.0,
-        material=MATERIALS.steel,
         places_mm=hip_seat_screws(d),
         note="flush, from the hip actuator's side",
     )
@@ -227,14 +206,14 @@ def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def hip_seat_screws(d: LegDimensions) -> tuple[Place, ...]:
-    """Where screws hold the hip's seats on the near cheek: between each lower rod and the upper one."""
+    """Return where screws hold the hip's seats on the near cheek: between each lower rod and the upper one."""
     (x0, y0), (x1, y1) = d.lower_rod_mm, d.upper_rod_mm
     x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
     return ((x, y, 0.0), (-x, y, 0.0))
 
 
 def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: JointStop) -> Part:
-    """A floor under the bumper, a web from there to the rods, and bosses from the web to the near cheek."""
+    """Build a floor under the bumper, a web from there to the rods, and bosses from the web to the near cheek."""
     half = _half_length_mm(stop)
     side = -1.0 if mirror else 1.0
     rods = tuple((side * x, y) for x, y in (d.lower_rod_mm, d.upper_rod_mm))
@@ -243,38 +222,30 @@ def _base_seat(name: str, seat: Face, mirror: bool, d: LegDimensions, stop: Join
     thread = Circle(radius_mm=M4.core, x_mm=screw_x, y_mm=screw_y)
     boss = d.rod_radius_mm + _BOSS_WALL
     cheek = d.hip_mount_mm + d.cheek_mm
-    return Part(
+    return machined_part(
         name=name,
         role=Role.BRACKET,
-        material=MATERIALS.aluminium,
-        process="machined",
         prisms=(
-            Prism(
-                outline=_web(seat, stop.half_face_mm, mirror, rods, boss),
-                z0_mm=-_HALF_WEB,
-                z1_mm=_HALF_WEB,
-                holes=(*bores, thread),
-            ),
+            layer(_web(seat, stop.half_face_mm, mirror, rods, boss), -_HALF_WEB, _HALF_WEB, *bores, thread),
             *_both_sides(_strip(seat, stop.half_face_mm, 0.0, _FLOOR), _HALF_WEB, half),
             *_both_sides(_strip(seat, stop.half_face_mm, -LIP, _FLOOR), half, half + LIP_THICKNESS),
             *(
-                Prism(
-                    outline=Circle(radius_mm=hole.radius_mm + _BOSS_WALL, x_mm=hole.x_mm, y_mm=hole.y_mm),
-                    z0_mm=cheek,
-                    z1_mm=-_HALF_WEB,
-                    holes=(hole,),
+                layer(
+                    Circle(radius_mm=hole.radius_mm + _BOSS_WALL, x_mm=hole.x_mm, y_mm=hole.y_mm),
+                    cheek,
+                    -_HALF_WEB,
+                    hole,
                 )
                 for hole in (bores[1], thread)  # beside the lower rod the thigh passes
             ),
         ),
-        grade=ALLOYS["aw_6082_t6"],
         features=(tapped(M4, (thread,), cheek, _HALF_WEB, enters="low", usable_mm=_SCREW_THREAD),),
         note="slides onto two rods and stands on the near cheek",
     )
 
 
 def _web(seat: Face, end_mm: float, mirror: bool, rods: tuple[tuple[float, float], ...], boss_mm: float) -> Path:
-    """Around the seat's floor and both rods; of the seat in front, or of the one behind, which is its mirror image."""
+    """Return the outline around the seat's floor and both rods, of the front seat or of its mirror image behind."""
     inner = 1.0 if mirror else -1.0  # along the face towards the rods
 
     def corner(along_mm: float, deep_mm: float, radius_mm: float, *, inside: bool = True) -> Pulley:

@@ -1,14 +1,12 @@
-"""The end stops of hip and knee: at which angles they meet, and how hard they push back.
+"""The end stops of hip and knee: at which angles they meet, how hard they push back, and where their faces lie.
 
 A stop is a bumper on one link and a flat striker on the other. The bumper is a round bar of elastomer that lies on a
 flat seat, parallel to the joint's axis, and is squeezed sideways. Everything that needs a stop reads it here: the parts
 of the links, the sweep of every export, the joint limits of both robot models, and the simulation.
 
-The flat faces of the end stops: where each seat and each striker lies on its link.
-
 At the end of a joint's range the seat's face and the striker's are parallel, a bumper's diameter apart, and the line on
-which the bumper is squeezed passes the joint's axis at the lever of ``stops.JointStop``. One face of each pair is laid
-out here; the other follows from it by the angle at which they meet.
+which the bumper is squeezed passes the joint's axis at the lever of ``JointStop``. One face of each pair is laid out
+here; the other follows from it by the angle at which they meet.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +20,6 @@ from pareto_monoped.materials import MATERIALS, Elastomer
 # Our own layout of the hip's stops.
 _HIP_END = np.radians(100.0)  # to both sides of hanging straight down
 _HIP_LEVER_TO_ROD = 25.0  # mm: the thigh's striker passes 2 mm from the seat's boss around the rod
-
 MOST_COMPRESSION = 0.5
 """Of a bumper's diameter. Lindley's law was measured up to about this; the metal is clear of itself up to here.
 
@@ -34,13 +31,12 @@ A limit of the design, which ``stop_safety`` holds (``strength.stops``).
 class Bumper:
     """A solid round bar of elastomer between two flat faces."""
 
-    #: diameter_mm, length_mm: of the bar
     diameter_mm: float
     length_mm: float
     elastomer: Elastomer  #: its material
 
     def force_n(self, compression_mm: Numbers) -> Numbers:
-        """Force of a slow compression.
+        """Return the force of a slow compression.
 
         With c the compression over the diameter d, a bar of length l takes E d l (1.25 c^1.5 + 50 c^6): P. B. Lindley,
         "Compression characteristics of laterally-unrestrained rubber O-rings", J. Inst. Rubber Ind. 1 (1967), for a
@@ -55,8 +51,7 @@ class Bumper:
 class JointStop:
     """The end stops of one joint, equal at both ends of its range."""
 
-    #: lower_rad, upper_rad: angles at which a striker meets a bumper: the joint's range
-    lower_rad: float
+    lower_rad: float  #: the joint's range: angle at which a striker meets a bumper
     upper_rad: float
     lever_mm: float  #: distance of the joint's axis from the line along which a striker squeezes a bumper
     half_face_mm: float  #: half length of the faces of seats and strikers along the bumper's squeezed width
@@ -68,7 +63,7 @@ class JointStop:
         return MOST_COMPRESSION * self.bumper.diameter_mm / self.lever_mm
 
     def torque_n_m(self, beyond_rad: Numbers) -> Numbers:
-        """Torque with which a stop pushes back slowly at an angle beyond its end of the range."""
+        """Return the torque with which a stop pushes back slowly at an angle beyond its end of the range."""
         return 1e-3 * self.lever_mm * self.bumper.force_n(self.lever_mm * beyond_rad)
 
 
@@ -84,10 +79,7 @@ _HIP_HALF_FACE = 9.0
 
 
 def hip_stop(d: LegDimensions) -> JointStop:
-    """The stops of the hip: 100 degrees to both sides of hanging straight down.
-
-    The bumpers hang on the base's rods, so that the lever grows with the motor.
-    """
+    """Return the stops of the hip: 100 degrees to both sides; their lever grows with the motor, as the rods do."""
     x, y = d.lower_rod_mm
     rod_along_thigh_mm = float(x * np.sin(_HIP_END) - y * np.cos(_HIP_END))  # with the thigh at the end of its range
     return JointStop(
@@ -100,7 +92,7 @@ def hip_stop(d: LegDimensions) -> JointStop:
 
 
 def knee_stop(d: LegDimensions) -> JointStop:
-    """The stops of the knee: 15 degrees before the straight leg, and at 133 degrees of flexion."""
+    """Return the stops of the knee: 15 degrees before the straight leg, and at 133 degrees of flexion."""
     return JointStop(
         lower_rad=np.radians(15.0),
         upper_rad=np.radians(133.0),
@@ -122,27 +114,26 @@ _EXTENSION_STRIKER = np.radians(57.0)
 class Face:
     """A flat face parallel to the joints' axes, seen along them."""
 
-    #: x_mm, y_mm: the point of the face that meets the middle of a bumper
-    x_mm: Numbers
+    x_mm: Numbers  #: the point of the face that meets the middle of a bumper
     y_mm: Numbers
     normal_rad: float  #: angle of the direction in which the face looks
 
     def point(self, along_mm: float, deep_mm: float) -> tuple[Numbers, Numbers]:
-        """A point so far along the face, to the left of its normal, and so deep behind it."""
+        """Return a point so far along the face, to the left of its normal, and so deep behind it."""
         cos, sin = float(np.cos(self.normal_rad)), float(np.sin(self.normal_rad))
         return self.x_mm - along_mm * sin - deep_mm * cos, self.y_mm + along_mm * cos - deep_mm * sin
 
     def polygon(self, *points: tuple[float, float]) -> Path:
-        """The polygon through points given as (along, deep), anticlockwise."""
+        """Return the polygon through points given as (along, deep), anticlockwise."""
         return polygon([self.point(*point) for point in points])
 
     def opposite(self, gap_mm: float) -> "Face":
-        """The parallel face that looks at this one over a gap."""
+        """Return the parallel face that looks at this one over a gap."""
         x, y = self.point(0.0, -gap_mm)
         return Face(x_mm=x, y_mm=y, normal_rad=self.normal_rad + np.pi)
 
     def turned(self, angle_rad: float) -> "Face":
-        """The face turned anticlockwise about the origin."""
+        """Return the face turned anticlockwise about the origin."""
         cos, sin = np.cos(angle_rad), np.sin(angle_rad)
         return Face(
             x_mm=float(cos * self.x_mm - sin * self.y_mm),
@@ -151,7 +142,7 @@ class Face:
         )
 
     def at(self, y_mm: Numbers) -> "Face":
-        """The face moved so that the origin comes to (0, y_mm)."""
+        """Return the face moved so that the origin comes to (0, y_mm)."""
         return replace(self, y_mm=self.y_mm + y_mm)
 
     @property
@@ -161,31 +152,25 @@ class Face:
 
 
 def bumper_place(seat: Face, stop: JointStop) -> tuple[Numbers, Numbers, float]:
-    """Where the axis of the bumper on a seat lies."""
+    """Return where the axis of the bumper on a seat lies."""
     return (*seat.point(0.0, -0.5 * stop.bumper.diameter_mm), 0.0)
 
 
 def hip_strikers(d: LegDimensions) -> tuple[Face, Face]:
-    """The thigh's faces for the lower and the upper end of the hip's range, in the thigh's frame."""
+    """Return the thigh's faces for the lower and the upper end of the hip's range, in the thigh's frame."""
     lever = hip_stop(d).lever_mm
-    return (
-        Face(x_mm=FACE_OUT, y_mm=-lever, normal_rad=0.0),
-        Face(x_mm=-FACE_OUT, y_mm=-lever, normal_rad=np.pi),
-    )
+    return (Face(x_mm=FACE_OUT, y_mm=-lever, normal_rad=0.0), Face(x_mm=-FACE_OUT, y_mm=-lever, normal_rad=np.pi))
 
 
 def hip_seats(d: LegDimensions) -> tuple[Face, Face]:
-    """The base's faces for the lower and the upper end of the hip's range, in the base's frame.
-
-    The hip turns the thigh clockwise, seen along -z.
-    """
+    """Return the base's faces for both ends of the hip's range; it turns the thigh clockwise, seen along -z."""
     stop = hip_stop(d)
     lower, upper = (striker.opposite(stop.bumper.diameter_mm) for striker in hip_strikers(d))
     return lower.turned(-stop.lower_rad), upper.turned(-stop.upper_rad)
 
 
 def knee_seats(d: LegDimensions) -> tuple[Face, Face]:
-    """The thigh's faces for the lower and the upper end of the knee's range, about the knee axis.
+    """Return the thigh's faces for the lower and the upper end of the knee's range, about the knee axis.
 
     The upper end is flexion: its seat lies on the thigh's rear edge above the knee. That of the lower end, extension,
     lies on a heel of the thigh below the knee.
@@ -211,7 +196,7 @@ def knee_seats(d: LegDimensions) -> tuple[Face, Face]:
 
 
 def knee_strikers(d: LegDimensions) -> tuple[Face, Face]:
-    """The shank's faces for the lower and the upper end of the knee's range, in the shank's frame."""
+    """Return the shank's faces for the lower and the upper end of the knee's range, in the shank's frame."""
     stop = knee_stop(d)
     lower, upper = (seat.opposite(stop.bumper.diameter_mm) for seat in knee_seats(d))
     return lower.turned(stop.lower_rad), upper.turned(stop.upper_rad)

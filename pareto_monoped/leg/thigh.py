@@ -7,10 +7,10 @@ import numpy as np
 from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M25, clearance, screw_part, tapped
-from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.hip import hip_joints
@@ -20,6 +20,7 @@ from pareto_monoped.leg.sandwich import (
     BRIDGE,
     Place,
     bolts_at,
+    core_part,
     holes_at,
     sleeve_bolt,
     sleeve_hole,
@@ -29,7 +30,6 @@ from pareto_monoped.leg.sandwich import (
 from pareto_monoped.leg.sprocket import BOSS_RADIUS
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
 from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm, thigh_outline
-from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.
 _KNEE_END = 34.0  # from the knee axis to the core above it, clear of the sprocket's teeth
@@ -50,31 +50,30 @@ _OUTER_RELIEF_TO_SCREWS = 5.0  # from the circle of the screws: 3.4 mm of metal 
 
 
 def bridges_of(length_mm: Numbers, d: LegDimensions) -> tuple[Numbers, Numbers, Numbers]:
-    """Heights of the three bridges that bolt the sandwich together, mm from the hip axis."""
+    """Return the heights of the three bridges that bolt the sandwich together, mm from the hip axis."""
     first, last = -d.first_bridge_mm, _KNEE_END + BRIDGE - length_mm
     return first, 0.5 * (first + last), last
 
 
 def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """The thigh from hip axis to knee axis: plates, core, chain drive, hip coupling, knee bearings, fasteners.
+    """Build the thigh from hip axis to knee axis: plates, core, chain drive, hip coupling, knee bearings, fasteners.
 
     The knee actuator is not part of it: it is placed at ``z = d.knee_mount_mm`` with its output towards -z. The parts
     of ``Group.KNEE_DRIVE`` turn with the knee actuator's output and, by the chain, with the shank.
 
-    Args:
-        thigh_length_m: hip axis to knee axis, float or shape (n,).
-        d: dimensions.
+    ``thigh_length_m``: hip axis to knee axis, float or shape (n,).
     """
     length = 1000.0 * thigh_length_m
-    bridges = bridges_of(length, d)
+    bridges, core = bridges_of(length, d), (d.thigh_core_half_width_mm, d.thigh_core_window_half_width_mm)
+    small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
     standoffs = tuple(
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
-        for angle in _standoff_angles(d)
+        for angle in (_SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES)
     )
     bolts = (*bolts_at(bridges), *thigh_stop_bolts(length, d))
     return (
         *_plates(length, bridges, bolts, standoffs, d),
-        _core(length, bridges, d),
+        core_part("thigh_core", BRIDGE - d.first_bridge_mm, _KNEE_END - length, d.gap_mm, core, bridges),
         *_standoffs(standoffs, d),
         sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts, plate_on_core_mm=d.plate_mm),
         *hip_joints(d),
@@ -84,11 +83,6 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     )
 
 
-def _standoff_angles(d: LegDimensions) -> tuple[float, ...]:
-    small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
-    return _SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES
-
-
 def _plates(
     length: Numbers,
     bridges: tuple[Numbers, ...],
@@ -96,7 +90,7 @@ def _plates(
     standoffs: tuple[Place, ...],
     d: LegDimensions,
 ) -> tuple[Part, ...]:
-    """The inner plate, which the hip's output turns, and the outer one, which carries the knee actuator."""
+    """Build the inner plate, which the hip's output turns, and the outer one, which carries the knee actuator."""
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     bolted, cups = holes_at(bolts, sleeve_hole(M3)), cup_holes(-length, M25.hole, d)
     spigots, screwed = holes_at(standoffs, _SPIGOT_RADIUS), holes_at(standoffs, M3.hole)
@@ -108,7 +102,7 @@ def _plates(
     )
 
     def flush(low_mm: float, outside: Literal["low", "high"]) -> tuple[Hole, ...]:
-        """The holes of the screws whose heads are flush outside."""
+        """Return the holes of the screws whose heads are flush outside."""
         return tuple(
             clearance(screw, shapes, low_mm, low_mm + d.plate_mm, countersunk=outside)
             for screw, shapes in ((M3, bolted), (M25, (cups,)))
@@ -116,38 +110,36 @@ def _plates(
 
     note = f"{d.plate_mm:g} mm sheet"
     return (
-        Part(
+        sheet_part(
             name="thigh_plate_inner",
             role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="laser cut",
             prisms=(
-                Prism(
-                    outline=thigh_outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM, length, d),
-                    z0_mm=-face,
-                    z1_mm=-half_gap,
-                    holes=(*common, *spigots, *inner_hip_holes(d)),
+                layer(
+                    thigh_outline(_STANDOFF_PITCH_RADIUS + _STANDOFF_RIM, length, d),
+                    -face,
+                    -half_gap,
+                    *common,
+                    *spigots,
+                    *inner_hip_holes(d),
                 ),
             ),
-            grade=ALLOYS["aw_6082_t6"],
             features=flush(-face, "low"),
             fits=(Dowel(diameter_mm=d.hip.output_dowel_mm).hole_fit,),
             note=note,
         ),
-        Part(
+        sheet_part(
             name="thigh_plate_outer",
             role=Role.PLATE,
-            material=MATERIALS.aluminium,
-            process="laser cut",
             prisms=(
-                Prism(
-                    outline=thigh_outline(outer_hip_radius_mm(d), length, d),
-                    z0_mm=half_gap,
-                    z1_mm=face,
-                    holes=(*common, *screwed, *outer_hip_holes(d)),
+                layer(
+                    thigh_outline(outer_hip_radius_mm(d), length, d),
+                    half_gap,
+                    face,
+                    *common,
+                    *screwed,
+                    *outer_hip_holes(d),
                 ),
             ),
-            grade=ALLOYS["aw_6082_t6"],
             features=(*flush(half_gap, "high"), clearance(M3, screwed, half_gap, face, countersunk="high")),
             fits=(Dowel(diameter_mm=d.knee.mount_dowel_mm).hole_fit,),
             note=note + "; carries the knee actuator",
@@ -156,7 +148,7 @@ def _plates(
 
 
 def inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
-    """The inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
+    """Return the inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
     return (
         Circle(radius_mm=BOSS_RADIUS + _BOSS_PLAY),
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.output_pitch_radius_mm, count=d.hip.output_holes),
@@ -166,7 +158,7 @@ def inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
 
 
 def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
-    """The outer plate's holes around the hip axis: bore, screws into the knee actuator's case, lightening."""
+    """Return the outer plate's holes around the hip axis: bore, screws into the knee actuator's case, lightening."""
     outside_mm = d.knee.mount_pitch_radius_mm - _OUTER_RELIEF_TO_SCREWS
     inside_mm = d.knee.coupler_radius_mm + _OUTER_RELIEF_TO_FLANGE
     relief = min(_OUTER_RELIEF_MOST, 0.5 * (outside_mm - inside_mm))
@@ -178,56 +170,23 @@ def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     )
 
 
-def _core(length: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Part:
-    """The printed core between the plates, from the first bridge to the knee's sprocket."""
-    top, end = BRIDGE - d.first_bridge_mm, _KNEE_END - length
-    return Part(
-        name="thigh_core",
-        role=Role.CORE,
-        material=MATERIALS.printed_plastic,
-        process="3D printed",
-        prisms=(
-            Prism(
-                outline=rectangle(
-                    width_mm=2.0 * d.thigh_core_half_width_mm, height_mm=top - end, y_mm=0.5 * (top + end)
-                ),
-                z0_mm=-0.5 * d.gap_mm,
-                z1_mm=0.5 * d.gap_mm,
-                holes=(
-                    *windows_between(bridges, d.thigh_core_window_half_width_mm),
-                    *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-                ),
-            ),
-        ),
-        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
-    )
-
-
 def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
-    """Pillars that keep the plates apart around the hip, with their screws.
+    """Build the pillars that keep the plates apart around the hip, with their screws.
 
     Once the leg's halves carry their actuators no key reaches the plates here. The pillars are therefore screwed to the
     outer plate before it takes the knee actuator, and the inner plate only slides onto their spigots.
     """
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     thread = (Circle(radius_mm=M3.core),)
-    pillar = Part(
+    pillar = machined_part(
         name="thigh_standoff",
         role=Role.SPACER,
-        material=MATERIALS.aluminium,
-        process="machined",
         prisms=(
-            Prism(outline=Circle(radius_mm=_SPIGOT_RADIUS), z0_mm=-face, z1_mm=-half_gap),
-            Prism(outline=Circle(radius_mm=_STANDOFF_RADIUS), z0_mm=-half_gap, z1_mm=half_gap - _STANDOFF_THREAD),
-            Prism(
-                outline=Circle(radius_mm=_STANDOFF_RADIUS),
-                z0_mm=half_gap - _STANDOFF_THREAD,
-                z1_mm=half_gap,
-                holes=thread,
-            ),
+            disc(_SPIGOT_RADIUS, -face, -half_gap),
+            disc(_STANDOFF_RADIUS, -half_gap, half_gap - _STANDOFF_THREAD),
+            disc(_STANDOFF_RADIUS, half_gap - _STANDOFF_THREAD, half_gap, *thread),
         ),
         places_mm=places,
-        grade=ALLOYS["aw_6082_t6"],
         fits=(Fit(diameter_mm=2.0 * _SPIGOT_RADIUS, zone="h6"),),
         features=(tapped(M3, thread, half_gap - _STANDOFF_THREAD, half_gap, enters="high"),),
         note="spigot into the inner plate, screwed to the outer one",
@@ -240,7 +199,6 @@ def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
         grip_mm=d.plate_mm,
         room_mm=_STANDOFF_THREAD - _TAP_RUNOUT,
         direction=-1.0,
-        material=MATERIALS.steel,
         places_mm=places,
         note="flush, under the knee actuator",
     )

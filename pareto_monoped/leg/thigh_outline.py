@@ -1,7 +1,4 @@
-"""The outline of the thigh's plates: two round ends joined by a bar, with ears and a heel for the end stops.
-
-Whether a leg can be built around the actuators of a motor.
-"""
+"""The outline of the thigh's plates, with ears and a heel for the end stops, and whether a leg fits a motor at all."""
 
 import math
 
@@ -25,18 +22,12 @@ _FILLET_GAP = 0.5  # from where a fillet would touch the round end
 _EAR_FOOT = 14.0  # from an ear's end along the bar to the middle of its fillet
 _SPARE = 1.0  # of an edge beyond the seat or striker that stands on it
 _FRONT_FILLET = 31.0  # of the middle of the fillet before the knee above its axis, next to the round end
-HEEL_WIDTH = 22.0  # of the heel's tip; what it carries is computed in ``strength.stop_seats``
+HEEL_WIDTH = 22.0  # of the heel's tip; what it carries is computed in ``strength.stops``
 _HEEL_FILLET = 5.0  # radius, between heel and knee
 
 
 def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) -> Path:
-    """The outline of one plate.
-
-    Args:
-        top_radius_mm: of the round end at the hip.
-        length_mm: between the axes, float or shape (n,).
-        d: dimensions.
-    """
+    """Return the outline of one plate."""
     hip_front, _, extension, flexion = thigh_stop_faces(length_mm, d)
     at_hip, at_knee = hip_stop(d).half_face_mm, knee_stop(d).half_face_mm
     hip = Pulley(x_mm=0.0, y_mm=0.0, radius_mm=top_radius_mm)
@@ -63,7 +54,6 @@ def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) ->
 
 
 def _fillet(y_mm: Numbers, d: LegDimensions) -> Pulley:
-    """A fillet on the bar's front edge."""
     return Pulley(x_mm=d.thigh_half_width_mm + _FILLET, y_mm=y_mm, radius_mm=_FILLET, inside=False)
 
 
@@ -75,32 +65,26 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
 
 
 def outer_hip_radius_mm(d: LegDimensions) -> float:
-    """Radius of the outer plate's round end at the hip, which carries the knee actuator.
-
-    Where that actuator is narrower than the hip's, the round end still reaches the ears of the hip's stop.
-    """
+    """Return the radius of the outer plate at the hip: a narrower knee actuator's still reaches the stop's ears."""
     least = _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0])
     return max(d.knee.rim_radius_mm, min(d.rim_radius_mm, least))
 
 
 def hip_short_mm(d: LegDimensions) -> float:
-    """By how much the round end at the hip is too small for the ears of the hip's stop; 0 or less where it is not.
-
-    The other plate's round end is the same for every motor, and larger.
-    """
+    """Return by how much the outer plate's round end is too small for the ears of the hip's stop; 0 or less if not."""
     return _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0]) - outer_hip_radius_mm(d)
 
 
 def _least_hip_radius_mm(face: Face) -> float:
-    """Radius of the round end that an ear's edge touches."""
+    """Return the radius of the round end that an ear's edge touches."""
     return float(face.x_mm) - WING
 
 
 def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
-    """The fillet between an ear's edge and the round end at the hip, which it almost touches.
+    """Return the fillet between an ear's edge and the round end at the hip, which it almost touches.
 
     Raises:
-        DesignError: the ear stands beside the round end; ``motor_fit.require_leg`` refuses such motors.
+        DesignError: the ear stands beside the round end; ``require_leg`` refuses such motors.
     """
     least = _least_hip_radius_mm(face)
     x = least + _FILLET
@@ -122,10 +106,7 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
 
 
 def heel_arm_mm(d: LegDimensions) -> float:
-    """Distance of the bumper's force from the heel's root, where the fillet begins.
-
-    The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
-    """
+    """Return the distance of the bumper's force from the heel's root, where the fillet in front of the edge begins."""
     stop = knee_stop(d)
     high = stop.bumper.diameter_mm + WING - _HEEL_FILLET
     return stop.lever_mm - float(np.sqrt((d.knee_radius_mm + _HEEL_FILLET + _FILLET_GAP) ** 2 - high**2))
@@ -143,9 +124,7 @@ def _heel(face: Face, d: LegDimensions) -> tuple[Pulley, ...]:
 def require_leg(maps: Maps, *sources: str) -> None:
     """Refuse motors that are too narrow for the thigh: they have gearboxes, and no robot.
 
-    Args:
-        maps: the gearboxes of both joints; there is at least one of each. The wider actuator decides.
-        sources: what the motor is called, the first words of the message, or those of hip and knee; default the name.
+    ``sources``: what the motor is called, the first words of the message, or those of hip and knee; default the name.
 
     Raises:
         MotorError: the ears of the hip's stop would stand beside the thigh's round end, which the motor's housing sets.
@@ -172,7 +151,7 @@ def require_leg(maps: Maps, *sources: str) -> None:
 
 
 def maps_for(hip: str, knee: str, rules: RuleSet) -> JointMaps:
-    """The gearboxes of a robot with these motors, each the name of a shipped one or a TOML file.
+    """Return the gearboxes of a robot with these motors, each the name of a shipped one or a TOML file.
 
     Raises:
         MotorError: an unknown or impossible motor, or one that no gearbox or no leg fits.

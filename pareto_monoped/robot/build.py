@@ -30,7 +30,7 @@ class Unit:
         return f"Unit({self.name!r}, on {self.body!r}, {len(self.parts)} parts)"
 
     def mass_properties(self) -> MassProperties:
-        """All parts together, in the body frame."""
+        """Return all parts together, in the body frame."""
         return in_body(total(part.mass_properties() for part in self.parts), self.turn, self.z_mm)
 
 
@@ -39,7 +39,6 @@ class Robot:
     """One robot with every part that has a mass."""
 
     design: Design  #: what was asked for; the gearboxes' real ratios are ``hip.ratio`` and ``knee.ratio``
-    #: hip, knee: the actuators
     hip: Actuator
     knee: Actuator
     leg: LegDimensions  #: dimensions of links and base
@@ -55,7 +54,7 @@ class Robot:
         )
 
     def body_mass_properties(self) -> Mapping[str, MassProperties]:
-        """Each body's parts together, in its body frame (see ``RobotArrays``)."""
+        """Return each body's parts together, in its body frame (see ``RobotArrays``)."""
         return {body: total(u.mass_properties() for u in self.units if u.body == body) for body in BODIES}
 
     @property
@@ -66,10 +65,6 @@ class Robot:
 
 def build_robot(design: Design, maps: Maps) -> Robot:
     """Make the robot of a design, part by part.
-
-    Args:
-        design: its variables.
-        maps: the gearboxes of both joints, or of hip and knee.
 
     Raises:
         DesignError: no gearbox of the joint's motor has the gear ratio.
@@ -93,7 +88,6 @@ def build_robot(design: Design, maps: Maps) -> Robot:
 def _parts(
     kind: ActuatorSized | LinkSized, design: Design, actuators: Mapping[str, Actuator], leg: LegDimensions
 ) -> tuple[Part, ...]:
-    """The parts of one unit of this robot."""
     if isinstance(kind, ActuatorSized):
         return kind.parts(actuators[kind.joint], leg)
     return kind.parts(getattr(design, kind.length), leg)

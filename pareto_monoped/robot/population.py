@@ -27,7 +27,6 @@ class MassOptions:
 
     #: Mass of the base frame, without the hip actuator
     base_structure_mass_kg: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
-    #: foot_mass_kg, foot_radius_m: of the foot
     foot_mass_kg: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
     foot_radius_m: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
     #: Factor on mass and inertia of both links, without the foot
@@ -56,9 +55,8 @@ class RobotArrays:
     left (the joint axes), z up; at zero joint angles both links hang straight down along -z.
     """
 
-    #: thigh_length_m, shank_length_m: hip axis to knee axis, knee axis to foot centre, shape (n,)
-    thigh_length_m: NDArray[np.float64]
-    shank_length_m: NDArray[np.float64]
+    thigh_length_m: NDArray[np.float64]  #: hip axis to knee axis, shape (n,)
+    shank_length_m: NDArray[np.float64]  #: knee axis to foot centre, shape (n,)
     body_mass_kg: NDArray[np.float64]  #: shape (n, 3)
     body_com_m: NDArray[np.float64]  #: centres of mass in the body frames, shape (n, 3, 3)
     body_inertia_kg_m2: NDArray[np.float64]  #: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3)
@@ -76,13 +74,11 @@ class RobotArrays:
     #: What the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,)
     rotor_excess_kg_m2: NDArray[np.float64]
     sprocket_radius_m: NDArray[np.float64]  #: pitch radius of the chain's sprockets, shape (n,)
-    #: peak_torque_n_m, continuous_torque_n_m: at the joint, before losses, shape (n, 2)
-    peak_torque_n_m: NDArray[np.float64]
-    continuous_torque_n_m: NDArray[np.float64]
+    peak_torque_n_m: NDArray[np.float64]  #: at the joint, before losses, shape (n, 2)
+    continuous_torque_n_m: NDArray[np.float64]  #: likewise
     no_load_speed_rad_per_s: NDArray[np.float64]  #: at the joint, shape (n, 2)
-    #: efficiency, efficiency_total: of the gear meshes, and of the whole gearbox, shape (n, 2)
-    efficiency: NDArray[np.float64]
-    efficiency_total: NDArray[np.float64]
+    efficiency: NDArray[np.float64]  #: of the gear meshes, shape (n, 2)
+    efficiency_total: NDArray[np.float64]  #: of the whole gearbox, shape (n, 2)
     #: torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
     #: resistance is line to line; shape (n, 2)
     torque_constant_n_m_per_a: NDArray[np.float64]
@@ -99,10 +95,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
 
     Links of 0.25 to 0.55 m are interpolated, which gives the same to 12 digits and is many times as fast.
 
-    Args:
-        designs: shape (n, number of variables), in the order of ``design.NAMES``; finite, with links longer than 0 m.
-        maps: the gearboxes of both joints, or of hip and knee.
-        options: what replaces the masses of the parts.
+    ``designs``: shape (n, number of variables), in the order of ``design.NAMES``; finite, with links longer than 0 m.
 
     Returns:
         One row per design. A row with a ``reason`` has no gearbox of its ratio and holds the numbers of another one.
@@ -151,13 +144,10 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
 def _turning(
     of_actuators: Callable[[str], Floats], leg: LegDimensions, thigh_m: Floats, options: MassOptions
 ) -> dict[str, Floats]:
-    """What turns in each robot: the fields of ``RobotArrays`` from ``armature_kg_m2`` to ``sprocket_radius_m``.
+    """Return what turns in each robot: the fields of ``RobotArrays`` from ``armature_kg_m2`` to ``sprocket_radius_m``.
 
-    Args:
-        of_actuators: name of a column of ``ActuatorTable`` -> its values for the actuators of all joints, shape (n, 2).
-        leg: dimensions.
-        thigh_m: thigh lengths, shape (n,).
-        options: may set the rotors' inertia, which then stands for everything that turns in an actuator.
+    ``of_actuators``: name of a column of ``ActuatorTable`` -> its values for the actuators of all joints, shape (n, 2);
+    ``options``: may set the rotors' inertia, which then stands for everything that turns in an actuator.
     """
     knee, ratio = JOINTS.index("knee"), of_actuators("ratio")
     armature, rotor = of_actuators("armature_kg_m2"), of_actuators("rotor_inertia_kg_m2")
@@ -181,14 +171,7 @@ def _turning(
 def _unit_masses(
     maps: JointMaps, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
 ) -> dict[str, MassProperties]:
-    """Name -> mass properties of every unit in its body frame, one row per design.
-
-    Args:
-        maps: the actuators.
-        leg: dimensions.
-        values: designs, shape (n, number of variables).
-        rows: joint -> row of each design's actuator in the joint's table, shape (n,).
-    """
+    """Return every unit's mass properties in its body frame; ``rows`` are each joint's rows of actuators."""
     masses: dict[str, MassProperties] = {}
     for unit in UNITS:
         if isinstance(unit, ActuatorSized):
@@ -212,7 +195,7 @@ def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list
 
 
 def _missing(maps: JointMaps, intervals: Mapping[str, NDArray[np.intp]], values: Floats, i: int) -> str:
-    """Why robot i has no gearbox, empty if it has both."""
+    """Return why robot i has no gearbox, empty if it has both."""
     for joint in JOINTS:
         if intervals[joint][i] < 0:
             ratio = float(values[i, NAMES.index(f"{joint}_ratio")])

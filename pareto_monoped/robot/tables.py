@@ -1,6 +1,8 @@
 """Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length.
 
-Kinetic energy of the parts that turn against the body that carries them.
+A link is one smooth function of its length. Interpolated in Chebyshev points, this function is exact to the last
+digits, and evaluating it takes a few operations for any number of lengths (Trefethen, Approximation Theory and
+Approximation Practice, chapters 3 and 8), where weighing part by part takes thousands of small array operations.
 
 A part with the moment of inertia J about the joint axis that turns at c times the joint's speed, relative to the body
 that carries it, has the absolute speed w_body + c w_joint. Summed over all such parts, the kinetic energy of turning is
@@ -10,12 +12,6 @@ that carries it, has the absolute speed w_body + c w_joint. Summed over all such
 S is part of the body's own inertia. C is the reflected inertia, which MuJoCo calls armature. B couples the joint to the
 rotation of the body. The base does not rotate, so that the coupling matters for the knee actuator only, which the thigh
 carries.
-
-Mass properties that change smoothly with one length, as Chebyshev series.
-
-Weighing a population part by part takes thousands of small array operations. But a link is one smooth function of its
-length. Interpolated in Chebyshev points, this function is exact to the last digits, and evaluating it takes a few
-operations for any number of lengths (Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 8).
 """
 
 import math
@@ -40,13 +36,13 @@ _LENGTHS_M = (0.3, 0.5)  # two lengths fix a straight line; any two do
 
 
 def actuator_coupling_kg_m2(actuator: Actuator) -> float:
-    """B of rotor, planets and carrier of an actuator, against its housing."""
+    """Return B of rotor, planets and carrier of an actuator, against its housing."""
     terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
     return sum(inertia * speed for part in terms for inertia, speed in part)
 
 
 def rotor_inertia_kg_m2(actuator: Actuator) -> float:
-    """Moment of inertia of everything that turns at the motor's speed: rotor, coupling, sun."""
+    """Return the moment of inertia of everything that turns at the motor's speed: rotor, coupling, sun."""
     terms = turning_terms(actuator.parts, actuator.gears, actuator.motor)
     return sum(inertia for part in terms for inertia, speed in part if speed == actuator.ratio)
 
@@ -69,7 +65,7 @@ class DriveTurning:
 
 @lru_cache(maxsize=64)
 def drive_turning(leg: LegDimensions) -> DriveTurning:
-    """The turning parts of the knee's drive in a leg.
+    """Return the turning parts of the knee's drive in a leg.
 
     The chain runs around two equal sprockets of pitch radius r at the speed r w. A closed loop of linear density rho
     that encloses the area A has the angular momentum 2 rho A r w about every axis, and no linear momentum. The
@@ -91,7 +87,7 @@ def drive_turning(leg: LegDimensions) -> DriveTurning:
 
 
 def _line(values: list[float]) -> tuple[float, float]:
-    """Constant and slope of the line through two values at ``_LENGTHS_M``."""
+    """Return the constant and slope of the line through two values at ``_LENGTHS_M``."""
     (low, high), (at_low, at_high) = _LENGTHS_M, values
     slope = (at_high - at_low) / (high - low)
     return at_low - slope * low, slope
@@ -100,7 +96,6 @@ def _line(values: list[float]) -> tuple[float, float]:
 Floats = NDArray[np.float64]
 Weigh = Callable[[Floats], Sequence[MassProperties]]
 """Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
-
 _EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show
 _MOST_NODES = 128
 # Upper triangle of the second moments, which are symmetric.
@@ -112,20 +107,16 @@ _WIDTH = 1 + 3 + len(_ROWS)
 class Tabulated:
     """The mass properties of m units over a range of lengths."""
 
-    #: low_m, high_m: ends of the range
     low_m: float
     high_m: float
     coefficients: Floats  #: of the Chebyshev series, shape (k, 10 m): mass, first and second moments of each unit
 
     def covers(self, lengths_m: Floats) -> NDArray[np.bool_]:
-        """Which lengths are in the range, shape (n,)."""
+        """Return which lengths are in the range, shape (n,)."""
         return np.asarray((self.low_m <= lengths_m) & (lengths_m <= self.high_m))
 
     def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
-        """The m units for lengths in the range, shape (n,); a row does not depend on the others.
-
-        It is evaluated by Clenshaw's recurrence, in the same order of operations for each length.
-        """
+        """Return the m units for lengths, shape (n,); Clenshaw's recurrence has the same order for each of them."""
         place = (2.0 * lengths_m - (self.low_m + self.high_m)) / (self.high_m - self.low_m)
         values: Floats = np.asarray(chebval(place, self.coefficients), dtype=np.float64)
         return tuple(_unfolded(values[i : i + _WIDTH]) for i in range(0, len(values), _WIDTH))
@@ -133,11 +124,6 @@ class Tabulated:
 
 def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
     """Tabulate units over a range of lengths, with as many nodes as the precision needs.
-
-    Args:
-        weigh: the units, part by part.
-        low_m: shortest length.
-        high_m: longest length.
 
     Raises:
         ValueError: the units do not change smoothly with the length.
@@ -158,10 +144,7 @@ def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
 
 
 def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
-    """Coefficients of the interpolant in the Chebyshev points of the first kind.
-
-    Summed term by term, because the order of the sum in a matrix product may differ from run to run.
-    """
+    """Return the interpolant's coefficients in Chebyshev points of the first kind, summed in a fixed order."""
     angles = np.pi * (np.arange(nodes) + 0.5) / nodes
     values = _folded(weigh(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles)))
     waves = np.cos(np.outer(np.arange(nodes), angles))
@@ -171,7 +154,7 @@ def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
 
 
 def _folded(units: Sequence[MassProperties]) -> Floats:
-    """The numbers of m units and n lengths, shape (10 m, n)."""
+    """Return the numbers of m units and n lengths, shape (10 m, n)."""
     rows: list[Floats] = []
     for unit in units:
         rows += [unit.mass_kg, *np.moveaxis(unit.first_kg_m, -1, 0), *unit.second_kg_m2[..., _ROWS, _COLUMNS].T]
@@ -179,7 +162,7 @@ def _folded(units: Sequence[MassProperties]) -> Floats:
 
 
 def _sizes(values: Floats) -> Floats:
-    """The largest mass, first moment and second moment of each unit, for each of its rows, shape (10 m, 1)."""
+    """Return the largest mass, first moment and second moment of each unit, for each of its rows, shape (10 m, 1)."""
     largest = np.abs(values).max(axis=1)
     kinds = [largest[i + j : i + k].max() for i in range(0, len(values), _WIDTH) for j, k in ((0, 1), (1, 4), (4, 10))]
     return np.repeat(kinds, np.tile([1, 3, len(_ROWS)], len(values) // _WIDTH))[:, None]
@@ -201,21 +184,22 @@ class ActuatorTable:
     row: NDArray[np.intp]  #: row of each interval's actuator, shape (intervals,); any row where the interval has none
     ratio: Floats  #: real ratio of the gearbox
     armature_kg_m2: Floats  #: reflected inertia at the joint
-    #: coupling_kg_m2, rotor_inertia_kg_m2, rotor_excess_kg_m2: see ``rotation``
     coupling_kg_m2: Floats
     rotor_inertia_kg_m2: Floats
     rotor_excess_kg_m2: Floats
-    #: peak_torque_n_m, continuous_torque_n_m, no_load_speed_rad_per_s, efficiency: see ``Actuator``
     peak_torque_n_m: Floats
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
     efficiency: Floats
-    efficiency_total: Floats  #: of the whole gearbox, see ``actuator.service.losses.Losses``
+    efficiency_total: Floats  #: of the whole gearbox, see ``Losses``
+
+
+_OF_ACTUATORS = ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_per_s", "efficiency")
 
 
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
-    """The actuators of a map in numbers. The result is kept, as a map is asked for many times."""
+    """Return the actuators of a map in numbers. The result is kept, as a map is asked for many times."""
     actuators = _actuators(actuator_map)
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     return ActuatorTable(
@@ -225,10 +209,7 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         coupling_kg_m2=np.array([actuator_coupling_kg_m2(a) for a in actuators]),
         rotor_inertia_kg_m2=np.array([rotor_inertia_kg_m2(a) for a in actuators]),
         rotor_excess_kg_m2=np.array([rotor_excess_kg_m2(a) for a in actuators]),
-        peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
-        continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
-        no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
-        efficiency=np.array([a.efficiency for a in actuators]),
+        **{name: np.array([getattr(a, name) for a in actuators]) for name in _OF_ACTUATORS},
         efficiency_total=np.array([service_sheet(a, actuator_map.settings).losses.efficiency_total for a in actuators]),
     )
 
@@ -240,11 +221,6 @@ def _actuators(actuator_map: ActuatorMap) -> list[Actuator]:
 @lru_cache(maxsize=128)
 def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) -> Mapping[str, MassProperties]:
     """Weigh the units that depend on the actuator of a joint, with every actuator of a map. The result is kept.
-
-    Args:
-        joint: ``hip`` or ``knee``.
-        actuator_map: of that joint.
-        leg: dimensions, which depend on the motors of both joints.
 
     Returns:
         Name -> mass properties of the joint's ``ActuatorSized`` units in their body frames, one row per actuator.
@@ -258,7 +234,6 @@ def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) ->
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
-    """Mass properties of several units, one row per unit."""
     masses = [total(part.mass_properties() for part in parts) for parts in units]
     return MassProperties(
         mass_kg=np.array([m.mass_kg for m in masses]),
@@ -268,7 +243,7 @@ def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
 
 
 def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassProperties]:
-    """The units of one link length in their body frames, part by part, one row per length."""
+    """Return the units of one link length in their body frames, part by part, one row per length."""
     return [
         unit.in_body(total(part.mass_properties() for part in unit.parts(lengths_m, leg)), leg)
         for unit in link_units(length)
@@ -276,7 +251,7 @@ def _weigh(length: str, leg: LegDimensions, lengths_m: Floats) -> list[MassPrope
 
 
 def link_units(length: str) -> list[LinkSized]:
-    """The units that depend on a link length, in the order of the table."""
+    """Return the units that depend on a link length, in the order of the table."""
     return [unit for unit in UNITS if isinstance(unit, LinkSized) and unit.length == length]
 
 
@@ -286,15 +261,7 @@ def _link_table(length: str, leg: LegDimensions) -> Tabulated:
 
 
 def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, MassProperties]:
-    """Name -> mass properties of the units that depend on a link length, in their body frames, one row per length.
-
-    Lengths within the table are interpolated to 12 digits; those beyond its ends are weighed part by part.
-
-    Args:
-        length: which length, a name of ``design.NAMES``.
-        leg: dimensions.
-        lengths_m: shape (n,).
-    """
+    """Return mass properties of the units of a link length by name: interpolated to 12 digits, or exact beyond."""
     table = _link_table(length, leg)
     beyond = ~table.covers(lengths_m)
     masses = table(np.clip(lengths_m, table.low_m, table.high_m))

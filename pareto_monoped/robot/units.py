@@ -1,8 +1,6 @@
-"""The table of units: what a robot is made of, each group of parts described once.
+"""The table of units, what a robot is made of, and the bodies, joints and frames in which they are described.
 
 ``build`` makes the parts of one robot from this table, ``tables`` weighs the same parts for whole populations.
-
-Bodies, joints and the frames that parts and bodies are described in.
 """
 
 from collections.abc import Callable
@@ -21,10 +19,8 @@ from pareto_monoped.leg.shank import foot_part, shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 
 Floats = NDArray[np.float64]
-
 BODIES = ("base", "thigh", "shank")
 JOINTS = ("hip", "knee")
-
 PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From part frames (z along the joint axis, y up along the link) to body frames (y along the joint axis, z up)."""
 UPRIGHT: Floats = np.eye(3)
@@ -36,20 +32,9 @@ for _matrix in (PART_TO_BODY, UPRIGHT, OVER):
 
 
 def in_body(properties: MassProperties, turn: Floats, z_mm: float) -> MassProperties:
-    """Mass properties from a unit's frame to the body frame.
-
-    Args:
-        properties: of the unit, about the origin of its frame.
-        turn: rotation from the unit's frame to the body's part frame, shape (3, 3).
-        z_mm: where the unit's origin lies on the z axis of the body's part frame.
-    """
+    """Move mass properties from a unit's frame to the body frame."""
     move = PART_TO_BODY @ np.array([0.0, 0.0, 1e-3 * z_mm])
     return properties.placed(PART_TO_BODY @ turn, move)
-
-
-def _middle_plane(leg: LegDimensions) -> float:
-    """Z of a unit whose origin lies in the middle plane of the leg."""
-    return 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,14 +44,14 @@ class UnitKind:
     name: str  #: unique
     body: str  #: the body that carries it, one of ``BODIES``
     turn: Floats  #: rotation from the unit's frame to the body's part frame
-    #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg
-    z_mm: Callable[[LegDimensions], float] = _middle_plane
+    #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame; default: in the middle
+    z_mm: Callable[[LegDimensions], float] = lambda leg: 0.0
     #: Added to the mass of its body after all other units. The last bit of a sum depends on its order, and so do the
     #: results of stored studies.
     weighed_last: bool = False
 
     def in_body(self, properties: MassProperties, leg: LegDimensions) -> MassProperties:
-        """Mass properties from the unit's frame to the body frame."""
+        """Move mass properties from the unit's frame to the body frame."""
         return in_body(properties, self.turn, self.z_mm(leg))
 
 
@@ -88,10 +73,6 @@ class LinkSized(UnitKind):
     parts: Callable[[Numbers, LegDimensions], tuple[Part, ...]]
 
 
-def _base_frame(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
-    return base_parts(1e-3 * knee.length_mm, leg)
-
-
 def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
     # Screws into the motor of an ESSPG pass through its backplate first; an ISSPG has the threads in the backplate.
     clearance_mm = knee.mount.back_depth_mm if knee.family == "ESSPG" else 0.0
@@ -99,7 +80,13 @@ def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
 
 
 UNITS: tuple[ActuatorSized | LinkSized, ...] = (
-    ActuatorSized(name="base_frame", body="base", turn=UPRIGHT, joint="knee", parts=_base_frame),
+    ActuatorSized(
+        name="base_frame",
+        body="base",
+        turn=UPRIGHT,
+        joint="knee",
+        parts=lambda knee, leg: base_parts(1e-3 * knee.length_mm, leg),
+    ),
     ActuatorSized(
         name="hip_actuator",
         body="base",

@@ -1,10 +1,8 @@
-"""Screw joints after VDI 2230-1 in its short form: least preload, slip, threads, pressure under heads.
+"""What single connections carry: screws (VDI 2230-1 in its short form), dowels, splines, shafts, bonds and press
+fits.
 
-The assembly preload and the torque stand with the screws, in ``geometry.tightening``.
-
-What carries a torque by shape or by bonding: dowels, splines, shafts, bonded cylinders.
-
-Press fits in the elastic range (DIN 7190-1): pressure from interference, yielding of the hub, torque.
+The assembly preload and the torque of screws stand in ``geometry.tightening``. Press fits are those of DIN 7190-1 in
+the elastic range.
 """
 
 from dataclasses import dataclass
@@ -35,14 +33,7 @@ _PRESSURE = 1.5
 def screw_compliance_mm_per_n(
     thread: ThreadSize, grip_mm: float, *, steel_mpa: float, threaded_into_mpa: float
 ) -> float:
-    """Stretch of a screw with thread all along and of the thread that it stands in, per load (eq. R3/1 to R3/7).
-
-    Args:
-        thread: of the screw.
-        grip_mm: clamped length l_K.
-        steel_mpa: Young's modulus of the screw.
-        threaded_into_mpa: Young's modulus of what it is driven into.
-    """
+    """Return the stretch per load of a screw threaded all along, and of the thread it stands in (eq. R3/1 to R3/7)."""
     d = thread.diameter_mm
     nominal_mm2 = 0.25 * np.pi * d**2
     head = _HEAD_SHARE * d / (steel_mpa * nominal_mm2)
@@ -59,19 +50,20 @@ def plate_compliance_mm_per_n(bearing_mm: float, hole_mm: float, grip_mm: float,
 
 
 def least_preload_n(fastening: Fastening, grip_mm: float, *, steel_mpa: float, clamped_mpa: float) -> float:
-    """What is left of the assembly preload: F_M / alpha_A - F_Z, with F_Z = f_Z / (delta_S + delta_P)."""
+    """Return what is left of the assembly preload: F_M / alpha_A - F_Z, with F_Z = f_Z / (delta_S + delta_P)."""
     screw = screw_compliance_mm_per_n(fastening.thread, grip_mm, steel_mpa=steel_mpa, threaded_into_mpa=clamped_mpa)
     plates = plate_compliance_mm_per_n(fastening.bearing_mm, fastening.hole_mm, grip_mm, clamped_mpa)
     return fastening.preload_n / SCATTER - EMBEDDING_MM / (screw + plates)
 
 
 def slip_force_n(count: float, preload_n: float) -> float:
-    """Transverse force at which a joint of several screws slips: n mu F_V."""
+    """Return the transverse force at which a joint of several screws slips: n mu F_V."""
     return count * FRICTION * preload_n
 
 
 def thread_force_n(thread: ThreadSize, engaged_mm: float, shear_mpa: float) -> float:
-    """Axial force at which an aluminium thread begins to shear (VDI 2230-1, eq. R11/1; area after ISO 898-1, annex).
+    """Return the axial force at which an aluminium thread begins to shear (VDI 2230-1, eq. R11/1; area after ISO 898-1,
+    annex).
 
     The female thread shears on the screw's outer diameter: pi d (P / 2 + (d - D2) tan 30 deg) per pitch.
     """
@@ -100,7 +92,8 @@ BOND_SAFETY = 2.0
 
 
 def bearing_force_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> float:
-    """Transverse force of one dowel at which the mean pressure in its hole, F / (d l), reaches the proof stress.
+    """Return the transverse force of one dowel at which the mean pressure in its hole, F / (d l), reaches the proof
+    stress.
 
     Roloff/Matek, eq. 9.17 (pins in holes). The hole does not yet widen: EN 1999-1-1, 8.5.14, allows 1.5 times this.
     """
@@ -108,31 +101,23 @@ def bearing_force_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> 
 
 
 def shear_force_n(diameter_mm: float, yield_mpa: float) -> float:
-    """Transverse force of one dowel at which its middle yields in shear, at 4/3 of the mean stress."""
+    """Return the transverse force of one dowel at which its middle yields in shear, at 4/3 of the mean stress."""
     return float(0.25 * np.pi * diameter_mm**2 * 0.75 * MISES * yield_mpa)
 
 
 def spline_torque_n_m(teeth: float, base_mm: float, tip_mm: float, length_mm: float, yield_mpa: float) -> float:
-    """Torque at which the flanks of a spline yield the hub: p = T / (k z h l r_m) (Roloff/Matek, eq. 12.10).
-
-    Args:
-        teeth: number of them.
-        base_mm: inner radius of the flanks that meet.
-        tip_mm: outer radius of these flanks.
-        length_mm: of the hub.
-        yield_mpa: of the softer part.
-    """
+    """Return the torque at which a spline's flanks yield the hub: p = T / (k z h l r_m) (Roloff/Matek, eq. 12.10)."""
     height, middle = tip_mm - base_mm, 0.5 * (tip_mm + base_mm)
     return 1e-3 * SPLINE_SHARE * teeth * height * length_mm * middle * yield_mpa
 
 
 def torsion_torque_n_m(radius_mm: float, yield_mpa: float) -> float:
-    """Torque at which a solid shaft yields at its surface: tau = 2 T / (pi r^3)."""
+    """Return the torque at which a solid shaft yields at its surface: tau = 2 T / (pi r^3)."""
     return float(1e-3 * 0.5 * np.pi * radius_mm**3 * MISES * yield_mpa)
 
 
 def bond_torque_n_m(radius_mm: float, length_mm: float) -> float:
-    """Torque of a cylinder bonded into a bore: tau 2 pi r^2 l."""
+    """Return the torque of a cylinder bonded into a bore: tau 2 pi r^2 l."""
     return float(1e-3 * BOND_MPA * 2.0 * np.pi * radius_mm**2 * length_mm)
 
 
@@ -151,7 +136,6 @@ class PressFit:
 
     diameter_mm: float  #: of the joint
     hub_mm: float  #: outer diameter of the hub
-    #: hub, pin: what they are made of
     hub: ElasticMaterial
     pin: ElasticMaterial
 
@@ -161,12 +145,7 @@ class PressFit:
         return self.diameter_mm / self.hub_mm
 
     def pressure_mpa(self, interference_mm: float, roughness_mm: float = 0.0) -> float:
-        """Pressure in the joint: p = (xi - smoothing) / K' of Lame's thick rings, 0 where there is play.
-
-        Args:
-            interference_mm: of the diameters, before joining.
-            roughness_mm: sum of Rz of both faces.
-        """
+        """Return p = (xi - smoothing) / K' of Lame's thick rings, 0 with play; ``roughness_mm`` is both Rz."""
         q2 = self.thinness**2
         outer = ((1.0 + q2) / (1.0 - q2) + self.hub.poisson_ratio) / self.hub.youngs_modulus_mpa
         inner = (1.0 - self.pin.poisson_ratio) / self.pin.youngs_modulus_mpa
@@ -174,7 +153,7 @@ class PressFit:
         return max(effective, 0.0) / self.diameter_mm / (outer + inner)
 
     def elastic_limit_mpa(self, yield_mpa: float) -> float:
-        """Pressure at which the hub begins to yield at the joint (DIN 7190-1, shear energy criterion).
+        """Return the pressure at which the hub begins to yield at the joint (DIN 7190-1, shear energy criterion).
 
         There, sigma_t = p (1 + Q^2) / (1 - Q^2) and sigma_r = -p, so that sigma_v = p sqrt(3 + Q^4) / (1 - Q^2).
         """

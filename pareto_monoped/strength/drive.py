@@ -1,9 +1,8 @@
-"""Joints of an actuator's drive: from the motor through coupling, spline and shaft to the sun; planet pins; ring.
+"""Joints of an actuator's drive: motor, coupling, spline, shaft, sun, planet pins, ring, and the second carrier's
+webs.
 
 What turns at the motor's speed carries the gearbox's torque over the ratio: in an end stop, the rotor drives from
 behind, and the output's torque reaches back through the sun as well. All capacities are torques at the output.
-
-The webs between the planets and the screws that clamp the second carrier to them.
 
 The planets press their pins with half of their load into either carrier. What the second carrier gets, half of the
 output's torque, goes back to the first one through the webs; that the pins are clamped as well is not counted.
@@ -22,7 +21,7 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Pattern
 from pareto_monoped.geometry.tightening import YIELD_MPA, Fastening
-from pareto_monoped.materials import ALLOYS
+from pareto_monoped.materials import ALLOYS, Materials
 from pareto_monoped.strength.connections import (
     BOND_SAFETY,
     FRICTION,
@@ -37,7 +36,7 @@ from pareto_monoped.strength.connections import (
     spline_torque_n_m,
     torsion_torque_n_m,
 )
-from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure
+from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Side, Structure
 
 MOTOR_FACE_MPA = ALLOYS["aw_6082_t6"].yield_mpa
 """Yield of a motor's turning face and bell, whose alloy makers do not publish; our own assumption."""
@@ -46,19 +45,19 @@ _SLIP = "VDI 2230-1, R12: against slip under static load"
 
 
 def one(s: Structure, role: Role, group: Group) -> Part:
-    """The actuator's only part of a role and group."""
+    """Return the actuator's only part of a role and group."""
     (found,) = (part for part in s.actuator.parts if part.role is role and part.group is group)
     return found
 
 
 def yield_mpa(part: Part) -> float:
-    """Of the alloy that a part is ordered in."""
+    """Return the yield stress of the alloy that a part is ordered in."""
     assert part.grade is not None
     return part.grade.yield_mpa
 
 
 def layout_of(s: Structure) -> Layout:
-    """The heights and radii of the actuator."""
+    """Return the heights and radii of the actuator."""
     a = s.actuator
     return layout(a.motor, a.family, a.gears, a.face_width_mm, s.settings)
 
@@ -83,12 +82,7 @@ def _holds(hole: object, pin: Part) -> bool:
 
 
 def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
-    """Transverse force at which the weakest layer of a circle of dowels yields, or the dowels between them.
-
-    Args:
-        pin: the dowels.
-        layers: of each part that they join: engaged length in mm, yield stress in MPa.
-    """
+    """Return the force at which a layer (engaged length in mm, yield stress in MPa) or a circle's dowels yield."""
     outline = pin.prisms[0].outline
     assert isinstance(outline, Circle)
     diameter = 2.0 * float(outline.radius_mm)
@@ -97,7 +91,7 @@ def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
 
 
 def spline(s: Structure) -> float:
-    """Output torque at which the spline yields the coupling."""
+    """Return the output torque at which the spline yields the coupling."""
     coupling = one(s, Role.COUPLING, Group.ROTOR)
     hub, teeth = _spline(coupling)
     length = float(hub.z1_mm) - float(hub.z0_mm)
@@ -108,7 +102,7 @@ def spline(s: Structure) -> float:
 
 
 def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
-    """The slab of the coupling with the spline, and the spline."""
+    """Return the slab of the coupling with the spline, and the spline."""
     ((hub, teeth),) = (
         (prism, hole) for prism in coupling.prisms for hole in prism.holes if isinstance(hole, ExternalGear)
     )
@@ -116,7 +110,7 @@ def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
 
 
 def shaft(s: Structure) -> float:
-    """Output torque at which the sun's shaft yields between spline and teeth, at its thinnest.
+    """Return the output torque at which the sun's shaft yields between spline and teeth, at its thinnest.
 
     Where the spline's roots lie below the shaft, a hob runs out into it. What is left of the section there is at least
     the round one within the roots, which counts.
@@ -131,7 +125,7 @@ def shaft(s: Structure) -> float:
 
 
 def coupling_dowels(s: Structure) -> float:
-    """Output torque at which the dowels between motor and coupling yield a hole."""
+    """Return the output torque at which the dowels between motor and coupling yield a hole."""
     pin = one(s, Role.PIN, Group.ROTOR)
     coupling, rotor = one(s, Role.COUPLING, Group.ROTOR), one(s, Role.MOTOR_ROTOR, Group.ROTOR)
     force = dowel_force_n(
@@ -141,25 +135,29 @@ def coupling_dowels(s: Structure) -> float:
 
 
 def screw_slip_torque_n_m(screw: Part, s: Structure) -> float:
-    """Torque about the actuator's axis at which a circle of screws slips."""
-    materials = s.settings.materials
-    preload = least_preload_n(
+    """Return the torque about the actuator's axis at which a circle of screws slips."""
+    preload = screw_preload_n(screw, s.settings.materials)
+    return 1e-3 * slip_force_n(float(screw.count), preload) * float(screw.pitch_radius_mm)
+
+
+def screw_preload_n(screw: Part, materials: Materials) -> float:
+    """Return the least preload of a steel screw in aluminium."""
+    return least_preload_n(
         fastening(screw),
         shank_and_thread_mm(screw)[0],
         steel_mpa=materials.steel.youngs_modulus_mpa,
         clamped_mpa=materials.aluminium.youngs_modulus_mpa,
     )
-    return 1e-3 * slip_force_n(float(screw.count), preload) * float(screw.pitch_radius_mm)
 
 
 def fastening(screw: Part) -> Fastening:
-    """How a screw is tightened."""
+    """Return how a screw is tightened."""
     assert screw.fastening is not None
     return screw.fastening
 
 
 def shank_and_thread_mm(screw: Part) -> tuple[float, float]:
-    """Length of a screw's shank, which is its grip, and of its thread, which is drawn thinner."""
+    """Return the length of a screw's shank, which is its grip, and of its thread, which is drawn thinner."""
     nominal = 0.5 * fastening(screw).thread.diameter_mm
     spans = {
         float(prism.outline.radius_mm): float(prism.z1_mm) - float(prism.z0_mm)
@@ -171,7 +169,7 @@ def shank_and_thread_mm(screw: Part) -> tuple[float, float]:
 
 
 def housing_screws(s: Structure) -> float:
-    """Output torque of the motor at which a joint of the housing slips that carries the motor's reaction.
+    """Return the output torque of the motor at which a joint of the housing slips that carries the motor's reaction.
 
     In the ESSPG, base, backplate and casing pass it on to the ring housing. In the ISSPG, the stator is bonded onto the
     ring housing.
@@ -215,23 +213,20 @@ def ring_housing(s: Structure) -> float:
 
 
 def pin_bending(s: Structure) -> float:
-    """Output torque at which a planet's pin yields in bending."""
+    """Return the output torque at which a planet's pin yields in bending."""
     return planet_pins(s)[0]
 
 
 def pin_seat(s: Structure) -> float:
-    """Output torque at which a planet's pin yields its shorter seat."""
+    """Return the output torque at which a planet's pin yields its shorter seat."""
     return planet_pins(s)[1]
 
 
 def planet_pins(s: Structure) -> tuple[float, float]:
-    """Output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
+    """Return the output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
     a, at, carrier = s.actuator, layout_of(s), s.settings.parts.carrier
     (pin,) = (part for part in a.parts if part.role is Role.PIN and part.group is Group.OUTPUT)
-    seats_mm = (
-        float(z_pin_front(at, s.settings) - at.z_shoulder),
-        carrier.pin_depth_mm,
-    )
+    seats_mm = (float(z_pin_front(at, s.settings) - at.z_shoulder), carrier.pin_depth_mm)
     span = float(at.z_shoulder - at.z_secondary_front)
     bending = pin_bending_force_n(carrier.pin_diameter_mm, span, yield_mpa(pin))
     # Half of the load on either seat, one of which is short.
@@ -242,68 +237,50 @@ def planet_pins(s: Structure) -> tuple[float, float]:
 
 _Row = tuple[str, str, str, tuple[float, str], Callable[[Structure], float], tuple[str, ...]]
 """Name, formula, source, required factor with its reason, capacity, parts: of rows that the gearbox's torque loads."""
+_SHAPES, _BONDS = (SHAPE_SAFETY, _SHAPE), (BOND_SAFETY, "our own choice: a bond cannot be inspected")
+_DOWELS = "Roloff/Matek, 9.2: pressure in the holes of pins"
+_GEARBOX: tuple[_Row, ...] = (
+    ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", _SHAPES, spline, ("sun", "coupling")),
+    ("sun_shaft", "tau_y pi r^3 / 2 i / T, r within the roots and the hob's run-out", "torsion, von Mises",
+        _SHAPES, shaft, ("sun",)),
+    ("coupling_dowels", "n d l Rp0.2 r i / T", _DOWELS, _SHAPES, coupling_dowels, ("coupling_dowel",)),
+    ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", _BONDS, ring, ("ring",)),
+    ("ring_housing_dowels", "n d l Rp0.2 r / T", _DOWELS, _SHAPES, ring_housing, ("ring_housing_dowel",)),
+    ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", _SHAPES, pin_bending,
+        ("planet_pin",)),
+    ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", _DOWELS, _SHAPES, pin_seat, ("planet_pin",)),
+)  # fmt: skip
 
 
-def _rows() -> tuple[ActuatorJoint, ...]:
-    shape = (SHAPE_SAFETY, _SHAPE)
-    bond = (BOND_SAFETY, "our own choice: a bond cannot be inspected")
-    dowels, pins = "Roloff/Matek, 9.2: pressure in the holes of pins", ("planet_pin",)
-    table: tuple[_Row, ...] = (
-        ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", shape, spline, ("sun", "coupling")),
-        (
-            "sun_shaft",
-            "tau_y pi r^3 / 2 i / T, r within the roots and the hob's run-out",
-            "torsion, von Mises",
-            shape,
-            shaft,
-            ("sun",),
-        ),
-        ("coupling_dowels", "n d l Rp0.2 r i / T", dowels, shape, coupling_dowels, ("coupling_dowel",)),
-        ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", bond, ring, ("ring",)),
-        ("ring_housing_dowels", "n d l Rp0.2 r / T", dowels, shape, ring_housing, ("ring_housing_dowel",)),
-        ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", shape, pin_bending, pins),
-        ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", dowels, shape, pin_seat, pins),
+def _loaded(side: Side, row: _Row) -> ActuatorJoint:
+    """Return the row of one side that its gearbox's torque loads."""
+    name, formula, source, (required, reason), capacity, parts = row
+    return ActuatorJoint(
+        name=f"{side}_{name}",
+        group="joints",
+        side=side,
+        formula=formula,
+        source=source,
+        required=required,
+        required_source=reason,
+        loads=(f"peak_gear_torque_{side}_n_m",),
+        capacity=capacity,
+        parts=parts,
+        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
     )
-    cure = "release the {}'s torque before its stop, or another {}_ratio"
-    gearbox = tuple(
-        ActuatorJoint(
-            name=f"{side}_{name}",
-            group="joints",
-            side=side,
-            formula=formula,
-            source=source,
-            required=required,
-            required_source=reason,
-            loads=(f"peak_gear_torque_{side}_n_m",),
-            capacity=capacity,
-            parts=parts,
-            cure=cure.format(side, side),
-        )
-        for side in SIDES
-        for name, formula, source, (required, reason), capacity, parts in table
-    )
-    reaction = tuple(
-        ActuatorJoint(
-            name=f"{side}_motor_reaction",
-            group="joints",
-            side=side,
+
+
+JOINTS = (
+    *(_loaded(side, row) for side in SIDES for row in _GEARBOX),
+    *(
+        ActuatorJoint(name=f"{side}_motor_reaction", group="joints", side=side, capacity=housing_screws,
             formula=f"n {FRICTION} F_V r i / T; ISSPG: bond of the stator, brought to the same required factor",
-            source="VDI 2230-1; bonded cylinder, ISO 10123",
-            required=SLIP_SAFETY,
-            required_source=_SLIP,
-            loads=(f"peak_torque_{side}_n_m",),
-            capacity=housing_screws,
-            parts=("backplate_screw", "casing_screw", "stator_screw", "motor_stator"),
-            cure="larger screws",
-        )
+            source="VDI 2230-1; bonded cylinder, ISO 10123", required=SLIP_SAFETY, required_source=_SLIP,
+            loads=(f"peak_torque_{side}_n_m",), cure="larger screws",
+            parts=("backplate_screw", "casing_screw", "stator_screw", "motor_stator"))
         for side in SIDES
-    )
-    return gearbox + reaction
-
-
-JOINTS = _rows()
-
-
+    ),
+)  # fmt: skip
 _SHARE = 0.5
 """Of the output's torque, in the second carrier: both seats of a pin are alike."""
 _REASON = (
@@ -312,7 +289,7 @@ _REASON = (
 
 
 def sheared_n(screw: Fastening) -> float:
-    """Force across a tightened screw at which its core yields: what its preload leaves by von Mises.
+    """Return the force across a tightened screw at which its core yields: what its preload leaves by von Mises.
 
     The torsion of tightening has gone by then. The friction of the joint comes on top and is not counted.
     """
@@ -322,7 +299,7 @@ def sheared_n(screw: Fastening) -> float:
 
 
 def clamped_beam_n(length_mm: float, modulus_mm3: float, yield_mpa: float) -> float:
-    """Force at the end of a beam, clamped at both ends, at which it yields: M = F L / 2."""
+    """Return the force at the end of a beam, clamped at both ends, at which it yields: M = F L / 2."""
     return 2.0 * modulus_mm3 * yield_mpa / length_mm
 
 
@@ -331,7 +308,7 @@ def _at_output_n_m(force_n: float, count: float, radius_mm: float) -> float:
 
 
 def screws(s: Structure) -> float:
-    """Output torque at which a screw of the webs yields in shear; infinite without webs."""
+    """Return the output torque at which a screw of the webs yields in shear; infinite without webs."""
     webs = layout_of(s).webs
     if not webs.present:
         return float(np.inf)
@@ -364,36 +341,12 @@ def bending(s: Structure) -> float:
     return _at_output_n_m(force, float(webs.count), float(webs.r_screw_mm))
 
 
-WEB_JOINTS: tuple[ActuatorJoint, ...] = tuple(
-    ActuatorJoint(
-        name=f"{side}_{name}",
-        group="joints",
-        side=side,
-        formula=formula,
-        source=source,
-        required=1.2,
-        required_source=_REASON,
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=capacity,
-        parts=parts,
-        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
-    )
-    for side in SIDES
-    for name, formula, source, capacity, parts in (
-        (
-            "web_screws",
-            "n A_d3 sqrt((Rp0.2^2 - (F_M / A_s)^2) / 3) r / (T / 2)",
-            "von Mises in the core of a tightened screw; VDI 2230-1, 5.5.6, for what overcomes friction",
-            screws,
-            ("web_screw", "carrier", "secondary_carrier"),
-        ),
-        (
-            "webs",
-            "n 2 W Rp0.2 r / L / (T / 2)",
-            "beam clamped at both ends: Roark's Formulas for Stress and Strain, chapter 8",
-            bending,
-            ("carrier",),
-        ),
-    )
-)
-"""Two rows per side."""
+_WEBS: tuple[_Row, ...] = (
+    ("web_screws", "n A_d3 sqrt((Rp0.2^2 - (F_M / A_s)^2) / 3) r / (T / 2)",
+        "von Mises in the core of a tightened screw; VDI 2230-1, 5.5.6, for what overcomes friction",
+        (1.2, _REASON), screws, ("web_screw", "carrier", "secondary_carrier")),
+    ("webs", "n 2 W Rp0.2 r / L / (T / 2)",
+        "beam clamped at both ends: Roark's Formulas for Stress and Strain, chapter 8",
+        (1.2, _REASON), bending, ("carrier",)),
+)  # fmt: skip
+WEB_JOINTS = tuple(_loaded(side, row) for side in SIDES for row in _WEBS)

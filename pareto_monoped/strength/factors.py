@@ -1,11 +1,9 @@
-"""Safety factors of all joints of many robots at once, from capacities that are tabulated per gearbox and per leg.
+"""The table of joints, and the safety factors of all joints of many robots at once.
 
-The table of joints: every row of the strength check, in the order of ``strength.csv``.
-
-The factors of one design, joint by joint, as an export lists them; computed by the functions for populations.
+Capacities are computed once per gearbox and per leg. ``joint_factors`` lists the factors of one design, as exports do.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
@@ -34,7 +32,6 @@ from pareto_monoped.strength.joint import (
 TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *gears.JOINTS,
     *chain.JOINTS,
-    *chain.TURNBUCKLE_JOINTS,
     *stops.STOP_JOINTS,
     *drive.JOINTS,
     *drive.WEB_JOINTS,
@@ -47,14 +44,9 @@ TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *plates.JOINTS,
 )
 """All rows. A module with joints of its own adds its tuple here."""
-
-
 Floats = NDArray[np.float64]
-
 MOST_FACTOR = 1000.0
 """Factors are cut here, because a joint without load would have an infinite one, which JSON cannot hold."""
-
-
 Of = Side | Literal["leg"]
 """What a capacity belongs to."""
 
@@ -71,16 +63,14 @@ class Capacities:
     columns: tuple[slice, ...]  #: of each row of ``TABLE``: where its capacities stand in ``values``
 
     def plain(self, of: Of) -> NDArray[np.intp]:
-        """Columns of ``values`` with the capacities of ``_PLAIN``."""
+        """Return the columns of ``values`` with the capacities of ``_PLAIN``."""
         return np.array([self.columns[k].start for k in _PLAIN[of]], dtype=np.intp)
 
 
-def _of(joint: ActuatorJoint | LegJoint) -> Of:
-    return joint.side if isinstance(joint, ActuatorJoint) else "leg"
-
-
 _OWNERS: tuple[Of, ...] = (*SIDES, "leg")
-_ROWS: dict[Of, tuple[int, ...]] = {of: tuple(k for k, joint in enumerate(TABLE) if _of(joint) == of) for of in _OWNERS}
+_ROWS: dict[Of, tuple[int, ...]] = {
+    of: tuple(k for k, joint in enumerate(TABLE) if getattr(joint, "side", "leg") == of) for of in _OWNERS
+}
 # Most joints have one capacity over one load. They are computed in one operation, which is several times as fast.
 _PLAIN: dict[Of, tuple[int, ...]] = {
     of: tuple(k for k in rows if TABLE[k].factor is over and len(TABLE[k].loads) == 1) for of, rows in _ROWS.items()
@@ -113,7 +103,9 @@ def capacities(maps: JointMaps) -> Capacities:
         key = (joint.capacity, one, own)
         if key not in found:
             chosen = structures[one] if own else structures[one][:1]
-            found[key] = _all(joint.capacity, chosen)
+            capacity = joint.capacity
+            numbers = capacity.of(chosen) if isinstance(capacity, Together) else [capacity(s) for s in chosen]
+            found[key] = np.array([np.atleast_1d(number) for number in numbers], dtype=np.float64)
         return found[key]
 
     columns: list[slice] = [slice(0)] * len(TABLE)
@@ -133,24 +125,10 @@ def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:
     return places
 
 
-def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:
-    """Capacities of some structures, shape (structures, numbers of the capacity)."""
-    values = capacity.of(structures) if isinstance(capacity, Together) else [capacity(s) for s in structures]
-    return np.array([_numbers(value) for value in values])
-
-
-def _numbers(capacity: float | Sequence[float]) -> tuple[float, ...]:
-    values = (capacity,) if isinstance(capacity, int | float) else tuple(capacity)
-    return tuple(float(value) for value in values)
-
-
 def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:
-    """The safety factor of every joint of every design, shape (n, rows of ``TABLE``).
+    """Return the safety factor of every joint of every design, shape (n, rows of ``TABLE``).
 
-    Args:
-        designs: shape (n, number of variables), see ``design.complete``; the ratios choose the gearboxes.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of the designs' jumps.
+    ``designs``: shape (n, number of variables), see ``design.complete``; the ratios choose the gearboxes.
 
     Returns:
         At most ``MOST_FACTOR``; NaN where a load is unknown. A design without gearbox has NaN loads.
@@ -181,7 +159,7 @@ _MEMBERS = {
 
 
 def safeties(factors: Floats) -> dict[str, Floats]:
-    """Measure of each group: the least factor over required factor of its rows, shape (n,); it holds from 1 up."""
+    """Return the measure of each group, the least factor over required factor of its rows, shape (n,)."""
     shares = factors / _REQUIRED
     return {measure: shares[:, members].min(axis=1, initial=MOST_FACTOR) for measure, members in _MEMBERS.items()}
 
@@ -201,15 +179,7 @@ class JointFactor:
 
 
 def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor, ...]:
-    """The factors of one design in the order of the table; none if its jump failed, because loads are unknown then.
-
-    Rows that only inform are left out where the rules know no such limit.
-
-    Args:
-        design: whose gearboxes are looked up.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of its jump, one row.
-    """
+    """Return a design's factors in the order of the table without those unknown; none if its jump failed."""
     factors = strength_factors(design.as_array(), maps, loads)[0]
     known = ~np.isnan(factors)
     if not all(known[k] or joint.informs for k, joint in enumerate(TABLE)):
@@ -249,13 +219,7 @@ class GearLife:
 
 
 def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
-    """The life of a design's gears under strikes; None if its jump failed, and under rules that know no fatigue.
-
-    Args:
-        design: whose gearboxes are looked up.
-        maps: the gearboxes of both joints, or of hip and knee.
-        loads: of its jump, one row.
-    """
+    """Return the life of a design's gears under strikes; None if its jump failed or its rules know no fatigue."""
     both = joint_maps(maps)
     leg, settings = leg_dimensions(both), both.hip.settings
     torques = {side: float(getattr(loads, f"peak_gear_torque_{side}_n_m")[0]) for side in SIDES}

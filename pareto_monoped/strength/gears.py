@@ -24,7 +24,8 @@ MOST_JUMPS = 1e9
 
 
 def static_torques_n_m(s: Structure) -> tuple[float, float]:
-    """Output torques at which the weakest flank and the weakest root have the static safety that the rating requires.
+    """Return the output torques at which the weakest flank and the weakest root have the static safety that the rating
+    requires.
 
     Stress grows with the torque and a little less than in proportion to it, because misalignment weighs less under a
     high load. The torque is therefore the limit of T <- T (S_H / S_H,min)^2 and of T <- T S_F / S_F,min.
@@ -45,7 +46,8 @@ def static_torques_n_m(s: Structure) -> tuple[float, float]:
 
 
 def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
-    """Output torques that the gears of one motor carry in every jump of their duty, with the safeties that it requires.
+    """Return the output torques that the gears of one motor carry in every jump of their duty, with the safeties that
+    it requires.
 
     They depend on no length and no jump, so that they are computed once per actuator map, all gearboxes of a family
     together. The least of flanks and roots; NaN under the rules ``paper``, which know no fatigue.
@@ -64,7 +66,8 @@ def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
 
 
 def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
-    """Jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their duty.
+    """Return the jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their
+    duty.
 
     0 if they do not last a single one, ``MOST_JUMPS`` if they last that many; NaN under the rules ``paper``.
     """
@@ -90,9 +93,9 @@ def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
 
 
 def lewis_torque_n_m(s: Structure) -> float:
-    """Output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
+    """Return the output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
 
-    Every mesh of the sun carries an equal share. The stress is that of ``actuator.strength.face_width_mm`` without
+    Every mesh of the sun carries an equal share. The stress is that of ``lewis_width_mm`` without
     service factor and velocity factor: both stand for loads beyond the motor's torque, and here the load is measured.
     """
     actuator, data = s.actuator, s.settings.parts.gears
@@ -105,7 +108,7 @@ def lewis_torque_n_m(s: Structure) -> float:
 
 
 def _torques_n_m(s: Structure) -> tuple[float, float]:
-    """Output torques that flanks and roots carry once; the rules ``paper`` have no limit of flanks."""
+    """Return the output torques that flanks and roots carry once; the rules ``paper`` have no limit of flanks."""
     return static_torques_n_m(s) if s.settings.rules == "iso6336" else (np.inf, lewis_torque_n_m(s))
 
 
@@ -120,39 +123,22 @@ _TEETH: dict[str, tuple[str, Callable[..., Any]]] = {
         lambda flank, root, torque: root / torque,
     ),
 }
-
 _ONCE = tuple(
-    ActuatorJoint(
-        name=f"{side}_gear_{tooth}",
-        group="gears",
-        side=side,
-        formula=f"T_limit / T, with the static safety of rating.overload_{tooth}_safety at T_limit",
-        source=source,
-        required=1.0,
-        required_source="the required static safety is in T_limit",
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=_torques_n_m,
-        factor=factor,
-        parts=("sun", "planet", "ring"),
-        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
-    )
+    ActuatorJoint(name=f"{side}_gear_{tooth}", group="gears", side=side,
+        formula=f"T_limit / T, with the static safety of rating.overload_{tooth}_safety at T_limit", source=source,
+        required=1.0, required_source="the required static safety is in T_limit",
+        loads=(f"peak_gear_torque_{side}_n_m",), capacity=_torques_n_m, factor=factor, parts=("sun", "planet", "ring"),
+        cure=f"release the {side}'s torque before its stop, or another {side}_ratio")
     for side in SIDES
     for tooth, (source, factor) in _TEETH.items()
-)
+)  # fmt: skip
 _ALWAYS = tuple(
-    ActuatorJoint(
-        name=f"{side}_gear_strikes",
-        group="gear_strikes",
-        side=side,
+    ActuatorJoint(name=f"{side}_gear_strikes", group="gear_strikes", side=side,
         formula="T_limit / T, with rating.flank_safety and rating.root_safety under duty and strikes at T_limit",
-        source="ISO 6336-2, -3 and -6, one load cycle per jump; the rules paper know no fatigue",
-        required=1.0,
+        source="ISO 6336-2, -3 and -6, one load cycle per jump; the rules paper know no fatigue", required=1.0,
         required_source="it informs: below 1, the gears last fewer jumps than duty.jumps if each strikes like this one",
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=_STRIKES,
-        parts=("sun", "planet", "ring"),
-        cure=f"release the {side}'s torque before its stop, or a heavier gearbox",
-    )
+        loads=(f"peak_gear_torque_{side}_n_m",), capacity=_STRIKES, parts=("sun", "planet", "ring"),
+        cure=f"release the {side}'s torque before its stop, or a heavier gearbox")
     for side in SIDES
-)
+)  # fmt: skip
 JOINTS = (*_ONCE, *_ALWAYS)

@@ -1,6 +1,5 @@
-"""One row of the table of joints: what may fail, under which loads, by which formula, and what is required.
-
-What the parts of a robot have to carry: the loads of its jump, and the lengths that turn forces into moments.
+"""One row of the table of joints: what may fail, under which loads of a jump, by which formula, and what is
+required.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,10 +19,9 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loads:
-    """Loads of n jumps, each of shape (n,); NaN where a jump failed or a stored study did not measure the load.
+    """Loads of n jumps, each of shape (n,), as in ``measures.MEASURES``; NaN where unknown.
 
-    All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``. The end stops and the
-    foot's impact are in the torque through a gearbox, and a housing reacts to no more than that.
+    The end stops and the foot's impact are in the torque through a gearbox; a housing reacts to no more than that.
     """
 
     peak_torque_hip_n_m: Floats
@@ -50,7 +48,7 @@ LOAD_NAMES: tuple[str, ...] = tuple(field.name for field in fields(Loads))
 
 
 def loads_of(columns: Mapping[str, Any]) -> Loads:
-    """Loads from the columns of stored trials or of evaluations.
+    """Return the loads from the columns of stored trials or of evaluations.
 
     Args:
         columns: name -> values of shape (n,), such as a data frame of trials; others than ``LOAD_NAMES`` are ignored,
@@ -87,7 +85,7 @@ class Together:
 
 
 def over(capacity: Any, load: Any) -> Any:
-    """The common safety factor: what a joint carries over what it has to carry."""
+    """Return the common safety factor: what a joint carries over what it has to carry."""
     return capacity / load
 
 

@@ -1,10 +1,8 @@
-"""The knee's axle and bearings: dowels between axle and shank, static load and life of the bearings.
+"""The knee: dowels and bearings of its axle, and shaft and coupling of its drive.
 
-The knee's drive between its two supports: its shaft and coupling under the chain's pull and the gearbox's torque.
-
-The chain pulls in the middle plane. The needle bearing in the hip coupling carries it in front, the actuator's main
-bearing behind, both as pivots. The dowels take the torque from the output flange through coupling and shaft flange to
-the sprocket, so that the stub of the shaft in the needles is bent, but not twisted.
+The chain pulls the drive in the middle plane. The needle bearing in the hip coupling carries it in front, the
+actuator's main bearing behind, both as pivots. The dowels take the torque from the output flange through coupling and
+shaft flange to the sprocket, so that the stub of the shaft in the needles is bent, but not twisted.
 """
 
 from functools import lru_cache
@@ -23,70 +21,50 @@ from pareto_monoped.leg.knee import AXLE_DOWEL, DOWEL_DEPTH, axle_dowels
 from pareto_monoped.leg.sprocket import middle_mm
 from pareto_monoped.leg.stops import knee_stop, knee_strikers
 from pareto_monoped.materials import ALLOYS
-from pareto_monoped.strength.connections import least_preload_n
-from pareto_monoped.strength.drive import fastening, layout_of, shank_and_thread_mm, yield_mpa
+from pareto_monoped.strength.connections import MISES
+from pareto_monoped.strength.drive import layout_of, screw_preload_n, yield_mpa
 from pareto_monoped.strength.joint import ActuatorJoint, LegJoint, Structure
 
 AXLE, PLATE = ALLOYS["aw_7075_t6"], ALLOYS["aw_6082_t6"]
-_SHEAR = 1.0 / np.sqrt(3.0)  # yield in shear over that in tension (von Mises)
 _BEARINGS = 2
 
 
 def dowels_n_m(
     count: float, circle_mm: float, diameter_mm: float, layers: tuple[tuple[float, float], ...], pin_mpa: float
 ) -> float:
-    """Torque at which a circle of dowels yields a hole, by its mean pressure, or the dowels, in shear.
-
-    Args:
-        count: of dowels.
-        circle_mm: radius of their circle.
-        diameter_mm: of a dowel.
-        layers: depth in mm and yield stress in MPa of each part that a dowel stands in.
-        pin_mpa: yield stress of the dowels.
-    """
+    """Return the torque at which a circle of dowels yields a hole or itself; layers are depths and yield stresses."""
     holes = min(diameter_mm * depth * stress for depth, stress in layers)
-    shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * _SHEAR * pin_mpa  # 4 / 3 of the mean in the middle
+    shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * MISES * pin_mpa  # 4 / 3 of the mean in the middle
     return float(1e-3 * count * circle_mm * min(holes, shear))
 
 
 def bearing_safety(static_n: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any:
-    """Safety s0 = 2 C0 / P of the knee's two bearings (ISO 76).
+    """Return the safety s0 = 2 C0 / P of the knee's two bearings (ISO 76).
 
     The chain pulls the shank along the thigh by F_c, and the stop pushes it by F_s = T / lever at an angle to that. The
     bearings balance both and what the shank needs, the force K at the knee, in whatever direction:
     P <= K + |F_c + F_s|.
 
-    Args:
-        static_n: static rating C0 of a bearing.
-        lever_mm: of the stop.
-        cross: cosine of the angle between both forces.
-        loads: pull of the chain, torque of the stop, force at the knee.
+    ``cross``: cosine of the angle between both forces; ``loads``: pull of the chain, torque of the stop, force at the
+    knee.
     """
     return _BEARINGS * static_n / bearings_n(lever_mm, cross, *loads)
 
 
 def bearings_n(lever_mm: Any, cross: Any, pull: Any, torque: Any, knee: Any) -> Any:
-    """Load of both bearings of the knee together; arguments as of ``bearing_safety``."""
+    """Return the load of both bearings of the knee together; arguments as of ``bearing_safety``."""
     push = 1e3 * torque / lever_mm
     together = np.sqrt(np.square(pull) + np.square(push) + 2.0 * cross * pull * push)
     return knee + together
 
 
 def bearing_life(dynamic_n: Any, turns: Any, lever_mm: Any, cross: Any, *loads: Any) -> Any:
-    """L10 of the knee's bearings (ISO 281) over the turns of the duty, if each turn had the peak load.
-
-    Args:
-        dynamic_n: C of a bearing.
-        turns: of the duty.
-        lever_mm: see ``bearing_safety``, as for the next two.
-        cross: cosine.
-        loads: of the jump.
-    """
+    """Return L10 of the knee's bearings (ISO 281) over the turns of the duty, if each turn had the peak load."""
     return 1e6 * (_BEARINGS * dynamic_n / bearings_n(lever_mm, cross, *loads)) ** 3 / turns
 
 
 def _dowels(s: Structure) -> float:
-    """Of the chain's pull: both plates take the axle's torque."""
+    """Return the chain's pull at which the axle's dowels yield; both plates take the axle's torque."""
     holes, plate_mm = axle_dowels(), s.leg.shank_plate_mm
     layers = ((plate_mm, PLATE.yield_mpa), (DOWEL_DEPTH, AXLE.yield_mpa))
     one = dowels_n_m(
@@ -109,7 +87,7 @@ def _bearings(s: Structure) -> tuple[float, ...]:
 
 
 def _life(s: Structure) -> tuple[float, ...]:
-    """In each jump the knee swings through its range and back."""
+    """Return what ``bearing_life`` needs; in each jump the knee swings through its range and back."""
     stop = knee_stop(s.leg)
     turns = s.settings.parts.duty.jumps * 2.0 * (stop.upper_rad - stop.lower_rad) / (2.0 * np.pi)
     dynamic = float(rated_bearing(2.0 * s.leg.bearing_bore_radius_mm).dynamic_rating_n)
@@ -117,51 +95,29 @@ def _life(s: Structure) -> tuple[float, ...]:
 
 
 _CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
-
 JOINTS = (
-    LegJoint(
-        name="knee_axle_dowels",
-        group="joints",
+    LegJoint(name="knee_axle_dowels", group="joints",
         formula="2 n r min(d t R_e, 3 pi d^2 tau_e / 16) / (F_chain r_sprocket)",
-        source="pins in holes and in shear: Roloff/Matek, Maschinenelemente, chapter 9",
-        required=1.5,
+        source="pins in holes and in shear: Roloff/Matek, Maschinenelemente, chapter 9", required=1.5,
         required_source="our own choice: dowels and plates do not share a load quite evenly; friction is not counted",
-        loads=("peak_chain_tension_n",),
-        capacity=_dowels,
-        parts=("knee_axle", "knee_axle_dowel_near", "knee_axle_dowel_far"),
-        cure=_CURE,
-    ),
-    LegJoint(
-        name="knee_bearing_static",
-        group="joints",
-        formula="2 C0 / (F_knee + |F_chain + T_stop / lever|), as vectors",
-        source="ISO 76",
-        required=1.0,
+        loads=("peak_chain_tension_n",), capacity=_dowels,
+        parts=("knee_axle", "knee_axle_dowel_near", "knee_axle_dowel_far"), cure=_CURE),
+    LegJoint(name="knee_bearing_static", group="joints",
+        formula="2 C0 / (F_knee + |F_chain + T_stop / lever|), as vectors", source="ISO 76", required=1.0,
         required_source="makers' catalogues: 1 for normal demands; the bearing swings and does not run",
-        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
-        capacity=_bearings,
-        factor=bearing_safety,
-        parts=("knee_bearing",),
-        cure=_CURE,
-    ),
-    LegJoint(
-        name="knee_bearing_life",
-        group="joints",
+        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"), capacity=_bearings,
+        factor=bearing_safety, parts=("knee_bearing",), cure=_CURE),
+    LegJoint(name="knee_bearing_life", group="joints",
         formula="1e6 (2 C / P)^3 / (jumps 2 range / 2 pi), P as of knee_bearing_static",
-        source="ISO 281, L10; swings as parts of turns",
-        required=1.0,
+        source="ISO 281, L10; swings as parts of turns", required=1.0,
         required_source="a life of the duty's jumps; the peak is taken for all of the swing",
-        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
-        capacity=_life,
-        factor=bearing_life,
-        parts=("knee_bearing",),
-        cure=_CURE,
-    ),
-)
+        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"), capacity=_life,
+        factor=bearing_life, parts=("knee_bearing",), cure=_CURE),
+)  # fmt: skip
 
 
 def tube_modulus_mm3(outer_mm: float, inner_mm: float) -> float:
-    """Section modulus of a tube against bending; twice as much against torsion."""
+    """Return the section modulus of a tube against bending; twice as much against torsion."""
     return float(0.25 * np.pi * (outer_mm**4 - inner_mm**4) / outer_mm)
 
 
@@ -172,7 +128,7 @@ def bending_and_torsion(limit_mpa: Any, bent_per_n: Any, twisted_per_n_m: Any, p
 
 @lru_cache(maxsize=16)
 def _parts(d: LegDimensions) -> tuple[Part, ...]:
-    """What turns with the knee's output; all gearboxes of a map share it."""
+    """Return what turns with the knee's output; all gearboxes of a map share it."""
     return tuple(part for part in hip_joints(d) if part.group is Group.KNEE_DRIVE)
 
 
@@ -182,7 +138,7 @@ def _drive(s: Structure, role: Role) -> Part:
 
 
 def _moment_mm(s: Structure, height_mm: float) -> float:
-    """Bending moment of the drive at a height z, per newton of the chain's pull, which acts at z = 0."""
+    """Return the bending moment of the drive at a height z, per newton of the chain's pull, which acts at z = 0."""
     front, behind = -middle_mm(), s.leg.knee_mount_mm + float(main_bearing_depth_mm(layout_of(s)))
     if height_mm < 0.0:
         return behind / (front + behind) * (front + height_mm)
@@ -190,7 +146,7 @@ def _moment_mm(s: Structure, height_mm: float) -> float:
 
 
 def shaft_n(s: Structure) -> float:
-    """Chain's pull at which the stub of the shaft yields where it leaves the sprocket."""
+    """Return the chain's pull at which the stub of the shaft yields where it leaves the sprocket."""
     shaft = _drive(s, Role.SHAFT)
     stub = min(shaft.prisms, key=lambda prism: float(prism.z0_mm))
     (bore,) = stub.holes
@@ -209,7 +165,7 @@ def _rim_inside_holes(coupling: Part) -> tuple[float, float]:
 
 
 def coupling(s: Structure) -> tuple[float, float, float]:
-    """Of the drive coupling: yield stress, bending stress per pull, shear stress per torque.
+    """Return yield stress, bending stress per pull and shear stress per torque of the drive coupling.
 
     Only the ring inside all holes counts. It is bent most where it meets the shaft's flange.
     """
@@ -220,7 +176,8 @@ def coupling(s: Structure) -> tuple[float, float, float]:
 
 
 def opening_n(s: Structure) -> float:
-    """Chain's pull at which the drive's joint begins to gape at its edge: M / W reaches the pressure n F_V / A.
+    """Return the chain's pull at which the drive's joint begins to gape at its edge: M / W reaches the pressure n F_V /
+    A.
 
     The joint is the ring of the coupling's face. Its holes weaken area and modulus alike and are left out.
     """
@@ -228,58 +185,27 @@ def opening_n(s: Structure) -> float:
     (prism,) = part.prisms
     assert isinstance(prism.outline, Circle)
     outer, (_, inner) = float(prism.outline.radius_mm), _rim_inside_holes(part)
-    materials = s.settings.materials
-    preload = least_preload_n(
-        fastening(screw),
-        shank_and_thread_mm(screw)[0],
-        steel_mpa=materials.steel.youngs_modulus_mpa,
-        clamped_mpa=materials.aluminium.youngs_modulus_mpa,
-    )
+    preload = screw_preload_n(screw, s.settings.materials)
     pressure = float(screw.count) * preload / (np.pi * (outer**2 - inner**2))
     return float(pressure * tube_modulus_mm3(outer, inner) / _moment_mm(s, float(prism.z0_mm)))
 
 
 _CHAIN_SUPPORT_CURE = "release the knee's torque before its stop, or a lower knee_ratio"
-
 CHAIN_SUPPORT_JOINTS = (
-    ActuatorJoint(
-        name="knee_drive_shaft",
-        group="joints",
-        side="knee",
+    ActuatorJoint(name="knee_drive_shaft", group="joints", side="knee",
         formula="W Rp0.2 / (F_chain a (b + c) / (a + b))",
         source="beam on two supports: Roark's Formulas for Stress and Strain, chapter 8; the torque passes by dowels",
-        required=1.5,
-        required_source="our own choice against yield: the shaft is hard and notched at its neck",
-        loads=("peak_chain_tension_n",),
-        capacity=shaft_n,
-        parts=("drive_shaft",),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-    ActuatorJoint(
-        name="knee_drive_coupling",
-        group="joints",
-        side="knee",
+        required=1.5, required_source="our own choice against yield: the shaft is hard and notched at its neck",
+        loads=("peak_chain_tension_n",), capacity=shaft_n, parts=("drive_shaft",), cure=_CHAIN_SUPPORT_CURE),
+    ActuatorJoint(name="knee_drive_coupling", group="joints", side="knee",
         formula="Rp0.2 / sqrt((M / W)^2 + 3 (T / 2 W)^2), of the ring inside its holes",
-        source="bending and torsion of a tube, von Mises",
-        required=1.2,
+        source="bending and torsion of a tube, von Mises", required=1.2,
         required_source="our own choice against yield: half of the ring, with the holes, is not counted",
-        loads=("peak_chain_tension_n", "peak_gear_torque_knee_n_m"),
-        capacity=coupling,
-        factor=bending_and_torsion,
-        parts=("drive_coupling",),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-    ActuatorJoint(
-        name="knee_drive_opening",
-        group="joints",
-        side="knee",
-        formula="n F_V W / A / M",
-        source="VDI 2230-1, R3: no gap at the edge of the joint, with the least preload",
-        required=1.0,
+        loads=("peak_chain_tension_n", "peak_gear_torque_knee_n_m"), capacity=coupling, factor=bending_and_torsion,
+        parts=("drive_coupling",), cure=_CHAIN_SUPPORT_CURE),
+    ActuatorJoint(name="knee_drive_opening", group="joints", side="knee", formula="n F_V W / A / M",
+        source="VDI 2230-1, R3: no gap at the edge of the joint, with the least preload", required=1.0,
         required_source="VDI 2230-1: the least preload is the one that is left after scatter and embedding",
-        loads=("peak_chain_tension_n",),
-        capacity=opening_n,
-        parts=("drive_screw", "drive_coupling", "drive_sprocket"),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-)
+        loads=("peak_chain_tension_n",), capacity=opening_n, parts=("drive_screw", "drive_coupling", "drive_sprocket"),
+        cure=_CHAIN_SUPPORT_CURE),
+)  # fmt: skip

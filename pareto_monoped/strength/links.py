@@ -34,20 +34,12 @@ _ANY_LENGTH_M = 0.4  # of a link whose plates are asked for their alloy
 
 
 def section_modulus_mm3(half_width_mm: float, window_half_width_mm: float, thickness_mm: float) -> float:
-    """Z of a plate across a window, bent in its plane."""
+    """Return Z of a plate across a window, bent in its plane."""
     return thickness_mm * ((2.0 * half_width_mm) ** 3 - (2.0 * window_half_width_mm) ** 3) / (12.0 * half_width_mm)
 
 
 def side_stress_mpa(moment_n_m: Any, axial_n: Any, across_n: Any, clear_mm: Any, plate: "tuple[Any, Any, Any]") -> Any:
-    """Stress at the outer edge of one plate beside a window.
-
-    Args:
-        moment_n_m: in the plane of this plate.
-        axial_n: along this plate.
-        across_n: across it.
-        clear_mm: height of the window.
-        plate: half width, half width of the window, thickness, mm.
-    """
+    """Return the stress at the edge of one plate (half width, half width of its window, thickness) beside a window."""
     half, window, thickness = plate
     side = half - window
     bending = 1e3 * moment_n_m / section_modulus_mm3(half, window, thickness)
@@ -63,14 +55,13 @@ def rung_stress_mpa(across_n: Any, pitch_mm: Any, plate: "tuple[Any, Any, Any]")
 
 
 def _linear(heights_of: Any, d: LegDimensions) -> tuple[float, float]:
-    """The distance of bridges and rungs as a + b length, mm."""
+    """Return the distance of bridges and rungs as a + b length, mm."""
     (top, below, *_), (far_top, far_below, *_) = (heights_of(length, d) for length in (0.0, 1000.0))
     zero = float(top - below)
     return zero, 1e-3 * (float(far_top - far_below) - zero)
 
 
 def _yield_mpa(parts: tuple[Part, ...]) -> float:
-    """Of the weakest plate."""
     return min(part.grade.yield_mpa for part in parts if part.role is Role.PLATE and part.grade is not None)
 
 
@@ -96,7 +87,7 @@ def _fork(s: Structure) -> tuple[float, ...]:
 
 
 def _thigh_plate(limit: Any, half: Any, window: Any, thick: Any, zero: Any, slope: Any, *loads: Any) -> Any:
-    """A plate of the thigh: half of the stop's torque at the knee, the whole torque of its own actuator at the hip.
+    """Return the factor of a thigh plate: half of the stop's torque at the knee, all of its own actuator's at the hip.
 
     The chain's pull and half of the force at the knee press the plate, and the other half goes across it.
     """
@@ -111,7 +102,7 @@ def _thigh_rungs(limit: Any, half: Any, window: Any, thick: Any, zero: Any, slop
 
 
 def _shank_fork(limit: Any, half: Any, window: Any, thick: Any, clear: Any, *loads: Any) -> Any:
-    """One plate beside the fork's window: half of the knee's torque, or of the moment of the force at the knee."""
+    """Return the factor beside the fork's window: half of the knee's torque, or of the moment of the force there."""
     gear, knee, length = loads
     moment = 0.5 * np.maximum(gear, knee * length)
     return limit / side_stress_mpa(moment, 0.5 * knee, 0.5 * knee, clear, (half, window, thick))
@@ -120,7 +111,7 @@ def _shank_fork(limit: Any, half: Any, window: Any, thick: Any, clear: Any, *loa
 def _shank_plate(
     limit: Any, half: Any, window: Any, thick: Any, zero: Any, slope: Any, fork: Any, knee: Any, length: Any
 ) -> Any:
-    """One plate beside the windows of the core: half of the moment of the force at the knee about what is below."""
+    """Return the factor beside the core's windows: half of the moment of the knee's force about what is below."""
     clear = zero + slope * 1e3 * length - 2.0 * BRIDGE
     moment = 0.5 * knee * (length - 1e-3 * fork)
     return limit / side_stress_mpa(moment, 0.5 * knee, 0.5 * knee, clear, (half, window, thick))
@@ -146,47 +137,20 @@ def _row(
 
 _SIDE = "yield / (M / Z + N / A + V h / 4 / Z_side)"
 _RUNG = "yield / (V p / 2 / Z_rung)"
-
 JOINTS = (
     *(
-        _row(
-            f"thigh_plate_{plate}",
+        _row(f"thigh_plate_{plate}",
             f"{_SIDE}; M = max(T_{side}, T_stop / 2), N = (F_chain + F_knee) / 2, V = F_knee / 2",
-            (
-                f"peak_gear_torque_{side}_n_m",
-                "peak_stop_torque_knee_n_m",
-                "peak_chain_tension_n",
-                "peak_knee_force_n",
-                "thigh_length_m",
-            ),
-            _thigh,
-            _thigh_plate,
-            (f"thigh_plate_{plate}",),
-        )
+            (f"peak_gear_torque_{side}_n_m", "peak_stop_torque_knee_n_m", "peak_chain_tension_n", "peak_knee_force_n",
+                "thigh_length_m"),
+            _thigh, _thigh_plate, (f"thigh_plate_{plate}",))
         for plate, side in (("inner", "hip"), ("outer", "knee"))
     ),
-    _row(
-        "thigh_plate_rungs",
-        f"{_RUNG}; V = F_knee / 2",
-        ("peak_knee_force_n", "thigh_length_m"),
-        _thigh,
-        _thigh_rungs,
-        ("thigh_plate_inner", "thigh_plate_outer"),
-    ),
-    _row(
-        "shank_plate_fork",
-        f"{_SIDE}; M = max(T_knee, F_knee l) / 2, N = V = F_knee / 2",
-        ("peak_gear_torque_knee_n_m", "peak_knee_force_n", "shank_length_m"),
-        _fork,
-        _shank_fork,
-        ("shank_plate_near", "shank_plate_far"),
-    ),
-    _row(
-        "shank_plate_sides",
-        f"{_SIDE}; M = F_knee (l - fork) / 2, N = V = F_knee / 2",
-        ("peak_knee_force_n", "shank_length_m"),
-        _shank,
-        _shank_plate,
-        ("shank_plate_near", "shank_plate_far"),
-    ),
-)
+    _row("thigh_plate_rungs", f"{_RUNG}; V = F_knee / 2", ("peak_knee_force_n", "thigh_length_m"), _thigh, _thigh_rungs,
+        ("thigh_plate_inner", "thigh_plate_outer")),
+    _row("shank_plate_fork", f"{_SIDE}; M = max(T_knee, F_knee l) / 2, N = V = F_knee / 2",
+        ("peak_gear_torque_knee_n_m", "peak_knee_force_n", "shank_length_m"), _fork, _shank_fork,
+        ("shank_plate_near", "shank_plate_far")),
+    _row("shank_plate_sides", f"{_SIDE}; M = F_knee (l - fork) / 2, N = V = F_knee / 2",
+        ("peak_knee_force_n", "shank_length_m"), _shank, _shank_plate, ("shank_plate_near", "shank_plate_far")),
+)  # fmt: skip

@@ -31,20 +31,13 @@ _CURE = "release the knee's torque before its stop, or jump lower"
 
 
 def sunk_width_mm(screw: Screw, thickness_mm: float) -> float:
-    """What a countersunk hole takes from the width of a plate: its section over the thickness."""
+    """Return what a countersunk hole takes from the width of a plate: its section over the thickness."""
     radius = sleeve_hole(screw)
     return 2.0 * radius + (screw.countersunk - radius) ** 2 / thickness_mm
 
 
 def net_section(half_mm: Any, thickness_mm: float, place_mm: float, hole_mm: float) -> tuple[Any, Any]:
-    """Section modulus in mm3 and area in mm2 of a plate bent in its plane, across two holes beside its middle.
-
-    Args:
-        half_mm: half width.
-        thickness_mm: of the plate.
-        place_mm: of either hole from the middle.
-        hole_mm: width of either hole.
-    """
+    """Return section modulus in mm3 and area in mm2 of a plate bent in its plane, across two holes off its middle."""
     second = (2.0 * half_mm) ** 3 / 12.0 - 2.0 * (hole_mm * place_mm**2 + hole_mm**3 / 12.0)
     return thickness_mm * second / half_mm, thickness_mm * (2.0 * half_mm - 2.0 * hole_mm)
 
@@ -59,22 +52,14 @@ def column_mpa(euler_mpa: Any, yield_mpa: Any) -> Any:
 
 
 def bedded_mpa(side_mm: float, thickness_mm: float, bed_mm: float, depth_mm: float, modulus_mpa: float) -> float:
-    """Euler stress of a long strip that a bed holds across its plane: N = 2 sqrt(k E I), k = E b / depth.
-
-    Args:
-        side_mm: width of the strip.
-        thickness_mm: of the strip.
-        bed_mm: width of the bed.
-        depth_mm: of the bed, to where it does not move.
-        modulus_mpa: of the strip.
-    """
+    """Return the Euler stress of a long strip on a bed of a depth: N = 2 sqrt(k E I), k = E b / depth."""
     stiffness = CORE_MPA * bed_mm / depth_mm
     second = side_mm * thickness_mm**3 / 12.0
     return float(2.0 * np.sqrt(stiffness * modulus_mpa * second) / (side_mm * thickness_mm))
 
 
 def clamped_mpa(length_mm: float, thickness_mm: float, modulus_mpa: float) -> float:
-    """Euler stress of a strip that is clamped at both ends: 4 pi^2 E / (l / i)^2, i^2 = t^2 / 12."""
+    """Return the Euler stress of a strip that is clamped at both ends: 4 pi^2 E / (l / i)^2, i^2 = t^2 / 12."""
     return float(4.0 * np.pi**2 * modulus_mpa * thickness_mm**2 / 12.0 / length_mm**2)
 
 
@@ -85,7 +70,7 @@ def pressed_mpa(moment_n_m: Any, axial_n: Any, half_mm: Any, window_mm: Any, thi
 
 
 def ring_torque_n_m(holes: tuple[Shape, ...], pitch_radius_mm: float, thickness_mm: float) -> float:
-    """Torque at which what is left between the holes of a circle yields in shear."""
+    """Return the torque at which what is left between the holes of a circle yields in shear."""
     taken = sum(
         2.0 * float(hole.radius_mm) * float(hole.count)
         for hole in holes
@@ -96,7 +81,8 @@ def ring_torque_n_m(holes: tuple[Shape, ...], pitch_radius_mm: float, thickness_
 
 
 def spoke_force_n(hole_radius_mm: float, neck_mm: float, thickness_mm: float) -> float:
-    """Force across a neck between two round holes at which it yields, bent about its middle, where it is straight.
+    """Return the force across a neck between two round holes at which it yields, bent about its middle, where it is
+    straight.
 
     At a distance s from its narrowest place it is neck + 2 (r - sqrt(r^2 - s^2)) wide and carries the moment F s. The
     mean shear stress is added by von Mises.
@@ -112,7 +98,7 @@ def _circles(holes: tuple[Shape, ...]) -> tuple[Pattern, ...]:
 
 
 def _around_hip(holes: tuple[Shape, ...], thickness_mm: float) -> float:
-    """Torque about the hip's axis that a plate carries through its circles of holes: the least over all circles."""
+    """Return the torque about the hip's axis that a plate carries: the least over all circles of holes."""
     torques = [ring_torque_n_m(holes, float(hole.pitch_radius_mm), thickness_mm) for hole in _circles(holes)]
     for hole in _circles(holes):
         radius, pitch, count = (float(v) for v in (hole.radius_mm, hole.pitch_radius_mm, hole.count))
@@ -122,12 +108,12 @@ def _around_hip(holes: tuple[Shape, ...], thickness_mm: float) -> float:
 
 
 def inner_hub(s: Structure) -> float:
-    """Torque of the hip that the inner plate carries around its axis."""
+    """Return the torque of the hip that the inner plate carries around its axis."""
     return _around_hip(inner_hip_holes(s.leg), s.leg.plate_mm)
 
 
 def outer_hub(s: Structure) -> float:
-    """Torque of the knee's housing that the outer plate carries around the hip's axis."""
+    """Return the torque of the knee's housing that the outer plate carries around the hip's axis."""
     return _around_hip(outer_hip_holes(s.leg), s.leg.plate_mm)
 
 
@@ -138,7 +124,7 @@ def _thigh_net(s: Structure) -> tuple[float, ...]:
 
 
 def _thigh_bridge(limit: Any, modulus: Any, area: Any, *loads: Any) -> Any:
-    """Loads as of a plate beside its windows."""
+    """Return the factor; the loads are those of a plate beside its windows."""
     gear, stop, chain, knee = loads
     return limit / (1e3 * np.maximum(gear, 0.5 * stop) / modulus + 0.5 * (chain + knee) / area)
 
@@ -152,7 +138,7 @@ def _shank_net(s: Structure) -> tuple[float, ...]:
 
 
 def _shank_bridge(limit: Any, thick: Any, hole: Any, at: Any, top: Any, bottom: Any, zero: Any, *loads: Any) -> Any:
-    """One plate across the upper bridge's bolts: half of the moment of the force at the knee about what is below."""
+    """Return the factor across the upper bridge's bolts: half of the moment of the knee's force about what is below."""
     knee, length = loads
     half = top + (bottom - top) * at / (1e3 * length + zero)
     modulus, area = net_section(half, thick, BRIDGE_BOLT_X, hole)
@@ -209,61 +195,28 @@ _SECTION = "elastic net sections, see strength.plates; yield of the plates' allo
 _BENT = ("peak_stop_torque_knee_n_m", "peak_chain_tension_n", "peak_knee_force_n")
 _KNEE = ("peak_knee_force_n", "shank_length_m")
 _SHANK = ("shank_plate_near", "shank_plate_far")
-
-
 JOINTS = (
     *(
-        _row(
-            f"thigh_hub_{plate}",
+        _row(f"thigh_hub_{plate}",
             "least of tau_y t (2 pi r - sum d) r and n r F_neck over the circles of holes, over T",
-            (f"peak_gear_torque_{side}_n_m",),
-            capacity,
-            over,
-            (f"thigh_plate_{plate}",),
-            column=False,
-        )
+            (f"peak_gear_torque_{side}_n_m",), capacity, over, (f"thigh_plate_{plate}",), column=False)
         for plate, side, capacity in (("inner", "hip", inner_hub), ("outer", "knee", outer_hub))
     ),
     *(
         row
         for plate, side in (("inner", "hip"), ("outer", "knee"))
         for row in (
-            _row(
-                f"thigh_bridge_{plate}",
+            _row(f"thigh_bridge_{plate}",
                 f"yield / (M / Z_net + N / A_net); M = max(T_{side}, T_stop / 2), N = (F_chain + F_knee) / 2",
-                (f"peak_gear_torque_{side}_n_m", *_BENT),
-                _thigh_net,
-                _thigh_bridge,
-                (f"thigh_plate_{plate}",),
-                column=False,
-            ),
-            _row(
-                f"thigh_side_{plate}",
-                "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
-                (f"peak_gear_torque_{side}_n_m", *_BENT),
-                _thigh_column,
-                _thigh_side,
-                (f"thigh_plate_{plate}", "thigh_core"),
-                column=True,
-            ),
+                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_net, _thigh_bridge, (f"thigh_plate_{plate}",),
+                column=False),
+            _row(f"thigh_side_{plate}", "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
+                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_column, _thigh_side,
+                (f"thigh_plate_{plate}", "thigh_core"), column=True),
         )
     ),
-    _row(
-        "shank_bridge",
-        "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2",
-        _KNEE,
-        _shank_net,
-        _shank_bridge,
-        _SHANK,
-        column=False,
-    ),
-    _row(
-        "shank_fork_side",
-        "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
-        ("peak_gear_torque_knee_n_m", *_KNEE),
-        _fork_column,
-        _fork_side,
-        _SHANK,
-        column=True,
-    ),
-)
+    _row("shank_bridge", "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2", _KNEE, _shank_net,
+        _shank_bridge, _SHANK, column=False),
+    _row("shank_fork_side", "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
+        ("peak_gear_torque_knee_n_m", *_KNEE), _fork_column, _fork_side, _SHANK, column=True),
+)  # fmt: skip

@@ -1,9 +1,7 @@
-"""What carries the end stops: seats and strikers with their bolts, the thigh's heel, the base's rods.
+"""What carries the end stops: bumpers, seats and strikers with their bolts, the thigh's heel, the base's rods.
 
-A stop of torque T pushes with F = T / lever. Every capacity is the torque of a stop at which something yields, in
-elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 8).
-
-The bumpers of the end stops: how far a jump squeezes them.
+A stop of torque T pushes with F = T / lever. Every capacity but the bumpers' is the torque of a stop at which something
+yields, in elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 8).
 """
 
 from collections.abc import Callable
@@ -20,12 +18,10 @@ from pareto_monoped.leg.stop_parts import FOOT_DEPTH, HALF_FOOT, HALF_HEAD, HEAD
 from pareto_monoped.leg.stops import JointStop, hip_seats, hip_stop, knee_stop
 from pareto_monoped.leg.thigh_outline import HEEL_WIDTH, heel_arm_mm
 from pareto_monoped.materials import ALLOYS, MATERIALS
-from pareto_monoped.strength.connections import least_preload_n
-from pareto_monoped.strength.drive import fastening, shank_and_thread_mm
+from pareto_monoped.strength.drive import screw_preload_n
 from pareto_monoped.strength.joint import SIDES, LegJoint, Side, Structure
 
 Capacity = Callable[[Structure], float]
-
 ALLOY = ALLOYS["aw_6082_t6"]
 """Of plates, seats, strikers and rods."""
 _PLATES = 2
@@ -34,27 +30,27 @@ RUBBER_FRICTION = 0.8
 
 
 def edges_n(plates_mm: float, face_mm: float, yield_mpa: float) -> float:
-    """Force at which the wings of a seat press the edges of the plates to their yield stress."""
+    """Return the force at which the wings of a seat press the edges of the plates to their yield stress."""
     return plates_mm * face_mm * yield_mpa
 
 
 def trapezium_mm(broad_mm: float, narrow_mm: float, straight_mm: float, depth_mm: float) -> float:
-    """Mean width of a section that is ``broad_mm`` wide to a depth and then tapers to ``narrow_mm``."""
+    """Return the mean width of a section that is ``broad_mm`` wide to a depth and then tapers to ``narrow_mm``."""
     return (broad_mm * straight_mm + 0.5 * (broad_mm + narrow_mm) * (depth_mm - straight_mm)) / depth_mm
 
 
 def beam_n(span_mm: float, width_mm: float, depth_mm: float, yield_mpa: float) -> float:
-    """Even load at which a beam on two supports yields: M = F l / 8, Z = b h^2 / 6."""
+    """Return the even load at which a beam on two supports yields: M = F l / 8, Z = b h^2 / 6."""
     return 8.0 / span_mm * width_mm * depth_mm**2 / 6.0 * yield_mpa
 
 
 def bolt_bearing_n(diameter_mm: float, plates_mm: float, yield_mpa: float) -> float:
-    """Force at which one bolt presses its holes to the yield stress, if it carries all."""
+    """Return the force at which one bolt presses its holes to the yield stress, if it carries all."""
     return diameter_mm * plates_mm * yield_mpa
 
 
 def cantilever_n(arm_mm: float, thick_mm: float, high_mm: float, yield_mpa: float) -> float:
-    """Force at its end at which a plate yields that stands out by an arm: M = F a, Z = t h^2 / 6."""
+    """Return the force at its end at which a plate yields that stands out by an arm: M = F a, Z = t h^2 / 6."""
     return thick_mm * high_mm**2 / 6.0 / arm_mm * yield_mpa
 
 
@@ -65,25 +61,15 @@ def rod_n(radius_mm: float, bore_mm: float, from_support_mm: float, yield_mpa: f
 
 
 def lifted_n(screw: Part) -> float:
-    """Force of a bumper at which its striker, sliding along the joint's axis, lifts the seat off the cheek.
+    """Return the force of a bumper at which its striker, sliding along the joint's axis, lifts the seat off the cheek.
 
     The rods carry the stop's force. Along them, nothing but the screw holds the seat, against the friction of rubber.
     """
-    grip, _ = shank_and_thread_mm(screw)
-    preload = least_preload_n(
-        fastening(screw),
-        grip,
-        steel_mpa=MATERIALS.steel.youngs_modulus_mpa,
-        clamped_mpa=MATERIALS.aluminium.youngs_modulus_mpa,
-    )
-    return preload / RUBBER_FRICTION
+    return screw_preload_n(screw, MATERIALS) / RUBBER_FRICTION
 
 
 def rod_share(force_at: tuple[float, float], normal_rad: float, rods: tuple[tuple[float, float], ...]) -> float:
-    """Load of the heavier of two rods over the force that acts on the seat they carry.
-
-    Each takes half of the force, and the couple F e of the force about their middle over their distance.
-    """
+    """Return the load of the heavier of two rods: half of the force, and its couple F e over their distance."""
     (x0, y0), (x1, y1) = rods
     dx, dy = force_at[0] - 0.5 * (x0 + x1), force_at[1] - 0.5 * (y0 + y1)
     arm = abs(dx * np.sin(normal_rad) - dy * np.cos(normal_rad))
@@ -99,39 +85,39 @@ def _torque_n_m(stop: JointStop, force_n: float) -> float:
 
 
 def on_edges(side: Side, s: Structure) -> float:
-    """Of the seat or striker that stands on the edges of the thigh's plates."""
+    """Return the limit of the seat or striker that stands on the edges of the thigh's plates."""
     stop = _stop(side, s.leg)
     return _torque_n_m(stop, edges_n(_PLATES * s.leg.plate_mm, 2.0 * stop.half_face_mm, ALLOY.yield_mpa))
 
 
 def foot(side: Side, s: Structure) -> float:
-    """Of the foot of that seat or striker between the plates, beside the bolt's hole."""
+    """Return the limit of the foot of that seat or striker between the plates, beside the bolt's hole."""
     stop = _stop(side, s.leg)
     width = trapezium_mm(2.0 * stop.half_face_mm, 2.0 * HALF_FOOT, WING, FOOT_DEPTH) - 2.0 * sleeve_hole(M3)
     return _torque_n_m(stop, beam_n(s.leg.gap_mm, width, FOOT_DEPTH, ALLOY.yield_mpa))
 
 
 def heel(s: Structure) -> float:
-    """Of the heel of the thigh's plates."""
+    """Return the limit of the heel of the thigh's plates."""
     thick = _PLATES * s.leg.plate_mm
     return _torque_n_m(knee_stop(s.leg), cantilever_n(heel_arm_mm(s.leg), thick, HEEL_WIDTH, ALLOY.yield_mpa))
 
 
 def striker(s: Structure) -> float:
-    """Of the head of the knee's striker, beside its bolt's hole, between the shank's plates."""
+    """Return the limit of the head of the knee's striker, beside its bolt's hole, between the shank's plates."""
     stop = knee_stop(s.leg)
     width = trapezium_mm(2.0 * stop.half_face_mm, 2.0 * HALF_HEAD, TOE, HEAD) - 2.0 * sleeve_hole(M4)
     return _torque_n_m(stop, beam_n(s.leg.shank_gap_mm, width, HEAD, ALLOY.yield_mpa))
 
 
 def striker_bolt(s: Structure) -> float:
-    """Of the bolt of that head in the shank's plates."""
+    """Return the limit of the bolt of that head in the shank's plates."""
     plates = _PLATES * s.leg.shank_plate_mm
     return _torque_n_m(knee_stop(s.leg), bolt_bearing_n(2.0 * sleeve_hole(M4), plates, ALLOY.yield_mpa))
 
 
 def rods(s: Structure) -> float:
-    """Of the base's rods, which carry the hip's seats next to the near cheek."""
+    """Return the limit of the base's rods, which carry the hip's seats next to the near cheek."""
     d, stop = s.leg, hip_stop(s.leg)
     seat, _ = hip_seats(d)
     at = (float(seat.x_mm), float(seat.y_mm))
@@ -141,7 +127,7 @@ def rods(s: Structure) -> float:
 
 
 def seat_screw(s: Structure) -> float:
-    """Of the screw that holds one of the hip's seats on the near cheek."""
+    """Return the limit of the screw that holds one of the hip's seats on the near cheek."""
     (screw,) = (part for part in base_stop_parts(s.leg) if part.role is Role.SCREW)
     return _torque_n_m(hip_stop(s.leg), lifted_n(screw))
 
@@ -186,20 +172,12 @@ JOINTS = (
     _row("hip_stop_screws", "hip", "lever F_V / mu_rubber / T", seat_screw, ("hip_seat_screw",)),
     _row("hip_stop_rods", "hip", "lever Z R_e / (a (1/2 + e / s)) / T", rods, ("base_rod",)),
 )
-
-
 STOP_JOINTS = tuple(
-    LegJoint(
-        name=f"{side}_bumper",
-        group="stops",
-        formula="travel / compression",
-        source="leg.stops.MOST_COMPRESSION: half the diameter, up to which Lindley's law was measured",
-        required=1.0,
+    LegJoint(name=f"{side}_bumper", group="stops", formula="travel / compression",
+        source="leg.stops.MOST_COMPRESSION: half the diameter, up to which Lindley's law was measured", required=1.0,
         required_source="the travel is itself a limit of the design: the metal is clear of itself up to it",
-        loads=(f"stop_compression_{side}",),
-        capacity=lambda s: 1.0,
+        loads=(f"stop_compression_{side}",), capacity=lambda s: 1.0,
         parts=(f"{side}_bumper_{one}", f"{side}_bumper_{other}"),
-        cure=f"release the {side}'s torque before its stop, or jump lower",
-    )
+        cure=f"release the {side}'s torque before its stop, or jump lower")
     for side, (one, other) in zip(SIDES, (("front", "rear"), ("extension", "flexion")), strict=True)
-)
+)  # fmt: skip

@@ -29,14 +29,12 @@ _ANY_LENGTH_M, _ANY_ACTUATOR_M = 0.4, 0.05  # of links and of the knee actuator 
 
 
 def tightened(screw: Part, thread_mpa: float, seat_mpa: float) -> float:
-    """Force that thread and seat of a screw carry, whichever is less, over the preload that it is tightened to.
+    """Return the force that thread and seat of a screw carry, whichever is less, over the preload that it is tightened
+    to.
 
     A countersunk head is not looked at: its cone lies on more metal than a cap's face.
 
-    Args:
-        screw: which.
-        thread_mpa: yield stress of what it is driven into.
-        seat_mpa: yield stress of what its head stands on.
+    ``thread_mpa``: yield stress of what it is driven into; ``seat_mpa``: yield stress of what its head stands on.
     """
     found = fastening(screw)
     _, engaged = shank_and_thread_mm(screw)
@@ -47,7 +45,7 @@ def tightened(screw: Part, thread_mpa: float, seat_mpa: float) -> float:
 
 
 def _axes_mm(part: Part, centres_mm: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Axes of every instance of something at these centres of a part, in the unit's frame."""
+    """Return the axes of every instance of something at these centres of a part, in the unit's frame."""
     found = []
     count, radius = int(part.count), float(part.pitch_radius_mm)
     for x, y, _ in part.places_mm:
@@ -66,7 +64,6 @@ def _centres_mm(shape: Circle | Pattern) -> list[tuple[float, float]]:
 
 
 def _tapped(part: Part, diameter_mm: float) -> list[tuple[float, float]]:
-    """Axes of a part's threads of one size."""
     centres = [
         centre
         for feature in part.features
@@ -78,7 +75,7 @@ def _tapped(part: Part, diameter_mm: float) -> list[tuple[float, float]]:
 
 
 def _spans(part: Part) -> list[tuple[float, float]]:
-    """Heights between which each layer of a part lies, at every place."""
+    """Return the heights between which each layer of a part lies, at every place."""
     return [
         (float(z) + float(prism.z0_mm), float(z) + float(prism.z1_mm))
         for _, _, z in part.places_mm
@@ -87,10 +84,7 @@ def _spans(part: Part) -> list[tuple[float, float]]:
 
 
 def threaded_mpa(screw: Part, parts: Sequence[Part]) -> float | None:
-    """Yield stress of the weakest part that has a screw's thread; None if none of these parts has it.
-
-    A part has it if a tapped hole of the screw's size is on its axis and the part is as high as the screw's end.
-    """
+    """Return the yield stress of the weakest part with a tapped hole for a screw on its axis and height, or None."""
     axis = _axes_mm(screw, [(0.0, 0.0)])[0]
     size = fastening(screw).thread.diameter_mm
     thread = min(screw.prisms, key=lambda p: float(p.outline.radius_mm) if isinstance(p.outline, Circle) else np.inf)
@@ -120,12 +114,8 @@ _SEAT_MPA = ALLOYS["aw_6082_t6"].yield_mpa
 
 
 def leg_threads(s: Structure) -> float:
-    """Of thigh, shank and base: the cups' screws, those of standoffs, seats and rods; heads and nuts of the knee."""
-    units = (
-        thigh_parts(_ANY_LENGTH_M, s.leg),
-        shank_parts(_ANY_LENGTH_M, s.leg),
-        base_parts(_ANY_ACTUATOR_M, s.leg),
-    )
+    """Return the least share of thigh, shank and base: screws of cups, standoffs, seats and rods, heads and nuts."""
+    units = (thigh_parts(_ANY_LENGTH_M, s.leg), shank_parts(_ANY_LENGTH_M, s.leg), base_parts(_ANY_ACTUATOR_M, s.leg))
     through = (part for unit in units for part in unit if part.role is Role.BOLT)
     bolts = [fastening(part) for part in through if fastening(part).head == "cap"]
     seats = [seat for bolt in bolts for seat in (bolt, on_nut(bolt))]
@@ -134,12 +124,12 @@ def leg_threads(s: Structure) -> float:
 
 
 def on_nut(bolt: Fastening) -> Fastening:
-    """A bolt seen from its nut, which bears like a hexagon head of its size."""
+    """Return a bolt seen from its nut, which bears like a hexagon head of its size."""
     return replace(bolt, head="hexagon", head_mm=HEXAGON_FLATS_MM[bolt.thread.diameter_mm])
 
 
 def journal_threads(s: Structure) -> float:
-    """Of the journal's screws in the back of the knee actuator."""
+    """Return the share of the journal's screws in the back of the knee actuator."""
     # As in ``robot.units``: through the backplate of an ESSPG into its motor.
     clearance_mm = s.actuator.mount.back_depth_mm if s.actuator.family == "ESSPG" else 0.0
     parts = journal_parts(1e-3 * s.actuator.length_mm, s.leg, back_clearance_mm=clearance_mm)
@@ -148,7 +138,7 @@ def journal_threads(s: Structure) -> float:
 
 
 def actuator_threads(s: Structure) -> float:
-    """Of an actuator's own screws, the motor's threads among them."""
+    """Return the least share of an actuator's own screws, the motor's threads among them."""
     parts = s.actuator.parts
     screws = [part for part in parts if part.role in SCREWS]
     return min(tightened(screw, threaded_mpa(screw, parts) or MOTOR_FACE_MPA, _SEAT_MPA) for screw in screws)
@@ -166,45 +156,17 @@ def _least(least: Any) -> Any:
 
 
 JOINTS: tuple[ActuatorJoint | LegJoint, ...] = (
-    LegJoint(
-        name="leg_threads",
-        group="joints",
-        formula=_FORMULA,
-        source=_SOURCE,
-        required=1.0,
-        required_source=_REASON,
-        loads=(),
-        capacity=leg_threads,
-        factor=_least,
-        parts=(
-            "knee_cup_screw_near",
-            "knee_cup_screw_far",
-            "thigh_standoff_screw",
-            "hip_seat_screw",
-            "base_rod",
-            "knee_bolt",
-        ),
-        cure=_CURE,
-    ),
+    LegJoint(name="leg_threads", group="joints", formula=_FORMULA, source=_SOURCE, required=1.0,
+        required_source=_REASON, loads=(), capacity=leg_threads, factor=_least,
+        cure=_CURE, parts=("knee_cup_screw_near", "knee_cup_screw_far", "thigh_standoff_screw", "hip_seat_screw",
+            "base_rod", "knee_bolt")),
     *(
-        ActuatorJoint(
-            name=name,
-            group="joints",
-            side=side,
-            formula=_FORMULA,
-            source=_SOURCE,
-            required=1.0,
-            required_source=_REASON,
-            loads=(),
-            capacity=capacity,
-            factor=_least,
-            parts=parts,
-            cure=_CURE,
-        )
+        ActuatorJoint(name=name, group="joints", side=side, formula=_FORMULA, source=_SOURCE, required=1.0,
+            required_source=_REASON, loads=(), capacity=capacity, factor=_least, parts=parts, cure=_CURE)
         for name, side, capacity, parts in (
             ("hip_actuator_threads", SIDES[0], actuator_threads, _OWN),
             ("knee_actuator_threads", SIDES[1], actuator_threads, _OWN),
             ("knee_journal_threads", SIDES[1], journal_threads, ("journal_screw",)),
         )
     ),
-)
+)  # fmt: skip

@@ -7,6 +7,7 @@ from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.making import interference_mm
 from pareto_monoped.geometry.roles import JointKind, Role
+from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.materials import MATERIALS
 
 
@@ -17,10 +18,7 @@ def part(room_mm, direction=1.0):
         end_mm=-5.0,
         room_mm=room_mm,
         direction=direction,
-        material=MATERIALS.steel,
-        count=3,
-        pitch_radius_mm=10.0,
-        phase_rad=0.5,
+        holes=Pattern(radius_mm=1.5, pitch_radius_mm=10.0, count=3, phase_rad=0.5),
         partner="plate",
     )
 

@@ -44,7 +44,7 @@ from pareto_monoped.materials import GearGrade
 
 
 def build_stage(gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings) -> Stage:
-    """The stage of one gear set, or of arrays of them, rated for the motor's peak torque."""
+    """Build the stage of one gear set, or of arrays of them, rated for the motor's peak torque."""
     data, steels = settings.parts.rating, settings.gear_steels
     radius_mm = 0.5 * gears.module_mm * gears.sun_teeth
     force_n = 1e3 * motor.peak_torque_n_m / (radius_mm * gears.planets)
@@ -102,13 +102,13 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
 
 
 def face_limit_mm(gears: GearSet, settings: ActuatorSettings) -> Numbers:
-    """Largest face width by the sun's diameter and by the module."""
+    """Return the largest face width by the sun's diameter and by the module."""
     data = settings.parts.rating
     return gears.module_mm * np.minimum(data.face_over_sun_max * gears.sun_teeth, data.face_modules_max)
 
 
 def _rim_factors(gears: GearSet, family: Family, settings: ActuatorSettings) -> tuple[Numbers, Numbers, Numbers]:
-    """Y_B of sun, planet and ring. Recesses in the planet leave a rim of 1.2 tooth depths, see ``front``."""
+    """Return Y_B of sun, planet and ring. Recesses in the planet leave a rim of 1.2 tooth depths, see ``front``."""
     depth = TOOTH_DEPTH * gears.module_mm
     planet = external_rim_factor((gears.planet().root_radius_mm - 0.5 * settings.planet_bore_mm) / depth)
     wall = ring_radius_mm(gears, family, settings) - gears.ring_root_radius_mm
@@ -179,7 +179,7 @@ def _member(
     settings: ActuatorSettings,
     idler: bool = False,
 ) -> Member:
-    """One gear in one mesh; ``internal`` says whether the mesh is the ring's."""
+    """Return one gear in one mesh; ``internal`` says whether the mesh is the ring's."""
     data, duty = settings.parts.rating, settings.parts.duty
     thinning = settings.tooth_thinning_mm(module_mm) + thickness_tolerance_mm(module_mm * shape.teeth, RATED_SERIES)
     form = tooth_form(shape, contact_ratio, thinning)

@@ -1,8 +1,5 @@
-"""Flanks after ISO 6336-2: contact stress, and the load per face width that a flank may carry.
-
-Roots after ISO 6336-3: bending stress, and the load per face width that a root may carry.
-
-Load cycles of the duty, Miner's rule, and the S-N curves of ISO 6336-2 and ISO 6336-3.
+"""What flanks and roots may carry: stresses and limits (ISO 6336-2, -3), S-N curves, and load cycles of the duty
+(-6).
 """
 
 from collections.abc import Mapping
@@ -21,13 +18,13 @@ SIZE_FACTOR = 1.0
 
 
 def elasticity_factor(material: ElasticMaterial) -> float:
-    """Z_E in sqrt(MPa) of two gears of one material: 189.8 for steel (ISO 6336-2, clause 7)."""
+    """Return Z_E in sqrt(MPa) of two gears of one material: 189.8 for steel (ISO 6336-2, clause 7)."""
     compliance = 2.0 * (1.0 - material.poisson_ratio**2) / material.youngs_modulus_mpa
     return float(np.sqrt(1.0 / (np.pi * compliance)))
 
 
 def work_hardening_factor(steel: GearGrade, mate: GearGrade) -> float:
-    """Z_W: a through-hardened flank gains by running against a hard and smooth one (ISO 6336-2, clause 14).
+    """Return Z_W: a through-hardened flank gains by running against a hard and smooth one (ISO 6336-2, clause 14).
 
     The standard's Brinell hardness is taken as that of Vickers, which is some 5 percent more. Z_W is then about 0.01
     less than the standard's, on the safe side.
@@ -40,14 +37,11 @@ def work_hardening_factor(steel: GearGrade, mate: GearGrade) -> float:
 def contact_stress_mpa(
     load_n_per_mm: Numbers, diameter_mm: Numbers, ratio: Numbers, factors: Numbers, *, internal: bool
 ) -> Numbers:
-    """sigma_H = factors sqrt(F_t K / (b d1) (u +- 1) / u) (ISO 6336-2, clause 5.2).
+    """Return sigma_H = factors sqrt(F_t K / (b d1) (u +- 1) / u) (ISO 6336-2, clause 5.2).
 
-    Args:
-        load_n_per_mm: tangential load per face width, with all load factors.
-        diameter_mm: d1, reference diameter of the pinion.
-        ratio: u, teeth of the wheel over those of the pinion.
-        factors: Z_H Z_E Z_epsilon, and Z_B or Z_D.
-        internal: whether the wheel is a ring.
+    ``load_n_per_mm``: tangential load per face width, with all load factors; ``diameter_mm``: d1, reference diameter of
+    the pinion; ``ratio``: u, teeth of the wheel over those of the pinion; ``factors``: Z_H Z_E Z_epsilon, and Z_B or
+    Z_D.
     """
     return factors * np.sqrt(load_n_per_mm / diameter_mm * _curvature(ratio, internal=internal))
 
@@ -55,7 +49,7 @@ def contact_stress_mpa(
 def flank_load_n_per_mm(
     permissible_mpa: Numbers, diameter_mm: Numbers, ratio: Numbers, factors: Numbers, *, internal: bool
 ) -> Numbers:
-    """Load per face width at which ``contact_stress_mpa`` is ``permissible_mpa``."""
+    """Return the load per face width at which ``contact_stress_mpa`` is ``permissible_mpa``."""
     return np.square(permissible_mpa / factors) * diameter_mm / _curvature(ratio, internal=internal)
 
 
@@ -64,19 +58,12 @@ def _curvature(ratio: Numbers, *, internal: bool) -> Numbers:
 
 
 def flank_factors(material: ElasticMaterial, contact_factor: Numbers, working_angle_rad: Numbers) -> Numbers:
-    """Z_H Z_E Z_epsilon; Z_beta is 1 for spur gears."""
+    """Return Z_H Z_E Z_epsilon; Z_beta is 1 for spur gears."""
     return zone_factor(working_angle_rad) * elasticity_factor(material) * contact_factor
 
 
 def flank_limit_mpa(steel: GearGrade, mate: GearGrade, life_factor: Numbers, finish_factor: float) -> Numbers:
-    """sigma_HG = sigma_H,lim Z_NT Z_L Z_v Z_R Z_W Z_X, the stress at a safety of 1 (ISO 6336-2, clause 5.4).
-
-    Args:
-        steel: of the flank.
-        mate: of the flank that it runs against.
-        life_factor: Z_NT.
-        finish_factor: Z_L Z_v Z_R; 1 for the static limit.
-    """
+    """Return sigma_HG = sigma_H,lim Z_NT Z_L Z_v Z_R Z_W Z_X at a safety of 1 (ISO 6336-2, clause 5.4)."""
     return steel.flank_limit_mpa * life_factor * finish_factor * work_hardening_factor(steel, mate) * SIZE_FACTOR
 
 
@@ -93,7 +80,7 @@ _TEST_NOTCH = 2.5
 
 
 def bending_stress_mpa(load_n_per_mm: Numbers, module_mm: Numbers, form: ToothForm, rim_factor: Numbers) -> Numbers:
-    """sigma_F = F_t K / (b m) Y_F Y_S Y_B (ISO 6336-3, clause 5.2, method B).
+    """Return sigma_F = F_t K / (b m) Y_F Y_S Y_B (ISO 6336-3, clause 5.2, method B).
 
     Y_beta is 1 for spur gears. So is Y_DT, at contact ratios above 2 too: ISO 6336-3, clause 9, takes less only for
     teeth of class 4 or better beyond 2.05. ``load_n_per_mm`` has all load factors in it.
@@ -102,12 +89,12 @@ def bending_stress_mpa(load_n_per_mm: Numbers, module_mm: Numbers, form: ToothFo
 
 
 def root_load_n_per_mm(permissible_mpa: Numbers, module_mm: Numbers, form: ToothForm, rim_factor: Numbers) -> Numbers:
-    """Load per face width at which ``bending_stress_mpa`` is ``permissible_mpa``."""
+    """Return the load per face width at which ``bending_stress_mpa`` is ``permissible_mpa``."""
     return permissible_mpa * module_mm / (form.form_factor * form.stress_correction * rim_factor)
 
 
 def notch_sensitivity_factor(steel: GearGrade, notch: Numbers) -> Numbers:
-    """Y_delta rel T at the reference number of load cycles, method B (ISO 6336-3, clause 12.3)."""
+    """Return Y_delta rel T at the reference number of load cycles, method B (ISO 6336-3, clause 12.3)."""
     gradient, test_gradient = 0.2 * (1.0 + 2.0 * notch), 0.2 * (1.0 + 2.0 * _TEST_NOTCH)
     layer = steel.slip_layer_mm
     factor: Numbers = (1.0 + np.sqrt(layer * gradient)) / (1.0 + np.sqrt(layer * test_gradient))
@@ -115,7 +102,7 @@ def notch_sensitivity_factor(steel: GearGrade, notch: Numbers) -> Numbers:
 
 
 def static_notch_factor(steel: GearGrade, form: ToothForm) -> Numbers:
-    """Y_delta rel T for static stress (ISO 6336-3, clause 12.3.2)."""
+    """Return Y_delta rel T for static stress (ISO 6336-3, clause 12.3.2)."""
     if steel.treatment == "case_hardened":
         return 0.44 * form.stress_correction + 0.12
     if steel.treatment == "nitrided":
@@ -126,22 +113,20 @@ def static_notch_factor(steel: GearGrade, form: ToothForm) -> Numbers:
 
 
 def roughness_factor(steel: GearGrade, roughness_um: float) -> float:
-    """Y_R rel T for Rz from 1 to 40 micrometres, method B (ISO 6336-3, clause 13.3)."""
+    """Return Y_R rel T for Rz from 1 to 40 micrometres, method B (ISO 6336-3, clause 13.3)."""
     if steel.treatment == "nitrided":
         return float(4.299 - 3.259 * (roughness_um + 1.0) ** 0.0058)
     return float(1.674 - 0.529 * (roughness_um + 1.0) ** 0.1)
 
 
 def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: Numbers) -> Numbers:
-    """Y_M = 1 / (1 - R (1 - M) / (1 + M)), with R = -1.2 times ``ratio`` (ISO 6336-3, annex B; cited from memory).
+    """Return Y_M = 1 / (1 - R (1 - M) / (1 + M)), with R = -1.2 times ``ratio`` (ISO 6336-3, annex B; cited from
+    memory).
 
     A load on one flank compresses the root of the other 1.2 times as much as it stretches its own. The standard gives
     this for idlers whose flanks carry different loads. The same stresses act where a torque changes its direction.
 
-    Args:
-        steel: of the tooth.
-        form: of its root.
-        ratio: load on the less loaded flank over that on the other.
+    ``ratio``: load on the less loaded flank over that on the other.
     """
     sensitivity = 0.8 - 0.15 * form.stress_correction if steel.treatment == "case_hardened" else _SENSITIVITY
     return 1.0 / (1.0 + _COMPRESSION * ratio * (1.0 - sensitivity) / (1.0 + sensitivity))
@@ -150,21 +135,13 @@ def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: Numbers) -> Num
 def root_limit_mpa(
     steel: GearGrade, form: ToothForm, life_factor: Numbers, *, roughness_um: float, bending_factor: Numbers
 ) -> Numbers:
-    """sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M, the stress at a safety of 1.
-
-    Args:
-        steel: of the tooth.
-        form: of its root.
-        life_factor: Y_NT.
-        roughness_um: Rz of the fillet.
-        bending_factor: Y_M: 1 for teeth bent one way, less for those bent both ways.
-    """
+    """Return sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M at a safety of 1 (ISO 6336-3)."""
     surface = notch_sensitivity_factor(steel, form.notch) * roughness_factor(steel, roughness_um)
     return steel.root_limit_mpa * SPECIMEN_FACTOR * life_factor * surface * ROOT_SIZE_FACTOR * bending_factor
 
 
 def static_root_limit_mpa(steel: GearGrade, form: ToothForm, life_factor: float) -> Numbers:
-    """The same for a few load cycles: roughness, size and reversal do not matter then."""
+    """Return the limit for a few load cycles, where roughness, size and reversal do not matter."""
     return steel.root_limit_mpa * SPECIMEN_FACTOR * life_factor * static_notch_factor(steel, form)
 
 
@@ -186,7 +163,7 @@ class LifeCurve:
         return float(np.log(self.static_factor) / np.log(self.reference_cycles / self.static_cycles))
 
     def factor(self, cycles: Numbers) -> Numbers:
-        """The life factor at a number of load cycles."""
+        """Return the life factor at a number of load cycles."""
         late = np.log(1.0 / _ENDLESS_FACTOR) / np.log(_ENDLESS_CYCLES / self.reference_cycles)
         ratio = self.reference_cycles / np.clip(cycles, self.static_cycles, _ENDLESS_CYCLES)
         return np.power(ratio, np.where(ratio >= 1.0, self.exponent, late))[()]
@@ -198,7 +175,6 @@ FLANK_CURVES: Mapping[Treatment, LifeCurve] = {
     "through_hardened": LifeCurve(static_cycles=1e5, static_factor=1.6, reference_cycles=5e7),
 }
 """Z_NT without pitting allowed: ISO 6336-2, table 2."""
-
 ROOT_CURVES: Mapping[Treatment, LifeCurve] = {
     "case_hardened": LifeCurve(static_cycles=1e3, static_factor=2.5, reference_cycles=3e6),
     "nitrided": LifeCurve(static_cycles=1e3, static_factor=1.6, reference_cycles=3e6),
@@ -208,12 +184,12 @@ ROOT_CURVES: Mapping[Treatment, LifeCurve] = {
 
 
 def highest_share(duty: DutyData) -> float:
-    """The torque share that equivalent cycles belong to: that of the peak torque, or of the highest level above it."""
+    """Return the torque share that equivalent cycles belong to: 1, or the highest level above it."""
     return max(1.0, *duty.torque_shares)
 
 
 def reversal_ratio(duty: DutyData) -> float:
-    """The highest torque of the less loaded direction over that of the other, from 0 to 1."""
+    """Return the highest torque of the less loaded direction over that of the other, from 0 to 1."""
     highest = [
         max((share for share, _ in levels), default=0.0) for levels in (duty.forward_levels, duty.reversed_levels)
     ]
@@ -223,7 +199,8 @@ def reversal_ratio(duty: DutyData) -> float:
 def equivalent_cycles(
     passes_per_rad: Numbers, duty: DutyData, stress_exponent: float, *, flank: bool, both_ways: bool = False
 ) -> Numbers:
-    """Load cycles at ``highest_share`` that do the damage of the whole spectrum (Miner; ISO 6336-6, annex A).
+    """Return the load cycles at ``highest_share`` that do the damage of the whole spectrum (Miner; ISO 6336-6, annex
+    A).
 
     A level of share s of the highest torque and n cycles counts as n s^p cycles at that torque. p is the slope of the
     S-N curve in terms of torque, whose square root the contact stress grows with. The line goes on to any number of
@@ -236,12 +213,7 @@ def equivalent_cycles(
     Levels of reversed torque load the back flanks of sun and ring. Front and back have a spectrum each, of which the
     worse counts. Planets mesh with the ring on the flanks that the sun leaves free: all levels load both.
 
-    Args:
-        passes_per_rad: load cycles of a tooth per rad of the output.
-        duty: the spectrum.
-        stress_exponent: of the life curve.
-        flank: whether contact stress is meant, or else bending stress.
-        both_ways: whether all levels load either side, as in a planet.
+    ``both_ways``: whether all levels load either side, as in a planet.
     """
     slope, highest = (0.5 if flank else 1.0) / stress_exponent, highest_share(duty)
 
@@ -256,7 +228,7 @@ def equivalent_cycles(
 
 
 def passes_per_rad(gears: GearSet) -> tuple[Numbers, Numbers, Numbers]:
-    """Load cycles of a tooth's flank per rad of the output: of sun, planet and ring.
+    """Return the load cycles of a tooth's flank per rad of the output: of sun, planet and ring.
 
     Against the carrier, the sun turns i - 1 times per turn of the output and meets every planet in each turn. A planet
     meets the sun once in each of its own turns, and the ring with its other flanks.

@@ -20,18 +20,18 @@ TOOTH_DEPTH = ADDENDUM + DEDENDUM
 
 
 def zone_factor(working_angle_rad: Numbers) -> Numbers:
-    """Z_H = sqrt(2 cos(alpha_w) / (cos(alpha)^2 sin(alpha_w))) of spur gears (ISO 6336-2, clause 6)."""
+    """Return Z_H = sqrt(2 cos(alpha_w) / (cos(alpha)^2 sin(alpha_w))) of spur gears (ISO 6336-2, clause 6)."""
     factor: Numbers = np.sqrt(2.0 / np.tan(working_angle_rad)) / np.cos(PRESSURE_ANGLE_RAD)
     return factor
 
 
 def contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
-    """Z_epsilon of spur gears: sqrt((4 - epsilon_alpha) / 3) (ISO 6336-2, clause 8)."""
+    """Return Z_epsilon of spur gears: sqrt((4 - epsilon_alpha) / 3) (ISO 6336-2, clause 8)."""
     return np.sqrt((4.0 - contact_ratio) / 3.0)
 
 
 def root_contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
-    """Y_epsilon, 0.25 + 0.75 / epsilon_alpha (ISO 6336-3:1996, clause 8).
+    """Return Y_epsilon, 0.25 + 0.75 / epsilon_alpha (ISO 6336-3:1996, clause 8).
 
     Method B applies the load at the outer point of single pair contact, and does without Y_epsilon in the stress. The
     factor still bounds K_Falpha (ISO 6336-1, clause 8.3.4).
@@ -40,14 +40,13 @@ def root_contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
 
 
 def _tip_tangent(gear: ExternalGear | InternalGear) -> Numbers:
-    """Tangent of the pressure angle at the tip circle."""
     return np.sqrt(np.square(gear.tip_radius_mm / gear.base_radius_mm) - 1.0)
 
 
 def single_contact_factors(
     pinion: ExternalGear, wheel: ExternalGear | InternalGear, contact_ratio: Numbers, working_angle_rad: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Z_B and Z_D: contact stress at the inner point of single pair contact over that at the pitch point.
+    """Return Z_B and Z_D: contact stress at the inner point of single pair contact over that at the pitch point.
 
     ISO 6336-2, clause 6.3; not below 1. For an internal mesh z2 counts as negative and Z_D is 1. At contact ratios
     above 2, the same point, one base pitch before the end of contact, is the inner point of two pair contact.
@@ -74,7 +73,8 @@ class ToothForm:
 
 
 def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Numbers:
-    """x_E, the shift at which the rack generates teeth that are thinner by ``thinning_mm`` on the reference circle.
+    """Return x_E, the shift at which the rack generates teeth that are thinner by ``thinning_mm`` on the reference
+    circle.
 
     x_E = x - A / (2 m tan(alpha)) (ISO 21771), with x as the standard counts it: in a ring, inwards.
     """
@@ -84,7 +84,7 @@ def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Nu
 
 
 def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinning_mm: Numbers = 0.0) -> ToothForm:
-    """Y_F and Y_S by method B (ISO 6336-3:2006, clauses 6.2 and 7.2).
+    """Return Y_F and Y_S by method B (ISO 6336-3:2006, clauses 6.2 and 7.2).
 
     The critical section lies where the fillet's tangent makes 30 degrees with the tooth's centre line, 60 degrees in an
     internal gear. An internal gear counts as one with a negative number of teeth. Its fillet is that of the basic rack:
@@ -94,10 +94,7 @@ def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinni
     Thinned teeth are those of the generating profile shift x_E, which also makes their roots deeper. ISO 6336-3 lets
     one take x instead up to a thinning of 0.05 modules (clause 6.2; cited from memory). Here x_E is taken always.
 
-    Args:
-        gear: sun, planet or ring.
-        contact_ratio: of the mesh in which the tooth is loaded.
-        thinning_mm: by how much the tooth is thinner than without backlash, on the reference circle.
+    ``thinning_mm``: by how much the tooth is thinner than without backlash, on the reference circle.
     """
     internal = isinstance(gear, InternalGear)
     sign = -1.0 if internal else 1.0
@@ -132,7 +129,7 @@ def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinni
 
 
 def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers, *, internal: bool) -> Numbers:
-    """The auxiliary angle theta: theta = (2 G / z) tan(theta) - H, by Newton's method."""
+    """Return the auxiliary angle theta: theta = (2 G / z) tan(theta) - H, by Newton's method."""
     constant = turned - (np.pi / 6.0 if internal else np.pi / 3.0)
     theta = np.full(np.shape(z), np.pi / 6.0)[()]
     for _ in range(_NEWTON_STEPS):
@@ -152,10 +149,7 @@ def _load_point(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> tu
 
 
 def external_rim_factor(rim_over_depth: Numbers) -> Numbers:
-    """Y_B of sun or planet by the rim's thickness over the tooth depth (ISO 6336-3, clause 9.2).
-
-    The standard ends at a ratio of 0.5; the same curve is used below, where it only grows.
-    """
+    """Return Y_B of sun or planet (ISO 6336-3, clause 9.2), below the standard's 0.5 tooth depths by the same curve."""
     thin = 1.6 * np.log(2.242 / np.maximum(rim_over_depth, 0.1))
     return np.where(rim_over_depth < 1.2, np.maximum(thin, 1.0), 1.0)[()]
 

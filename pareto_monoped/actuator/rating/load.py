@@ -34,25 +34,14 @@ _TORSION_TO_MISALIGNMENT = 1.33
 def dynamic_factor(
     load_n_per_mm: Numbers, speed_m_per_s: Numbers, pinion_teeth: Numbers, ratio: Numbers, accuracy_class: int
 ) -> Numbers:
-    """K_V by method C (ISO 6336-1, clause 6.5.3).
-
-    Args:
-        load_n_per_mm: K_A F_t / b.
-        speed_m_per_s: of the pitch point against the carrier.
-        pinion_teeth: of the smaller gear.
-        ratio: u.
-        accuracy_class: ISO 1328-1.
-    """
+    """Return K_V by method C (ISO 6336-1, clause 6.5.3) for a load K_A F_t / b."""
     pace = 0.01 * speed_m_per_s * pinion_teeth * ratio / np.sqrt(1.0 + np.square(ratio))
     slope = np.where(pace <= 0.2, 2.0, 2.071 - 0.357 * np.minimum(pace, _PACE_MAX))
     return 1.0 + (_K1[accuracy_class] / np.maximum(load_n_per_mm, LIGHT_LOAD_N_PER_MM) + _K2) * pace * slope
 
 
 def pair_stiffness(pinion: ExternalGear, wheel: ExternalGear | InternalGear) -> Numbers:
-    """Stiffness c' of one tooth pair under full load, method B (ISO 6336-1, clause 9.3.2).
-
-    A ring counts as a rack without shift.
-    """
+    """Return c' of one tooth pair by method B (ISO 6336-1, clause 9.3.2); a ring counts as a rack without shift."""
     compliance = 0.04723 + 0.15551 / pinion.teeth
     x = pinion.shift
     compliance = compliance - 0.00635 * x - 0.11654 * x / pinion.teeth + 0.00529 * np.square(x)
@@ -64,19 +53,19 @@ def pair_stiffness(pinion: ExternalGear, wheel: ExternalGear | InternalGear) -> 
 
 
 def mesh_stiffness(pair: Numbers, contact_ratio: Numbers, load_n_per_mm: Numbers) -> Numbers:
-    """c_gamma,alpha of a mesh (ISO 6336-1, clause 9.3), softer under a light load K_A F_t / b."""
+    """Return c_gamma,alpha of a mesh (ISO 6336-1, clause 9.3), softer under a light load K_A F_t / b."""
     light = np.power(np.minimum(load_n_per_mm / LIGHT_LOAD_N_PER_MM, 1.0), 0.25)
     return pair * light * (0.75 * contact_ratio + 0.25)
 
 
 def pitch_deviation_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
-    """Tolerance f_pT of a single pitch (ISO 1328-1:2013, clause 5)."""
+    """Return the tolerance f_pT of a single pitch (ISO 1328-1:2013, clause 5)."""
     deviation_um: Numbers = (0.001 * diameter_mm + 0.4 * module_mm + 5.0) * np.sqrt(2.0) ** (accuracy_class - 5)
     return deviation_um
 
 
 def helix_deviation_um(diameter_mm: Numbers, width_mm: Numbers, accuracy_class: int) -> Numbers:
-    """Tolerance f_HbetaT of the helix slope (ISO 1328-1:2013, clause 5)."""
+    """Return the tolerance f_HbetaT of the helix slope (ISO 1328-1:2013, clause 5)."""
     deviation_um: Numbers = (0.05 * np.sqrt(diameter_mm) + 0.35 * np.sqrt(width_mm) + 4.0) * np.sqrt(2.0) ** (
         accuracy_class - 5
     )
@@ -84,26 +73,26 @@ def helix_deviation_um(diameter_mm: Numbers, width_mm: Numbers, accuracy_class: 
 
 
 def runout_um(diameter_mm: Numbers, module_mm: Numbers, accuracy_class: int) -> Numbers:
-    """Tolerance F_rT of the radial runout, 0.9 F_pT (ISO 1328-1:2013, clause 5 and annex E)."""
+    """Return the tolerance F_rT of the radial runout, 0.9 F_pT (ISO 1328-1:2013, clause 5 and annex E)."""
     pitch = 0.002 * diameter_mm + 0.55 * np.sqrt(diameter_mm) + 0.7 * module_mm + 12.0
     deviation_um: Numbers = 0.9 * pitch * np.sqrt(2.0) ** (accuracy_class - 5)
     return deviation_um
 
 
 def face_running_in(steel: GearGrade) -> float:
-    """y_beta over F_beta,x: how much of a misalignment wears away (ISO 6336-1, clause 7.4.2)."""
+    """Return y_beta over F_beta,x: how much of a misalignment wears away (ISO 6336-1, clause 7.4.2)."""
     return 0.15 if steel.treatment != "through_hardened" else min(320.0 / steel.flank_limit_mpa, 1.0)
 
 
 def pitch_running_in(steel: GearGrade) -> float:
-    """y_alpha over f_pb (ISO 6336-1, clause 8.3.5)."""
+    """Return y_alpha over f_pb (ISO 6336-1, clause 8.3.5)."""
     return 0.075 if steel.treatment != "through_hardened" else min(160.0 / steel.flank_limit_mpa, 1.0)
 
 
 def sun_twist_um(
     load_n_per_mm: Numbers, width_mm: Numbers, diameter_mm: Numbers, planets: Numbers, material: ElasticMaterial
 ) -> Numbers:
-    """Misalignment by the twist of a sun whose torque enters at one end.
+    """Return the misalignment by the twist of a sun whose torque enters at one end.
 
     n_p meshes load a solid cylinder evenly along its face: the pitch circle at the far end lags by
     4 n_p F_m b / (pi G d^2). With one mesh this is the torsional part, 0.0161 um, of the 0.023 um in the f_sh of
@@ -122,21 +111,15 @@ def pin_tilt_um(
     face_stiffness: Numbers,
     material: ElasticMaterial,
 ) -> Numbers:
-    """Misalignment by the tilt of a planet on its pin.
+    """Return the misalignment by the tilt of a planet on its pin.
 
     A pin is a beam of length L between both carriers, which do not let its ends turn. Twice the mesh force F in its
     middle makes the second carrier sway by F / K, where K = 12 E I / L^3 of the pin and the stiffness of one web hold
     it. The middle of the pin turns by 1.5 / L of the sway. Both meshes hold against that with c b^3 / 12 each. The pin
     gives way to their moment by L / (16 E I) of itself and by (1.5 / L)^2 / K with the carrier.
 
-    Args:
-        force_n: F_m of one mesh.
-        width_mm: face width.
-        gap_mm: between planet and carrier, on either side.
-        pin_diameter_mm: of the pin.
-        web_n_per_mm: stiffness of one web per pin, see ``webs``; 0 without webs.
-        face_stiffness: c_gamma,beta of both meshes together.
-        material: of the pin.
+    ``force_n``: F_m of one mesh; ``web_n_per_mm``: stiffness of one web per pin, see ``webs``; 0 without webs;
+    ``face_stiffness``: c_gamma,beta of both meshes together.
     """
     length = width_mm + 2.0 * gap_mm
     bending = material.youngs_modulus_mpa * np.pi * pin_diameter_mm**4 / 64.0
@@ -148,19 +131,13 @@ def pin_tilt_um(
 
 
 def face_load_factor(misalignment_um: Numbers, face_stiffness: Numbers, load_n_per_mm: Numbers) -> Numbers:
-    """K_Hbeta by the mesh's own stiffness (ISO 6336-1, clause 7.3.2): with contact across the face, or on part of it.
-
-    Args:
-        misalignment_um: F_beta,y, after running in.
-        face_stiffness: c_gamma,beta.
-        load_n_per_mm: F_m / b, with K_A, K_V and the load sharing.
-    """
+    """Return K_Hbeta (ISO 6336-1, clause 7.3.2) from F_beta,y after running in and F_m / b with K_A, K_V, K_gamma."""
     excess = 0.5 * misalignment_um * face_stiffness / load_n_per_mm
     return np.where(excess <= 1.0, 1.0 + excess, 2.0 * np.sqrt(np.maximum(excess, 1.0)))[()]
 
 
 def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Numbers) -> Numbers:
-    """K_Fbeta = K_Hbeta^N_F, h the tooth depth (ISO 6336-1, clause 7.6)."""
+    """Return K_Fbeta = K_Hbeta^N_F, h the tooth depth (ISO 6336-1, clause 7.6)."""
     slender = np.maximum(width_mm / (TOOTH_DEPTH * module_mm), 1e-9)
     return np.power(face_factor, 1.0 / (1.0 + 1.0 / slender + 1.0 / np.square(slender)))
 
@@ -168,17 +145,14 @@ def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Nu
 def transverse_load_factors(
     load_n_per_mm: Numbers, stiffness: Numbers, deviation_um: Numbers, contact_ratio: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """K_Halpha and K_Falpha by method B, within their bounds (ISO 6336-1:2006, equations 73 to 76 in clause 8.3).
+    """Return K_Halpha and K_Falpha by method B, within their bounds (ISO 6336-1:2006, equations 73 to 76 in clause
+    8.3).
 
     Where two or three pairs share the load instead of one or two, at contact ratios above 2, pitch deviations weigh
     sqrt(2 (epsilon - 1) / epsilon) instead of epsilon / 2 times as much; both are 1 at 2. The equations are those that
     three open implementations of the standard have alike; its text was not at hand.
 
-    Args:
-        load_n_per_mm: F_tH / b, with K_A, K_V, K_Hbeta and the load sharing.
-        stiffness: c_gamma,alpha.
-        deviation_um: f_pb - y_alpha.
-        contact_ratio: epsilon_alpha.
+    ``load_n_per_mm``: F_tH / b, with K_A, K_V, K_Hbeta and the load sharing; ``deviation_um``: f_pb - y_alpha.
     """
     uneven = 0.4 * stiffness * deviation_um / load_n_per_mm
     several = 0.9 + uneven * np.sqrt(2.0 * np.maximum(contact_ratio - 1.0, 0.0) / contact_ratio)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating.capacity import (
     FLANK_CURVES,
     ROOT_CURVES,
@@ -30,50 +29,39 @@ class GearRating:
 
     gear: str  #: ``sun``, ``planet`` or ``ring``
     steel: str  #: name of its grade
-    #: treatment, quality, hardness_hv: of that grade
-    treatment: str
-    quality: str
-    hardness_hv: float
-    #: tip_diameter_mm, root_diameter_mm: d_a, d_f
-    tip_diameter_mm: float
-    root_diameter_mm: float
+    treatment: str  #: of that grade
+    quality: str  #: likewise
+    hardness_hv: float  #: likewise
+    tip_diameter_mm: float  #: d_a
+    root_diameter_mm: float  #: d_f
     tip_thickness_mm: float  #: s_a of the drawn teeth
-    #: contact_number_mpa, bending_number_mpa: sigma_H,lim and sigma_F,lim
-    contact_number_mpa: float
-    bending_number_mpa: float
-    #: contact_stress_mpa, contact_limit_mpa, flank_safety: sigma_H, sigma_HG, S_H
-    contact_stress_mpa: float
-    contact_limit_mpa: float
-    flank_safety: float
-    #: bending_stress_mpa, bending_limit_mpa, root_safety: sigma_F, sigma_FG, S_F
-    bending_stress_mpa: float
-    bending_limit_mpa: float
-    root_safety: float
-    #: overload_flank_safety, overload_root_safety: against static failure under the overload
-    overload_flank_safety: float
-    overload_root_safety: float
+    contact_number_mpa: float  #: sigma_H,lim
+    bending_number_mpa: float  #: sigma_F,lim
+    contact_stress_mpa: float  #: sigma_H
+    contact_limit_mpa: float  #: sigma_HG
+    flank_safety: float  #: S_H
+    bending_stress_mpa: float  #: sigma_F
+    bending_limit_mpa: float  #: sigma_FG
+    root_safety: float  #: S_F
+    overload_flank_safety: float  #: against static failure under the overload
+    overload_root_safety: float  #: likewise
     single_contact_factor: float  #: Z_B or Z_D
-    #: finish_factor, work_hardening_factor: Z_L Z_v Z_R and Z_W
-    finish_factor: float
-    work_hardening_factor: float
-    #: notch_sensitivity_factor, roughness_factor, mean_stress_factor: Y_delta rel T, Y_R rel T, Y_M
-    notch_sensitivity_factor: float
-    roughness_factor: float
-    mean_stress_factor: float
-    #: form_factor, stress_correction, rim_factor: Y_F, Y_S, Y_B
-    form_factor: float
-    stress_correction: float
-    rim_factor: float
+    finish_factor: float  #: Z_L Z_v Z_R
+    work_hardening_factor: float  #: Z_W
+    notch_sensitivity_factor: float  #: Y_delta rel T
+    roughness_factor: float  #: Y_R rel T
+    mean_stress_factor: float  #: Y_M
+    form_factor: float  #: Y_F
+    stress_correction: float  #: Y_S
+    rim_factor: float  #: Y_B
     #: flank_cycles, root_cycles: load cycles that do the damage of the whole duty, at the peak torque or at the highest
     #: level of the duty, if that is higher
     flank_cycles: float
     root_cycles: float
-    #: flank_life_factor, root_life_factor: Z_NT, Y_NT
-    flank_life_factor: float
-    root_life_factor: float
-    #: static_flank_life_factor, static_root_life_factor: Z_NT and Y_NT of a few load cycles
-    static_flank_life_factor: float
-    static_root_life_factor: float
+    flank_life_factor: float  #: Z_NT
+    root_life_factor: float  #: Y_NT
+    static_flank_life_factor: float  #: Z_NT of a few load cycles
+    static_root_life_factor: float  #: Y_NT, likewise
     static_notch_factor: float  #: Y_delta rel T for static stress
 
 
@@ -88,32 +76,25 @@ class MeshRating:
     tangential_force_n: float  #: F_t at the motor's peak torque, if the planets shared it evenly
     pitch_speed_m_per_s: float  #: against the carrier, at the motor's no-load speed
     contact_ratio: float  #: epsilon_alpha
-    #: gear_ratio, pinion_diameter_mm: u, d1
-    gear_ratio: float
-    pinion_diameter_mm: float
-    #: zone_factor, elasticity_factor, contact_ratio_factor: Z_H, Z_E in sqrt(MPa), Z_epsilon
-    zone_factor: float
-    elasticity_factor: float
-    contact_ratio_factor: float
-    #: mesh_stiffness_n_per_mm_um, misalignment_um, pitch_deviation_um: c_gamma,alpha; F_beta,y; f_pb less y_alpha
-    mesh_stiffness_n_per_mm_um: float
-    misalignment_um: float
-    pitch_deviation_um: float
-    #: application_factor, sharing_factor, dynamic_factor: K_A, K_gamma, K_V
-    application_factor: float
-    sharing_factor: float
-    dynamic_factor: float
-    #: face_load_factor, root_face_load_factor: K_Hbeta, K_Fbeta
-    face_load_factor: float
-    root_face_load_factor: float
-    #: transverse_load_factor, root_transverse_load_factor: K_Halpha, K_Falpha
-    transverse_load_factor: float
-    root_transverse_load_factor: float
+    gear_ratio: float  #: u
+    pinion_diameter_mm: float  #: d1
+    zone_factor: float  #: Z_H
+    elasticity_factor: float  #: Z_E in sqrt(MPa)
+    contact_ratio_factor: float  #: Z_epsilon
+    mesh_stiffness_n_per_mm_um: float  #: c_gamma,alpha
+    misalignment_um: float  #: F_beta,y
+    pitch_deviation_um: float  #: f_pb less y_alpha
+    application_factor: float  #: K_A
+    sharing_factor: float  #: K_gamma
+    dynamic_factor: float  #: K_V
+    face_load_factor: float  #: K_Hbeta
+    root_face_load_factor: float  #: K_Fbeta
+    transverse_load_factor: float  #: K_Halpha
+    root_transverse_load_factor: float  #: K_Falpha
     overload_face_load_factor: float
     overload_root_face_load_factor: float
     overload_transverse_load_factor: float
     overload_root_transverse_load_factor: float
-    #: pinion, wheel: the gears
     pinion: GearRating
     wheel: GearRating
 
@@ -126,7 +107,6 @@ class Rating:
     planet_gap_mm: float  #: between the tips of neighbouring planets
     highest_share: float  #: largest torque of the duty over the motor's peak torque, at least 1, to which limits refer
     overload_share: float  #: torque of the overload over the motor's peak torque
-    #: sun_mesh, ring_mesh: the meshes
     sun_mesh: MeshRating
     ring_mesh: MeshRating
 
@@ -148,24 +128,27 @@ class Rating:
         return min(gear.root_safety for gear in self.gears)
 
     def of(self, gear: str) -> tuple[float, float]:
-        """The least S_H and S_F of ``sun``, ``planet`` or ``ring``."""
+        """Return the least S_H and S_F of ``sun``, ``planet`` or ``ring``."""
         found = [one for one in self.gears if one.gear == gear]
         return min(one.flank_safety for one in found), min(one.root_safety for one in found)
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return everything as plain values."""
         return asdict(self)
 
 
 def rate(stage: Stage, width_mm: float) -> Rating:
-    """The rating of a stage of plain numbers at a face width."""
+    """Return the rating of a stage of plain numbers at a face width."""
     (found,) = ratings(stage, width_mm)
     return found
 
 
 def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
-    """The ratings of all gear sets of a stage, each at its face width."""
+    """Return the ratings of all gear sets of a stage, each at its face width."""
     sun, ring = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
+    gears = stage.gears
+    # Between the tips of neighbouring planets.
+    gap_mm = 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
 
     def one(place: int) -> Rating:
         def number(value: Numbers) -> float:
@@ -173,7 +156,7 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
 
         return Rating(
             face_width_mm=number(width_mm),
-            planet_gap_mm=number(_planet_gap_mm(stage.gears)),
+            planet_gap_mm=number(gap_mm),
             highest_share=highest_share(stage.settings.parts.duty),
             overload_share=stage.overload_share,
             sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number),
@@ -183,13 +166,8 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
     return tuple(map(one, range(np.size(width_mm))))
 
 
-def _planet_gap_mm(gears: GearSet) -> Numbers:
-    """Between the tips of neighbouring planets."""
-    return 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
-
-
 def _drawn(stage: Stage, gear: str) -> ExternalGear | InternalGear:
-    """A gear with the backlash that it is drawn with."""
+    """Return a gear with the backlash that it is drawn with."""
     thinning = stage.settings.tooth_thinning_mm(stage.gears.module_mm)
     if gear == "ring":
         return stage.gears.ring(thinning)

@@ -39,20 +39,16 @@ class Member:
     single_contact: Numbers  #: Z_B or Z_D alone
     form: ToothForm  #: of its tooth
     rim_factor: Numbers  #: Y_B
-    #: flank_cycles, root_cycles: equivalent load cycles at ``life.highest_share``
-    flank_cycles: Numbers
-    root_cycles: Numbers
-    #: flank_life, root_life: Z_NT and Y_NT at these
-    flank_life: Numbers
-    root_life: Numbers
+    flank_cycles: Numbers  #: equivalent load cycles at ``capacity.highest_share``
+    root_cycles: Numbers  #: likewise
+    flank_life: Numbers  #: Z_NT at these
+    root_life: Numbers  #: Y_NT at these
     bending_factor: Numbers  #: Y_M
     work_hardening: float  #: Z_W
-    #: flank_limit_mpa, root_limit_mpa: sigma_HG and sigma_FG
-    flank_limit_mpa: Numbers
-    root_limit_mpa: Numbers
-    #: overload_flank_limit_mpa, overload_root_limit_mpa: the same against static failure
-    overload_flank_limit_mpa: float
-    overload_root_limit_mpa: Numbers
+    flank_limit_mpa: Numbers  #: sigma_HG
+    root_limit_mpa: Numbers  #: sigma_FG
+    overload_flank_limit_mpa: float  #: sigma_HG against static failure
+    overload_root_limit_mpa: Numbers  #: sigma_FG, likewise
     carries: Safeties  #: load per face width at a safety of 1, each with its own load factors
 
 
@@ -87,14 +83,12 @@ class Mesh:
     """Sun with planet, or planet with ring; the pinion is the smaller gear."""
 
     internal: bool  #: whether the wheel is the ring
-    #: pinion, wheel: both gears
     pinion: Member
     wheel: Member
-    #: pinion_teeth, wheel_teeth, diameter_mm, contact_ratio: z1, z2, d1, epsilon_alpha
-    pinion_teeth: Numbers
-    wheel_teeth: Numbers
-    diameter_mm: Numbers
-    contact_ratio: Numbers
+    pinion_teeth: Numbers  #: z1
+    wheel_teeth: Numbers  #: z2
+    diameter_mm: Numbers  #: d1
+    contact_ratio: Numbers  #: epsilon_alpha
     working_angle_rad: Numbers  #: alpha_wt
     force_n: Numbers  #: tangential force at the motor's peak torque, shared evenly by the planets
     sharing: Numbers  #: K_gamma
@@ -118,18 +112,16 @@ class Stage:
     """Both meshes of one gear set, or of arrays of them, with the limits of the face width."""
 
     gears: GearSet  #: the gear sets
-    #: sun_mesh, ring_mesh: the meshes
     sun_mesh: Mesh
     ring_mesh: Mesh
     settings: ActuatorSettings  #: of stage 1
     webs: WebSection  #: cross-sections of the carrier's webs
-    #: width_low_mm, width_high_mm: least and largest face width allowed
-    width_low_mm: Numbers
-    width_high_mm: Numbers
+    width_low_mm: Numbers  #: least face width allowed
+    width_high_mm: Numbers  #: largest face width allowed
     carried: tuple[Safeties, Safeties]  #: ``Mesh.least_carried`` of both meshes
 
     def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "Stage":
-        """Some of the gear sets, by a mask or indices; enough for ``safeties``.
+        """Return some of the gear sets, by a mask or indices; enough for ``safeties``.
 
         The gears in the meshes (``Mesh.pinion`` and ``wheel``) stay those of all sets: what they carry is in
         ``carried``.
@@ -139,11 +131,11 @@ class Stage:
         return found
 
     def loads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
-        """Loads of sun mesh and ring mesh under the duty, at the peak torque and a face width."""
+        """Return the loads of sun mesh and ring mesh under the duty, at the peak torque and a face width."""
         return self._loads(width_mm, self.settings.parts.rating.application_factor, moving=True)
 
     def overloads(self, width_mm: Numbers) -> tuple[MeshLoad, MeshLoad]:
-        """Loads of both meshes under the overload: a single event, so that K_A and K_V do not apply."""
+        """Return the loads of both meshes under the overload: a single event, so that K_A and K_V do not apply."""
         return self.single_loads(width_mm, self.overload_share)
 
     @property
@@ -157,7 +149,7 @@ class Stage:
         return self._loads(width_mm, share, moving=False)
 
     def _loads(self, width_mm: Numbers, factor: Numbers, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
-        """Loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
+        """Return the loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
         data, materials = self.settings.parts.rating, self.settings.materials
         meshes = (self.sun_mesh, self.ring_mesh)
         applied = [factor * mesh.sharing * mesh.force_n / width_mm for mesh in meshes]
@@ -191,15 +183,9 @@ class Stage:
         )
 
     def _load(
-        self,
-        mesh: Mesh,
-        width_mm: Numbers,
-        dynamic: Numbers,
-        mean: Numbers,
-        stiffness: Numbers,
-        elastic_um: Numbers,
+        self, mesh: Mesh, width_mm: Numbers, dynamic: Numbers, mean: Numbers, stiffness: Numbers, elastic_um: Numbers
     ) -> MeshLoad:
-        """The factors of one mesh from its mean load per face width and its elastic misalignment."""
+        """Return the factors of one mesh from its mean load per face width and its elastic misalignment."""
         grade, module = self.settings.parts.rating.accuracy_class, self.gears.module_mm
         made = np.hypot(
             load.helix_deviation_um(mesh.diameter_mm, width_mm, grade),
@@ -213,7 +199,7 @@ class Stage:
         return MeshLoad(mean, dynamic, face, root_face, flank, root, stiffness, left_um)
 
     def safeties(self, width_mm: Numbers) -> Safeties:
-        """The least safety factors of all flanks and roots at a face width."""
+        """Return the least safety factors of all flanks and roots at a face width."""
         both = [
             safeties_of(carried, acting(duty, over))
             for carried, duty, over in zip(self.carried, self.loads(width_mm), self.overloads(width_mm), strict=True)
@@ -221,7 +207,7 @@ class Stage:
         return Safeties(*map(np.minimum, *both))
 
     def static_safeties(self, width_mm: Numbers, share: Numbers) -> tuple[Numbers, Numbers]:
-        """The least static S_H and S_F under a single event of ``share`` times the peak torque."""
+        """Return the least static S_H and S_F under a single event of ``share`` times the peak torque."""
         both = [
             safeties_of(carried, acting(over, over))
             for carried, over in zip(self.carried, self.single_loads(width_mm, share), strict=True)
@@ -231,7 +217,7 @@ class Stage:
 
 
 def _rows(record: Any, chosen: NDArray[np.bool_] | NDArray[np.intp], shape: tuple[int, ...]) -> Any:
-    """A record of records with some rows of all arrays of a shape, without the members of meshes."""
+    """Return a record of records with some rows of all arrays of a shape, without the members of meshes."""
     if isinstance(record, np.ndarray):
         return record[chosen] if record.shape == shape else record
     if isinstance(record, GearSet):
@@ -247,12 +233,12 @@ def _rows(record: Any, chosen: NDArray[np.bool_] | NDArray[np.intp], shape: tupl
 
 
 def acting(duty: MeshLoad, over: MeshLoad) -> Safeties:
-    """The loads that safety factors are against, in their order."""
+    """Return the loads that safety factors are against, in their order."""
     return Safeties(duty.flank_n_per_mm, duty.root_n_per_mm, over.flank_n_per_mm, over.root_n_per_mm)
 
 
 def safeties_of(carries: Safeties, acting: Safeties) -> Safeties:
-    """Safety factors: contact stress grows with the root of the load, bending stress with the load."""
+    """Return the safety factors: contact stress grows with the root of the load, bending stress with the load."""
     return Safeties(
         np.sqrt(carries.flank / acting.flank),
         carries.root / acting.root,
@@ -262,6 +248,6 @@ def safeties_of(carries: Safeties, acting: Safeties) -> Safeties:
 
 
 def required(settings: ActuatorSettings) -> Safeties:
-    """The least safety factors that the settings allow."""
+    """Return the least safety factors that the settings allow."""
     data = settings.parts.rating
     return Safeties(data.flank_safety, data.root_safety, data.overload_flank_safety, data.overload_root_safety)

@@ -27,16 +27,12 @@ _HIGHEST_SHARE = 50.0
 
 
 def strike_safeties(stage: Stage, width_mm: Numbers, share: Numbers, jumps: Numbers) -> tuple[Numbers, Numbers]:
-    """The least S_H and S_F under the duty with a strike in every jump.
+    """Return the least S_H and S_F under the duty with a strike in every jump.
 
     They are those at the highest torque of all. A strike below the duty's own highest level times K_A adds only its
     load cycle.
 
-    Args:
-        stage: one gear set, or arrays of them.
-        width_mm: face width.
-        share: torque of the strike over the peak torque.
-        jumps: number of them.
+    ``share``: torque of the strike over the peak torque.
     """
     passes = dict(zip(("sun", "planet", "ring"), passes_per_rad(stage.gears), strict=True))
     highest = np.maximum(share, _usual_share(stage))
@@ -51,22 +47,20 @@ def strike_safeties(stage: Stage, width_mm: Numbers, share: Numbers, jumps: Numb
 
 
 def _usual_share(stage: Stage) -> float:
-    """The duty's highest level times K_A, over the peak torque."""
+    """Return the duty's highest level times K_A, over the peak torque."""
     return stage.settings.parts.rating.application_factor * highest_share(stage.settings.parts.duty)
 
 
 def strike_shares(
     stage: Stage, width_mm: NDArray[np.float64], required: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Torques of a strike in every jump, over the peak torque, at which flanks and roots have the required safeties.
+    """Return the torques of a strike in every jump, over the peak torque, at which flanks and roots have the required
+    safeties.
 
     Found in logarithms, in which safety over torque is nearly straight, by the Illinois variant of the false position.
     0 for gears that do not even last their duty.
 
-    Args:
-        stage: arrays of n gear sets.
-        width_mm: their face widths, shape (n,).
-        required: S_H and S_F.
+    ``required``: S_H and S_F.
     """
     jumps = stage.settings.parts.duty.jumps
 
@@ -97,14 +91,10 @@ def strike_shares(
 
 
 def _safeties(
-    stage: Stage,
-    member: Member,
-    load: MeshLoad,
-    passes: Numbers,
-    shares: tuple[Numbers, Numbers],
-    jumps: Numbers,
+    stage: Stage, member: Member, load: MeshLoad, passes: Numbers, shares: tuple[Numbers, Numbers], jumps: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """S_H and S_F of one gear in one mesh, from what it carries under the usual duty and the change of its factors.
+    """Return S_H and S_F of one gear in one mesh, from what it carries under the usual duty and the change of its
+    factors.
 
     ``shares`` are those of the strike and of the highest torque, at which ``load`` is.
     """
@@ -126,10 +116,7 @@ def _safeties(
 def _passes(
     stage: Stage, passes_per_rad: Numbers, shares: tuple[Numbers, Numbers], slope: float, *, idler: bool
 ) -> Numbers:
-    """Load cycles per jump at the highest torque that do the damage of the duty and the strike.
-
-    See ``life.equivalent_cycles``, which has the same for the duty alone.
-    """
+    """Return load cycles per jump that do the damage of duty and strike, see ``equivalent_cycles``."""
     (share, highest), duty = shares, stage.settings.parts.duty
     factor = stage.settings.parts.rating.application_factor
 
@@ -144,6 +131,6 @@ def _passes(
 
 
 def _reversal(stage: Stage, highest: Numbers) -> Numbers:
-    """The highest torque against the push over that of the push, see ``life.reversal_ratio``."""
+    """Return the highest torque against the push over that of the push, see ``reversal_ratio``."""
     backward = max((level for level, _ in stage.settings.parts.duty.reversed_levels), default=0.0)
     return stage.settings.parts.rating.application_factor * backward / highest

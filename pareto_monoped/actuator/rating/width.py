@@ -1,9 +1,4 @@
-"""The least face width at which a stage keeps all its safety factors, for thousands of gear sets at once.
-
-Face width from the strength of the sun's teeth: Lewis with Barth's velocity factor.
-
-The face width of a gear set under either set of rules.
-"""
+"""The least face width of gear sets: by all safety factors of a stage, or by Lewis with Barth's velocity factor."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -22,27 +17,22 @@ from pareto_monoped.geometry.shapes import Numbers
 
 _SCAN = 12
 """Face widths that are tried first, evenly spread between the limits."""
-
 _FLOOR_STEPS = 2
 """How often the floor of ``WidthBounds`` is raised: once leaves twice as many sets to rate, thrice saves no time."""
-
 _LOAD_EXPONENTS = Safeties(2.0, 1.0, 2.0, 1.0)
 """The load that a flank carries falls with the square of its safety factor, that of a root with the factor itself."""
-
 STRENGTH_RULES = {
     "flank_strength": ("flank",),
     "root_strength": ("root",),
     "overload_strength": ("overload_flank", "overload_root"),
 }
 """Rule -> which safety factors it is about."""
-
-
 LOAD_RULES = frozenset((*STRENGTH_RULES, "output_bearing", "planet_bearing"))
 """Rules that a weaker motor would keep: gear sets that break no other fit, and are too weak."""
 
 
 def strength_margins(safeties: Safeties, stage: Stage) -> dict[str, Numbers]:
-    """For each rule of strength, the least safety factor over the required one, less 1."""
+    """Return the least safety factor over the required one, less 1, for each rule of strength."""
     least = required(stage.settings)
     return {
         rule: reduce(np.minimum, (getattr(safeties, name) / getattr(least, name) for name in names)) - 1.0
@@ -68,12 +58,12 @@ class WidthBounds:
     hopeless: NDArray[np.bool_]
 
     def where(self, mask: NDArray[np.bool_]) -> "WidthBounds":
-        """Those of some of the sets."""
+        """Return the bounds of some of the sets."""
         return WidthBounds(floor_mm=self.floor_mm[mask], enough=self.enough[mask], hopeless=self.hopeless[mask])
 
 
 def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
-    """The bounds of arrays of gear sets; arguments as of ``least_width_mm``."""
+    """Return the bounds of arrays of gear sets; arguments as of ``least_width_mm``."""
     low, high = _limits(stage)
     most = _margin(stage, high, off)
     enough = most >= 0.0
@@ -87,15 +77,12 @@ def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
 
 
 def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> NDArray[np.float64]:
-    """The least multiple of the step at which all safety factors are kept.
+    """Return the least multiple of the step at which all safety factors are kept.
 
     Where the largest width is not enough, but safety no longer grows there, a few widths are tried first, to find the
     part where it grows. Bisection then finds the first width that is enough.
 
-    Args:
-        stage: one gear set, or arrays of them.
-        off: names of rules that need not be kept.
-        bounds: ``width_bounds``, if they are known already.
+    ``off``: names of rules that need not be kept.
 
     Returns:
         The shape of the gear sets. Where no width is enough, the best of those tried.
@@ -122,7 +109,7 @@ def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds 
 
 
 def _margin(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
-    """The least margin of strength at widths in steps."""
+    """Return the least margin of strength at widths in steps."""
     margins = strength_margins(stage.safeties(steps * stage.settings.parts.rating.face_step_mm), stage)
     kept = [value for rule, value in margins.items() if rule not in off]
     return np.asarray(reduce(np.minimum, kept)) if kept else np.full(steps.shape, np.inf)
@@ -142,28 +129,27 @@ def _shortage(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) ->
 
 
 def _limits(stage: Stage) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Least and largest width allowed, in steps; whole numbers."""
+    """Return the least and largest width allowed, in steps; whole numbers."""
     step = stage.settings.parts.rating.face_step_mm
     low = np.atleast_1d(np.ceil(np.round(stage.width_low_mm / step, 6)))
     return low, np.maximum(low, np.atleast_1d(np.floor(np.round(stage.width_high_mm / step, 6))))
 
 
 def _in_mm(steps: NDArray[np.float64], stage: Stage) -> NDArray[np.float64]:
-    """Widths in steps, in mm."""
     step = stage.settings.parts.rating.face_step_mm
     # Divided by a whole number where there is one: 123 steps of 0.1 mm are then 12.3 mm to the last bit.
     return steps / round(1.0 / step) if round(1.0 / step) * step == 1.0 else steps * step
 
 
 def _tried(low: NDArray[np.float64], high: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    """The widths tried first, from the least to the largest, in steps."""
+    """Return the widths tried first, from the least to the largest, in steps."""
     return [np.round(low + share * (high - low)) for share in np.linspace(0.0, 1.0, _SCAN)]
 
 
 def _scanned(
     stage: Stage, low: NDArray[np.float64], high: NDArray[np.float64], off: Collection[str]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """The widths tried first, from ``low`` to ``high``; a set is left alone once a width is enough.
+    """Return the widths tried first, from ``low`` to ``high``; a set is left alone once a width is enough.
 
     Returns:
         The first that is enough, NaN where none is; the last before it, or ``low`` less 1; the best one where none is.
@@ -194,23 +180,22 @@ _LEWIS = np.array(
         (38, 0.384), (43, 0.397), (50, 0.409), (60, 0.422), (75, 0.435), (100, 0.447), (150, 0.460), (300, 0.472),
     ]
 )  # fmt: skip
-
 LEAST_WIDTH_MODULES = 6.0
 """Face width is at least this many modules (Niemann/Winter: 6 to 10 for narrow gears), where strength asks for less."""
 
 
 def lewis_form_factor(teeth: Numbers) -> NDArray[np.float64]:
-    """Y, interpolated linearly; constant beyond the table's ends."""
+    """Return Y, interpolated linearly; constant beyond the table's ends."""
     return np.asarray(np.interp(teeth, _LEWIS[:, 0], _LEWIS[:, 1]))
 
 
 def velocity_factor(speed_m_per_s: Numbers) -> Numbers:
-    """Barth's factor for milled or hobbed teeth, (6.1 + v) / 6.1 (Shigley, eq. 14-6b)."""
+    """Return the Barth's factor for milled or hobbed teeth, (6.1 + v) / 6.1 (Shigley, eq. 14-6b)."""
     return (6.1 + speed_m_per_s) / 6.1
 
 
 def lewis_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Least face width at which the sun's teeth carry the motor's peak torque.
+    """Return the least face width at which the sun's teeth carry the motor's peak torque.
 
     Every mesh of the sun carries an equal share of the torque. The sun's teeth are the weakest: all ratios are 4 or
     more, so no planet has fewer teeth. The speed is that of the pitch point against the carrier, which decides how hard
@@ -226,10 +211,7 @@ def lewis_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> 
 
 
 def face_width_mm(gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Least face width that carries the motor's torque, of one gear set or of arrays of them.
-
-    Under ``paper`` by ``strength``, under ``iso6336`` by ``rating``; there, if no width is enough, the best one.
-    """
+    """Return the least face width that carries the motor's torque; the best one if none does (``iso6336``)."""
     if settings.rules == "paper":
         return lewis_width_mm(gears, motor, settings)
     return np.asarray(least_width_mm(build_stage(gears, motor, family, settings), settings.constraints_off))[()]

@@ -1,15 +1,10 @@
-"""The output of a knee actuator between its two supports: forces, tilt, and what the rules ask of the bearings.
+"""Loads on the bearings of output and planets, and what the rules ask of them, for one actuator or arrays of them.
 
-The chain pulls at the sprocket. The main bearing lies behind it in the actuator, the far bearing in front of it in the
-hip coupling. All functions take one actuator or arrays of them.
-
-A row of balls under a radial force and a tilting moment: how they share the load, and the life that is left.
-
-The static model of ISO/TS 16281 (Harris, Rolling Bearing Analysis, ch. 7): rigid rings, each ball a Hertzian spring
-between the centres of its two grooves. The inner ring moves by ``shift`` along the force and turns by ``tilt`` about
-the axis across it, so that balls on opposite sides are pressed against opposite flanks. Lengths in mm, forces in N.
-
-Load on the planets' bearings, and the face width that they need; for one gear set or for arrays of them.
+The chain pulls at the knee's sprocket. The main bearing lies behind it in the actuator, the far bearing in front of it
+in the hip coupling. The main bearing is a row of balls under a radial force and a tilting moment, by the static model
+of ISO/TS 16281 (Harris, Rolling Bearing Analysis, ch. 7): rigid rings, each ball a Hertzian spring between the centres
+of its two grooves. The inner ring moves by ``shift`` along the force and turns by ``tilt`` about the axis across it, so
+that balls on opposite sides are pressed against opposite flanks. Lengths in mm, forces in N.
 """
 
 from collections.abc import Callable
@@ -30,7 +25,6 @@ from pareto_monoped.errors import SimulationError, complaint
 from pareto_monoped.geometry.shapes import Numbers
 
 Floats = NDArray[np.float64]
-
 GROOVE = 0.52
 """Groove radius over ball diameter, as ISO 281 and ISO 76 assume for deep groove ball bearings."""
 _YOUNGS_MODULUS_MPA, _POISSON_RATIO = 207_000.0, 0.3  # bearing steel, as in ISO/TS 16281 and ISO 76
@@ -43,22 +37,18 @@ _STRIBECK = 5.0  # ISO 76: the most loaded ball carries 5 / Z of a radial force
 class RowLoad:
     """How a row carries its loads; shape (n,) for n loads."""
 
-    #: shift_mm, tilt_rad: of the inner ring
-    shift_mm: Floats
-    tilt_rad: Floats
+    shift_mm: Floats  #: of the inner ring
+    tilt_rad: Floats  #: likewise
     largest_n: Floats  #: force on the most loaded ball
     equivalent_n: Floats  #: radial force that would give the same rating life (dynamic equivalent load P)
     static_safety: Floats  #: static rating over the load, judged by the most loaded ball (s0)
 
 
 def row_load(bearing: RatedBearing, force_n: Floats, moment_n_m: Floats, clearance_mm: float) -> RowLoad:
-    """A single row under radial forces and moments in the same plane.
+    """Return a single row under radial forces and moments in the same plane.
 
-    Args:
-        bearing: the bearing.
-        force_n: radial force, not negative, shape (n,).
-        moment_n_m: tilting moment, likewise; force and moment are not both zero.
-        clearance_mm: radial internal clearance when fitted.
+    ``force_n``: radial force, not negative, shape (n,); ``moment_n_m``: tilting moment, likewise; force and moment are
+    not both zero.
 
     Raises:
         SimulationError: no balance was found.
@@ -99,7 +89,7 @@ class _Row:
         return force, radial / distance, axial / distance, distance
 
     def balance(self, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
-        """Shift and tilt at which the balls carry the loads.
+        """Return the shift and tilt at which the balls carry the loads.
 
         Newton's method on the elastic energy less the work of the loads, which is convex. Steps are halved until the
         energy falls.
@@ -156,7 +146,7 @@ class _Row:
 
 
 def contact_stiffness(bearing: RatedBearing) -> float:
-    """Force of one ball between both rings over the approach of the grooves to the power 1.5, in N/mm^1.5.
+    """Return the force of one ball between both rings over the approach of the grooves to the power 1.5, in N/mm^1.5.
 
     Hertz with the closed approximations of the elliptic integrals by Hamrock and Dowson (Ball Bearing Lubrication,
     1981, ch. 3); they hold to 3 percent.
@@ -197,24 +187,24 @@ _FORCES_N = np.geomspace(1.0, 1e6, 400)
 
 
 def main_bearing_depth_mm(at: Layout) -> Numbers:
-    """How far the middle of the main bearing lies behind the output face."""
+    """Return how far the middle of the main bearing lies behind the output face."""
     return -0.5 * (at.z_bearing_front + at.z_bearing_back)
 
 
 def chain_pull_n(output_torque_n_m: Numbers, service: ServiceData) -> Numbers:
-    """Pull of the chain at a torque of the knee's output."""
+    """Return the pull of the chain at a torque of the knee's output."""
     return output_torque_n_m / (1e-3 * service.chain_radius_mm)
 
 
 def knee_forces_n(output_torque_n_m: Numbers, at: Layout, service: ServiceData) -> tuple[Numbers, Numbers]:
-    """Radial forces on main and far bearing; the chain pulls between them, and both are pivots."""
+    """Return the radial forces on main and far bearing; the chain pulls between them, and both are pivots."""
     pull = chain_pull_n(output_torque_n_m, service)
     near, far = service.chain_offset_mm + main_bearing_depth_mm(at), service.drive_support_mm
     return pull * far / (near + far), pull * near / (near + far)
 
 
 def line_tilt_rad(output_torque_n_m: Numbers, at: Layout, service: ServiceData) -> Numbers:
-    """Greatest angle between the output's axis and that of its bearings.
+    """Return the greatest angle between the output's axis and that of its bearings.
 
     Each support gives way by half its clearance and, the main bearing, by the compression of its balls. The chain pulls
     both the same way; the greater shift over their distance is the largest angle that any wear of the other leaves.
@@ -228,7 +218,8 @@ def line_tilt_rad(output_torque_n_m: Numbers, at: Layout, service: ServiceData) 
 def output_margins(
     output_torque_n_m: Numbers, at: Layout, settings: ActuatorSettings
 ) -> dict[str, tuple[Numbers, float]]:
-    """Life, static safeties and tilt of the output's bearings at the knee, each with what the settings ask for.
+    """Return the life, static safeties and tilt of the output's bearings at the knee, each with what the settings ask
+    for.
 
     The hip is left out: its main bearing carries foot force and weight, a tenth of the chain's pull.
     """
@@ -240,7 +231,16 @@ def output_margins(
     levels = [_tabulated(at, share * main, service, 0) for share in duty.torque_shares]
     rollers = life_turns([share * far for share in duty.torque_shares], support.dynamic_rating_n, LIFE_EXPONENT, duty)
     return {
-        "main life": (life_turns(levels, _ratings_n(at), 3.0, duty) / per_hour, service.bearing_life_min_h),
+        "main life": (
+            life_turns(
+                levels,
+                _by_bearing(at, lambda bearing, _: np.asarray(bearing.dynamic_rating_n), np.zeros(())),
+                3.0,
+                duty,
+            )
+            / per_hour,
+            service.bearing_life_min_h,
+        ),
         "main s0": (_tabulated(at, main, service, 1), service.static_safety_min),
         "main overload s0": (_tabulated(at, overload * main, service, 1), service.overload_static_safety_min),
         "far life": (rollers / per_hour, service.bearing_life_min_h),
@@ -251,18 +251,13 @@ def output_margins(
 
 
 def output_margin(output_torque_n_m: Numbers, at: Layout, settings: ActuatorSettings) -> Numbers:
-    """The least of ``output_margins`` over what is asked for, less 1; -1 where the catalogue has no main bearing."""
+    """Return the least of ``output_margins`` over what is asked for, less 1; -1 without main bearing."""
     shares = [value / least for value, least in output_margins(output_torque_n_m, at, settings).values()]
     return np.nan_to_num(reduce(np.minimum, shares), nan=0.0) - 1.0
 
 
-def _ratings_n(at: Layout) -> Numbers:
-    """C of the main bearing."""
-    return _by_bearing(at, lambda bearing, _: np.asarray(bearing.dynamic_rating_n), np.zeros(()))
-
-
 def _tabulated(at: Layout, force_n: Numbers, service: ServiceData, column: int) -> Numbers:
-    """Equivalent load, static safety or shift of the main bearing under a radial force, from its table."""
+    """Return the equivalent load, static safety or shift of the main bearing under a radial force, from its table."""
 
     def read(bearing: RatedBearing, force: Floats) -> Floats:
         table = _table(bearing, service.bearing_clearance_mm)[column]
@@ -272,7 +267,7 @@ def _tabulated(at: Layout, force_n: Numbers, service: ServiceData, column: int) 
 
 
 def _by_bearing(at: Layout, read: Callable[[RatedBearing, Floats], Floats], force: Floats) -> Numbers:
-    """A function of bearing and force for every row of ``at``; NaN where there is no bearing."""
+    """Return a function of bearing and force for every row of ``at``; NaN where there is no bearing."""
     bore = np.asarray(at.bearing.inner_diameter_mm, dtype=np.float64)
     shape = np.broadcast_shapes(bore.shape, force.shape)
     bores, forces = (np.broadcast_to(values, shape) for values in (bore, force))
@@ -285,19 +280,19 @@ def _by_bearing(at: Layout, read: Callable[[RatedBearing, Floats], Floats], forc
 
 @lru_cache(maxsize=64)
 def _table(bearing: RatedBearing, clearance_mm: float) -> tuple[Floats, Floats, Floats]:
-    """Equivalent load, static safety and shift of a row at ``_FORCES_N``."""
+    """Return the equivalent load, static safety and shift of a row at ``_FORCES_N``."""
     row = row_load(bearing, _FORCES_N, 0.0 * _FORCES_N, clearance_mm)
     return row.equivalent_n, row.static_safety, row.shift_mm
 
 
 def planet_force_n(gears: GearSet, output_torque_n_m: Numbers, settings: ActuatorSettings) -> Numbers:
-    """Force of the most loaded planet on its pin: n F = K_gamma T / r, with the carrier's radius r."""
+    """Return the force of the most loaded planet on its pin: n F = K_gamma T / r, with the carrier's radius r."""
     sharing = load_sharing(gears.planets, settings)
     return 1e3 * sharing * output_torque_n_m / (gears.planets * gears.carrier_radius_mm)
 
 
 def planet_turns(gears: GearSet) -> Numbers:
-    """Turns of a planet against the carrier over the output's (Willis, ring fixed)."""
+    """Return the turns of a planet against the carrier over the output's (Willis, ring fixed)."""
     return gears.ring_teeth / gears.planet_teeth
 
 
@@ -316,7 +311,6 @@ def planet_margin(gears: GearSet, width_mm: Numbers, motor: Motor, settings: Act
 
 
 def _needle_margin(turns: Numbers, force_n: Numbers, width_mm: Numbers, settings: ActuatorSettings) -> Numbers:
-    """``planet_margin`` of needles."""
     rows, service, overload = needle_rows(width_mm, settings), settings.service, settings.parts.rating.overload_factor
     shares = (
         _life_h(turns, force_n, rows.dynamic_rating_n, settings) / service.bearing_life_min_h,
@@ -327,7 +321,7 @@ def _needle_margin(turns: Numbers, force_n: Numbers, width_mm: Numbers, settings
 
 
 def bush_pv(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Pressure times sliding speed of the bushes in MPa m/s, at the duty's mean torque and mean speed."""
+    """Return the pressure times sliding speed of the bushes in MPa m/s, at the duty's mean torque and mean speed."""
     pin = settings.parts.carrier.pin_diameter_mm
     torque = settings.parts.duty.mean_share * gears.ratio * motor.peak_torque_n_m
     pressure = planet_force_n(gears, torque, settings) / (pin * width_mm)
@@ -335,7 +329,7 @@ def bush_pv(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorS
 
 
 def bush_pv_limit(settings: ActuatorSettings) -> float:
-    """What the bushes' material bears without end."""
+    """Return what the bushes' material bears without end."""
     return settings.materials.bush_bronze.pv_limit_mpa_m_per_s
 
 

@@ -1,7 +1,4 @@
-"""The service sheet of one actuator: bearings, bushes, losses, stiffness and backlash, each under the stated duty.
-
-Losses of one actuator by source: tooth meshes, planets on their pins, bearings, churning.
-"""
+"""The service sheet of one actuator under the stated duty: bearings, bushes, losses by source, stiffness, backlash."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,7 +37,7 @@ class Losses:
 
 
 def planet_bearing_loss(gears: GearSet, pin_diameter_mm: float, friction: float) -> Numbers:
-    """Power that the planets' bushes or needles take, over the output power.
+    """Return the power that the planets' bushes or needles take, over the output power.
 
     Each pin passes its share of the output torque to the carrier: n F = T / r, with the carrier's radius r. Against the
     carrier, a planet turns at Nr / Np of the output's speed (Willis). The friction mu F acts at the pin's radius.
@@ -49,7 +46,7 @@ def planet_bearing_loss(gears: GearSet, pin_diameter_mm: float, friction: float)
 
 
 def bearing_loss(bearings: Sequence[BearingService], peak_torque_n_m: float) -> float:
-    """Power that rolling friction takes at the peak torque, over the output power.
+    """Return the power that rolling friction takes at the peak torque, over the output power.
 
     Simple friction model: M = mu P d / 2 with the equivalent load P and the bore d (SKF, Rolling bearings, section
     bearing friction).
@@ -95,7 +92,7 @@ class BushLoad:
 def bush_load(
     gears: GearSet, output_torque_n_m: float, output_speed_rad_per_s: float, pin_diameter_mm: float, length_mm: float
 ) -> BushLoad:
-    """Load on each planet's bush at a torque and a speed of the output."""
+    """Return the load on each planet's bush at a torque and a speed of the output."""
     force_n = 1e3 * output_torque_n_m / (float(gears.planets) * float(gears.carrier_radius_mm))
     turns = float(planet_turns(gears))
     return BushLoad(
@@ -127,13 +124,7 @@ class ServiceSheet:
 
 
 def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: ServiceData | None = None) -> ServiceSheet:
-    """The service sheet of an actuator.
-
-    Args:
-        actuator: the actuator, as built with ``settings``.
-        settings: of stage 1, with the duty.
-        service: pace, forces and fits; default those of the settings.
-    """
+    """Return the service sheet of an actuator."""
     service = service or settings.service
     gears, materials = actuator.gears, settings.materials
     thinning_mm = float(settings.tooth_thinning_mm(gears.module_mm))
@@ -164,7 +155,7 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
 
 
 def _bush_loads(actuator: Actuator, settings: ActuatorSettings, service: ServiceData) -> tuple[BushLoad, BushLoad]:
-    """At the continuous torque and the no-load speed, and at the duty's mean torque and mean speed."""
+    """Return the loads at the continuous torque and the no-load speed, and at the duty's mean torque and mean speed."""
     gears, pin_mm = actuator.gears, settings.parts.carrier.pin_diameter_mm
     (bush,) = (part for part in actuator.parts if part.role is Role.BUSH)
     length_mm = sum(float(prism.z1_mm - prism.z0_mm) for prism in bush.prisms)

@@ -39,7 +39,7 @@ class Stiffness:
 
 
 def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Stiffness:
-    """Torsional stiffness at the output at the peak torque, rotor and housing held.
+    """Return the torsional stiffness at the output at the peak torque, rotor and housing held.
 
     It is an upper bound: rims of gears, spline, the ring's bond, housing, bolted joints and rotor are taken as rigid.
     """
@@ -53,7 +53,7 @@ def stiffness(actuator: Actuator, at: Layout, settings: ActuatorSettings) -> Sti
 
 
 def mesh_compliance(actuator: Actuator) -> float:
-    """Of the teeth, in rad / (N m).
+    """Return the compliance of the teeth in rad / (N m).
 
     A planet is a lever: its tooth force F on the sun and on the ring moves its centre by the mean of what both meshes
     give way. From the elastic energy of n planets with F = T / (2 n r cos alpha) in either mesh of stiffness k,
@@ -72,7 +72,7 @@ def mesh_compliance(actuator: Actuator) -> float:
 
 
 def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> float:
-    """Of the pins, in rad / (N m).
+    """Return the compliance of the pins in rad / (N m).
 
     A pin is a beam of length L between both carriers, which do not let its ends turn, under a uniform load F. Between
     carriers that stand still its mean deflection is F L^3 / (720 E I). Half the load goes to the second carrier and
@@ -89,7 +89,7 @@ def pin_compliance(gears: GearSet, at: Layout, settings: ActuatorSettings) -> fl
 
 
 def needle_compliance(actuator: Actuator, settings: ActuatorSettings) -> float:
-    """Of the needles at the peak torque, in rad / (N m): the secant of their curve; 0 with bushes.
+    """Return the compliance of the needles at the peak torque in rad / (N m), the secant of their curve; 0 with bushes.
 
     The most loaded of Z needles carries Q = 4.08 F / Z of a planet's force F where they have no clearance. It comes
     nearer to either raceway by 3.84e-5 Q^0.9 / l^0.8 in N and mm (Palmgren; Harris, Rolling Bearing Analysis).
@@ -108,10 +108,7 @@ def needle_compliance(actuator: Actuator, settings: ActuatorSettings) -> float:
 
 
 def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:
-    """Of the sun's shaft from the coupling's front to the middle of the teeth, at the sun.
-
-    The sun's teeth stiffen the shaft; half their width is counted as plain shaft.
-    """
+    """Return the compliance of the sun's shaft from the coupling to the middle of the teeth, counted as plain shaft."""
     coupling = [prism for part in actuator.parts if part.role is Role.COUPLING for prism in part.prisms]
     front = max(float(prism.z1_mm) for prism in coupling)
     turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role is Role.GEAR]
@@ -126,7 +123,7 @@ def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) ->
 
 
 def _carrier_compliance(actuator: Actuator, at: Layout, aluminium: ElasticMaterial) -> float:
-    """Of the carrier from the clamped ends of the pins to the output face."""
+    """Return the compliance of the carrier from the clamped ends of the pins to the output face."""
     carriers = [part for part in actuator.parts if part.role is Role.CARRIER]
     front = max(carriers, key=lambda part: max(float(prism.z1_mm) for prism in part.prisms))
     softness = sum(_tube_softness(prism) for prism in front.prisms if prism.z0_mm >= at.z_shoulder - 1e-9)
@@ -143,7 +140,7 @@ def _tube_softness(prism: Prism) -> float:
 
 
 def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
-    """Play of the output between both stops, motor held.
+    """Return the play of the output between both stops, motor held.
 
     Each tooth is thinned by ``thinning_mm`` on its pitch circle, so that either mesh has twice this as circumferential
     backlash there. Along the line of action this is less by cos(alpha), and moves the planet's centre, by the mean of
@@ -154,13 +151,7 @@ def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
 
 
 def greatest_backlash_arcmin(gears: GearSet, thinning_mm: float, series: int) -> float:
-    """The same with every tooth as thin as its tolerance allows; a planet's place does not matter to the mean.
-
-    Args:
-        gears: the gear set.
-        thinning_mm: of each tooth, as drawn.
-        series: of DIN 3967, for the tolerance of the thickness.
-    """
+    """Return the backlash with every tooth as thin as its tolerance in ``series`` (DIN 3967) allows."""
     sun, planet, ring = (
         float(thickness_tolerance_mm(gears.module_mm * teeth, series))
         for teeth in (gears.sun_teeth, gears.planet_teeth, gears.ring_teeth)
