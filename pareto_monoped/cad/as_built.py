@@ -98,14 +98,7 @@ def require_fit(robot: Robot, leg: LegDimensions) -> None:
 def assembly_pose(
     arrays: RobotArrays, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
 ) -> Pose:
-    """The pose in which the first robot is assembled: that in which its jump starts.
-
-    Args:
-        arrays: the robot as it is simulated.
-        calibration: the jump model, which sets the start pose.
-        hip_rad: angle of the hip, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-    """
+    """The pose in which the first robot is assembled: that in which its jump starts."""
     start = start_pose(arrays, calibration)
     stands = bool(np.isfinite(start.hip_rad[0]))
     hip = float(start.hip_rad[0]) if stands else _REST.hip_rad

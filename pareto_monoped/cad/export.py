@@ -74,10 +74,7 @@ class Ordered:
 def order(product: Product, record: Mapping[str, Any], formats: Collection[str]) -> Ordered:
     """Ask for all files of the formats that the kernel's process makes.
 
-    Args:
-        product: the parts.
-        record: for the title blocks; it may still lack what is computed last.
-        formats: of ``FORMATS``.
+    ``record`` is for the title blocks and may still lack what is computed last.
     """
     listed = product.listed
     # The longest first, as the last ones may be done in either process.
@@ -212,11 +209,7 @@ def _collecting_rarely() -> Iterator[None]:
 
 @contextmanager
 def _second_process(*, draws: bool) -> Iterator[None]:
-    """Start the kernel's process; after an exception nobody waits for it.
-
-    Args:
-        draws: whether it will have to draw pictures, for which it can get ready at once.
-    """
+    """Start the kernel's process; after an exception nobody waits for it."""
     kernel.start()
     if draws:
         kernel.do(prepare)

@@ -61,9 +61,7 @@ class Moment:
 def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Moment]:
     """The moments of a trace that the film shows, the apex last.
 
-    Args:
-        trace: columns of ``jump.single.TRACE_COLUMNS``, each of shape (steps,).
-        slower: how many times slower than the jump the film is.
+    The columns of ``trace`` are ``jump.single.TRACE_COLUMNS``, each of shape (steps,).
     """
     time = np.asarray(trace["time_s"], dtype=np.float64)
     shown = np.arange(time[0], time[-1], 1.0 / (FRAMES_PER_S * slower))
@@ -78,13 +76,7 @@ def hold_frames() -> int:
 
 
 def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -> Iterator[Image]:
-    """The pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques.
-
-    Args:
-        robot: what jumps.
-        trace: its jump, see ``moments``.
-        slower: see ``moments``.
-    """
+    """The pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
     pieces, floor, shown = _pieces(robot), _floor(), moments(trace, slower=slower)
     frame = _frame_of_the_film(robot, shown)
     panels, places = _panels(trace)

@@ -62,17 +62,7 @@ def case_job(
 ) -> Job:
     """The job for a row of the paper's Table I with the default calibration, our best model of the paper's robot.
 
-    Args:
-        case: name of the row.
-        motor: name or TOML file of the motor; default the paper's.
-        knee_motor: likewise, of the knee's; default the same.
-        rules: of the gearboxes.
-        folder: where to.
-        formats: some of ``FORMATS``; default all.
-        force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-        strength: whether it must hold; default as for a study with this calibration.
+    ``strength`` defaults to that of a study with this calibration; ``Job`` describes the other arguments.
 
     Raises:
         InputError: an unknown format.
@@ -108,15 +98,7 @@ def trial_job(
 ) -> Job:
     """The job for one trial of a study, with its motors and its calibration as the study stores them.
 
-    Args:
-        data: the study.
-        trial: the trial's number.
-        folder: where to.
-        formats: some of ``FORMATS``; default all.
-        force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-        strength: whether it must hold; default as the study asked.
+    ``strength`` defaults to what the study asks; ``Job`` describes the other arguments.
 
     Raises:
         InputError: an unknown format.
@@ -150,13 +132,7 @@ def front_jobs(
 ) -> list[Job]:
     """The jobs for the designs on a study's front, from the lowest jump to the highest.
 
-    Args:
-        data: the study.
-        folder: holds a folder ``trial_N`` per design.
-        every: take only each N-th design, beginning with the first.
-        formats: some of ``FORMATS``; default all.
-        force: replace earlier exports.
-        strength: whether they must hold; default as the study asked.
+    ``folder`` gets a folder ``trial_N`` per design; only each ``every``-th design is taken, beginning with the first.
 
     Raises:
         InputError: an unknown format.

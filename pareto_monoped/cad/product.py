@@ -282,9 +282,7 @@ _APART_MM = 6.0
 def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
     """How far each box moves along an axis so that boxes that lie behind each other come apart.
 
-    Args:
-        boxes_mm: low and high corners, shape (n, 6).
-        axis: 0, 1 or 2.
+    ``boxes_mm`` has the low and high corners, shape (n, 6).
     """
     low, high = boxes_mm[:, axis], boxes_mm[:, axis + 3]
     order = np.argsort(0.5 * (low + high), kind="stable")

@@ -76,9 +76,7 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
     Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
     have the job's formats, and every file that it lists must be there and not empty.
 
-    Args:
-        job: what is asked for.
-        any_pose: whether the assembly may stand in another pose than the job's.
+    With ``any_pose`` the assembly may stand in another pose than the job's.
     """
     try:
         record = read_json(job.folder / RECORD)
@@ -140,12 +138,7 @@ def record_job(
 ) -> Job:
     """The job that makes an export again from its ``design.json``: the same bytes, by the same version.
 
-    Args:
-        path: the record.
-        folder: where to.
-        formats: some of ``FORMATS``; default those of the record.
-        force: replace an earlier export there.
-        note: called with a line of text if another version made the record.
+    ``note`` is called with a line of text if another version made the record.
 
     Raises:
         InputError: the file is missing, or no record of an export, or its motor or calibration is impossible, or a
@@ -230,12 +223,7 @@ def _short(value: Any) -> str:
 
 
 def _parsed(path: Path) -> Mapping[str, Any]:
-    """The content of a record.
-
-    Raises:
-        OSError: it cannot be read.
-        ValueError: it is no JSON object; the message says where the text breaks off.
-    """
+    """The content of a record."""
     try:
         found = read_json(path)
     except json.JSONDecodeError as problem:

@@ -159,11 +159,7 @@ def _candidates(
 
     Of a set in several pieces each piece that runs into no other can leave by itself.
 
-    Args:
-        blocking: the bodies.
-        order: which of them are looked at.
-        reach: per body a mask of what it takes with it.
-        touching: per body a mask of what it touches.
+    ``reach`` and ``touching`` have per body a mask of what it takes with it and of what it touches.
 
     Yields:
         masks of sets.

@@ -42,9 +42,7 @@ def canonical(value: Any) -> str:
 def names_of(axis: str, values: Sequence[Any]) -> list[str]:
     """A readable name for each value of an axis; no two are alike, also where capitals count for nothing.
 
-    Args:
-        axis: key of the campaign file.
-        values: different values, as ``canonical`` tells them apart; any may be of a wrong type.
+    ``values`` are different, as ``canonical`` tells them apart; any may be of a wrong type.
     """
     texts = [slug(_BEFORE.get(axis, "") + text) for text in _texts(axis, values)]
     counts = Counter(text.casefold() for text in texts)

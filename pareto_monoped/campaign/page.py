@@ -192,12 +192,7 @@ MOST_CURVES = 8
 
 
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
-    """The whole HTML text.
-
-    Args:
-        campaign: the grid.
-        results: of all its studies, see ``results_of``.
-    """
+    """The whole HTML text."""
     sections = sections_of(results, campaign.axes)
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
     script = f"(() => {{\n'use strict';\n{own}\n}})();\n"

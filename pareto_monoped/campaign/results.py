@@ -98,9 +98,7 @@ def levels_of(objectives: Objectives) -> tuple[float, ...]:
 def results_of(places: Sequence[Place], failed: Mapping[str, str] | None = None) -> list[Result]:
     """What each study found; those that have not begun or cannot be read found nothing.
 
-    Args:
-        places: of the studies.
-        failed: name -> reason of studies that could not be run just now, which their databases do not say.
+    ``failed`` has the reason, by name, of studies that could not be run just now, which their databases do not say.
 
     Raises:
         DatabaseError: a database does not match its running hash.

@@ -77,13 +77,7 @@ def study_card(
 ) -> StudyCard:
     """What the page says of one study.
 
-    Args:
-        source: the study.
-        label: its name on the page.
-        most_rows: trials that the page may hold of it.
-        places: of its motors.
-        variables: those that the page shows.
-        goals: the objectives of all studies on the page.
+    ``most_rows`` limits the trials that the page holds; ``goals`` are the objectives of all studies on the page.
     """
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()

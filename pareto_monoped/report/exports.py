@@ -35,10 +35,7 @@ def read_models(
     A folder ``trial_N`` counts for a study if it is an up-to-date export of its trial N, in any pose, or has a GLB file
     but no record.
 
-    Args:
-        folder: holds the folders ``trial_N``.
-        studies: whose trials may have been exported.
-        note: called with a line of text for each export that is left out.
+    ``folder`` holds the folders ``trial_N``; ``note`` is called with a line of text for each export that is left out.
 
     Raises:
         OutputError: the folder does not exist.
@@ -90,9 +87,8 @@ def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
 def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
     """One model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
 
-    Args:
-        bodies: for each, its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255.
-        most: triangles in total; more if there are so many bodies that each has only its least number.
+    ``bodies`` has for each body its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255. ``most``
+    counts all triangles; there are more if so many bodies have only their least number.
     """
     sizes = [float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) for corners, _ in bodies]
     reduced = [
@@ -120,9 +116,7 @@ def coarser(triangles_mm: Floats, most: int) -> Floats:
     Corners are rounded to a grid, and triangles that become flat or equal are dropped; the grid is widened until few
     enough are left. This is vertex clustering (Rossignac and Borrel 1993): crude, but off by no more than the grid.
 
-    Args:
-        triangles_mm: corners, shape (n, 3, 3).
-        most: triangles that may be left.
+    ``triangles_mm`` has corners, shape (n, 3, 3); at most ``most`` triangles are left.
 
     Returns:
         Corners in mm, shape (m, 3, 3).

@@ -166,10 +166,8 @@ def _map_axes(axes: Any) -> None:
 def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path, *, force: bool = False) -> None:
     """Draw the least mass of both families over the ratio.
 
-    Args:
-        maps: by what tells them apart in the legend, such as the rules; the first is drawn filled, the others hollow.
-        path: ends in .svg, .png or .pdf.
-        force: as for ``files.replacing``.
+    ``maps`` goes by what tells them apart in the legend, such as the rules: the first is drawn filled, the others
+    hollow. ``path`` ends in .svg, .png or .pdf.
 
     Raises:
         OutputError: another ending, or the file cannot be written.
@@ -276,10 +274,7 @@ _ROW_PX, _MARGIN_PX = 26, 150
 def sensitivity_figure(trial: int, found: Sequence[Sensitivity], shown: Sequence[Measure]) -> Any:
     """Bars of total Sobol' indices with their 95 percent intervals, a panel per kind of factors.
 
-    Args:
-        trial: the design.
-        found: its sensitivities.
-        shown: measures, in the order of their bars.
+    ``shown`` has the measures in the order of their bars.
     """
     from plotly.graph_objects import Bar, Figure
     from plotly.subplots import make_subplots

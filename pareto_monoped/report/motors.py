@@ -36,9 +36,7 @@ class MotorTables:
 def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
     """The stage 1 map of a motor.
 
-    Args:
-        actuator_map: the map.
-        first: number of its first gearbox on the page.
+    ``first`` is the number of the map's first gearbox on the page.
     """
     gearboxes: list[Gearbox] = []
     points = []

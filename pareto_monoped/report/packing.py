@@ -49,9 +49,7 @@ _FAR = 4  # a line is not drawn on over so many times the distance of the two po
 def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
     """The jumps as text.
 
-    Args:
-        recordings: by key, such as the number of a trial; each with ``frames`` frames, or fewer in a short jump.
-        frames: that they were made with.
+    ``recordings`` goes by keys such as the number of a trial; each has ``frames`` frames, or fewer in a short jump.
     """
     jumps = list(recordings.values())
     sizes = np.array([len(jump.steps) for jump in jumps], dtype=np.int64)

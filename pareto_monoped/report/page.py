@@ -67,9 +67,8 @@ def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
 def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
     """The page's content.
 
-    Args:
-        sources: one per database, in the order of the command line.
-        literal: the paper's cases under the ``paper`` calibration, as in ``jump.table1.Spread``.
+    ``sources`` has one per database, in the order of the command line; ``literal`` are the paper's cases under the
+    ``paper`` calibration, as in ``jump.table1.Spread``.
     """
     mapped: list[Any] = []
     places: list[MapPlace] = []
@@ -215,11 +214,7 @@ def payload_of(
 ) -> Payload:
     """Read the studies and simulate what the page shows beyond them.
 
-    Args:
-        dbs: study databases.
-        exports: as for ``write_report``.
-        most_jumps: how many designs of each front jump on the page; None: all of them.
-        note: hears of exports that are left out.
+    ``most_jumps`` limits how many designs of each front jump on the page; ``exports`` is as for ``write_report``.
 
     Raises:
         DatabaseError, StudyError: as ``write_report``.

@@ -50,11 +50,7 @@ def resimulate(
 ) -> Resimulation:
     """Simulate what the page shows of a study beyond its database.
 
-    Args:
-        data: the study.
-        most_jumps: how many designs of the front jump, spread evenly over it and the knee besides; None: all of them.
-        frames: of each jump, see ``frames_for``.
-        workers: threads that simulate.
+    At most ``most_jumps`` designs of the front jump, spread evenly over it and the knee besides; None: all of them.
     """
     front = data.front()
     rows = front if most_jumps is None else front.iloc[_chosen(front, data, most_jumps)]

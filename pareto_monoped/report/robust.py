@@ -21,10 +21,7 @@ MOST_ALTERNATIVES = 5
 def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int, int]) -> Robust | None:
     """The designs of a study under uncertainty; None where nothing of the kind is stored.
 
-    Args:
-        data: the study.
-        stored: robustness of some of its trials.
-        row_of: trial -> its row on the page; trials without one are left out.
+    ``row_of`` leads from a trial to its row on the page; trials without one are left out.
     """
     if not stored:
         return None

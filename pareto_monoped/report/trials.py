@@ -46,12 +46,8 @@ def trial_columns(
 ) -> Trials:
     """The trials on the page.
 
-    Args:
-        trials: one row per trial.
-        numbers: more columns: where the page has what the trial chooses, such as its gearboxes.
-        total: trials in the database.
-        variables: those that the page shows.
-        goals: measures that are objectives of a study on the page.
+    ``numbers`` are more columns: where the page has what the trial chooses, such as its gearboxes. ``total`` counts the
+    trials in the database.
     """
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(values_of(trials, name)) for name in names}

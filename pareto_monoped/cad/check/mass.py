@@ -80,12 +80,7 @@ def weigh_parts(product: Product) -> list[MassProperties]:
 
 
 def weigh_bodies(product: Product, parts: Sequence[MassProperties]) -> Mapping[str, MassProperties]:
-    """Mass properties of every body, in its body frame.
-
-    Args:
-        product: where the parts stand.
-        parts: of every unique part.
-    """
+    """Mass properties of every body, in its body frame."""
     return {
         body: total(
             parts[kind].placed(instance.in_body[:3, :3], 1e-3 * instance.in_body[:3, 3])

@@ -18,8 +18,7 @@ from pareto_monoped.strength.factors import JointFactor
 def check_strength(factors: Sequence[JointFactor]) -> Check:
     """Compare every factor with the one required.
 
-    Args:
-        factors: of all joints; none if the design does not jump, so that there are no loads.
+    ``factors`` is empty if the design does not jump, so that there are no loads.
     """
     factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"

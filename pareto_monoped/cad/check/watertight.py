@@ -76,13 +76,7 @@ def read_glb(content: bytes) -> dict[str, Corners]:
 
 
 def check(product: Product, part_files: Mapping[str, bytes], other_files: Mapping[str, bytes]) -> tuple[Check, Check]:
-    """Look at the meshes in the files of an export.
-
-    Args:
-        product: the parts.
-        part_files: the STL file of every unique part, whether it is to be written or not, by the part's name.
-        other_files: further STL, 3MF and GLB files by their paths.
-    """
+    """Look at the meshes in the files of an export."""
     corners = {kind.name: read_stl(part_files[kind.name]) for kind in product.unique}
     volumes = []
     for kind in product.unique:

@@ -165,14 +165,7 @@ class _End:
 
 
 def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
-    """Balloons of a dense view: leaders into the largest visible region of their parts, none crosses another.
-
-    Args:
-        paper: the view.
-        seen: its regions.
-        scale: paper over robot.
-        items: which items to point at; all of them are seen.
-    """
+    """Balloons of a dense view: leaders into the largest visible region of their parts, none crosses another."""
     points = {}
     for item in items:
         region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
@@ -185,13 +178,7 @@ def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[i
 
 
 def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
-    """Balloons of an exploded view, one for each region, with leaders that cross no other part if there is a way.
-
-    Args:
-        paper: the view.
-        seen: its regions, one for each item.
-        scale: paper over robot.
-    """
+    """Balloons of an exploded view, one for each region, with leaders that cross no other part if there is a way."""
     regions = {one.item: shapely.affinity.scale(one.region, scale, scale, origin=(0.0, 0.0)) for one in seen}
     choices = {item: list(_ends(region)) for item, region in regions.items()}
     columns = _columns(paper)

@@ -78,11 +78,8 @@ def measure(
 ) -> Span:
     """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
 
-    Args:
-        gear: its teeth.
-        series: of the tolerance of their thickness, DIN 3967.
-        hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
-        play_mm: by how much the spaces of such a hole are at least wider than drawn.
+    ``series`` is that of the tooth thickness tolerance (DIN 3967). With ``hole`` the outline of an external gear is
+    that of a hole which a plug of these measures fits; its spaces are at least ``play_mm`` wider than drawn.
 
     Raises:
         ValueError: a gear larger than the table of tolerances.
@@ -112,12 +109,7 @@ def gear_rows(
 ) -> list[tuple[str, str]]:
     """The rows of the table: what, and its value.
 
-    Args:
-        gear: its teeth.
-        accuracy_class: ISO 1328-1, where ``making`` says nothing.
-        hole: see ``measure``.
-        making: how the teeth are made, if that is known.
-        hardness: of their flanks.
+    ``accuracy_class`` (ISO 1328-1) counts where ``making`` says nothing; ``hole`` is as for ``measure``.
     """
     spline = hole and isinstance(gear, ExternalGear)
     play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
@@ -205,9 +197,8 @@ def datum_fit(fits: Sequence[Fit]) -> Fit | None:
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
     """A row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without fits.
 
-    Args:
-        fits: of the part.
-        alone: for each, whether its face stands around the part's axis; patterns have their place in their callouts.
+    ``alone`` tells for each fit whether its face stands around the part's axis; patterns have their place in their
+    callouts.
     """
     if not fits:
         return None

@@ -63,12 +63,8 @@ def spread(at: Sequence[float], pitch: float) -> list[float]:
 def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, origin: float | None = None) -> None:
     """Running dimensions: each feature has an extension line to a row of texts that keep their distance.
 
-    Args:
-        paper: to draw on.
-        marks: the features.
-        side: where the row stands.
-        level: across the ladder, where the extension lines may begin to bend.
-        origin: along the ladder, where the lengths begin; a dimension line runs from there through all marks.
+    ``level`` is where, across the ladder, the extension lines may begin to bend. ``origin`` is where, along it, the
+    lengths begin; a dimension line runs from there through all marks.
     """
     outwards = 1.0 if side in ("above", "right") else -1.0
     flat = side in ("above", "below")
@@ -117,12 +113,7 @@ def fits_between(text: str, span: float) -> bool:
 def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> None:
     """An upright dimension of a diameter around the axis y = 0.
 
-    Args:
-        paper: to draw on.
-        x: of the dimension line.
-        half: half of the diameter on paper.
-        text: the dimension.
-        edge: x where the diameter's edge is.
+    ``edge`` is x where the diameter's edge is.
     """
     outwards = 1.0 if x > edge else -1.0
     for y in (half, -half):
@@ -141,13 +132,8 @@ def callout(
 ) -> None:
     """Text beside a shelf, with a leader to a feature.
 
-    Args:
-        paper: to draw on.
-        lines: the text; the first stands on the shelf.
-        x: left end of the shelf.
-        y: of the shelf.
-        tip: where the leader ends.
-        place: a tolerance of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
+    The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
+    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
     """
     long = max(width_mm(line, LETTER_MM) for line in lines)
     paper.line([tip, (x - 3.0, y), (x + long + 1.0, y)])
@@ -171,11 +157,7 @@ FRAME_MM = 5.0
 def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
     """A tolerance frame (ISO 1101) with its lower left corner at (x, y); returns its width.
 
-    Args:
-        paper: to draw on.
-        cells: the symbol's name (``position``, ``coaxial``, ``square``, ``round``), value, datum.
-        x: of its left edge.
-        y: of its lower edge.
+    ``cells`` are the symbol's name (``position``, ``coaxial``, ``square``, ``round``), the value and the datum.
     """
     left = x
     for k, cell in enumerate(cells):
@@ -251,11 +233,6 @@ class _Place:
 
 def place_tags(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
     """Write names on a view.
-
-    Args:
-        paper: the view, complete but for them.
-        tags: the names.
-        scale: paper over part.
 
     Raises:
         ValueError: a name has no free place.

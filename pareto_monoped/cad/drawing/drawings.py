@@ -23,12 +23,7 @@ _POINTS_PER_MM = 72.0 / 25.4
 
 
 def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
-    """A document of one page per sheet.
-
-    Args:
-        sheets: what stands on it, its width and its height in millimetres.
-        title: of the document.
-    """
+    """A document of one page per sheet."""
     bodies = [
         b"<< /Type /Catalog /Pages 2 0 R >>",
         b"",  # the list of pages, filled in below
@@ -138,25 +133,13 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
 
 
 def part_drawings(parts: Sequence[ListedPart], origin: Origin, first: int = 1) -> dict[str, bytes]:
-    """The drawing of every part that is not bought, by the part's name.
-
-    Args:
-        parts: some of the robot's.
-        origin: of the robot.
-        first: number of the first drawing.
-    """
+    """The drawing of every part that is not bought, by the part's name."""
     made = [unique for unique in parts if unique.part.process != "bought"]
     return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, first)}
 
 
 def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
-    """The drawing of one part.
-
-    Args:
-        unique: the part.
-        origin: of the robot.
-        number: of the drawing.
-    """
+    """The drawing of one part."""
     part = unique.part
     tolerances, finish = _TOLERANCES[part.process]
     title = Title(

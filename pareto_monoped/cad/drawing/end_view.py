@@ -28,10 +28,7 @@ def sees_more_from_above(part: RoundPart) -> bool:
 def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
     """The view with its callouts; the axis stands at the origin.
 
-    Args:
-        part: to draw.
-        scale: paper over part.
-        datum: letter of the axis that positions refer to, if there is one.
+    ``datum`` is the letter of the axis that positions refer to, if there is one.
     """
     paper = Paper()
     outer = part.body.bounds[3] * scale
@@ -70,10 +67,7 @@ def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_abo
 def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
     """A callout: number and size, circle, countersink.
 
-    Args:
-        bore: the holes.
-        from_above: whether the view is from above.
-        far_side: whether they open on the other side only.
+    With ``far_side`` the holes open on the other side only.
     """
     times = f"{bore.count} {TIMES} " if bore.count > 1 else ""
     lines = [f"{times}{bore.size()}{', far side' if far_side else ''}"]

@@ -120,12 +120,8 @@ def placed(
 ) -> Sheet:
     """The smallest sheet on which the views are readable, at the largest scale that it has room for.
 
-    Args:
-        bare_mm: width and height of the views without dimensions, at full size.
-        readable: the least scale, if a sheet allows it.
-        views: draws them at a scale.
-        tables: beside the views.
-        notes: lines of text.
+    ``bare_mm`` is the size of the views without dimensions at full size, ``readable`` the least scale if a sheet allows
+    it.
 
     Raises:
         ValueError: no sheet is large enough.

@@ -38,12 +38,7 @@ _SAME_MM = 1e-6
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
-    """The view from above without names; the plan's origin stands at (0, 0).
-
-    Args:
-        plan: to draw.
-        scale: paper over part.
-    """
+    """The view from above without names; the plan's origin stands at (0, 0)."""
     paper = Paper()
     above: BaseGeometry = shapely.Polygon()
     for layer in plan.layers:

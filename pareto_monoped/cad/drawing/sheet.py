@@ -71,11 +71,7 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
 
     None if they do not fit.
 
-    Args:
-        size: of the paper.
-        views: side by side, their middles at their y = 0.
-        tables: below each other.
-        notes: lines of text beside or above the title block.
+    Views stand side by side, their middles at their y = 0; tables stand below each other.
     """
     left, bottom = BINDING_MM, MARGIN_MM
     right, top = size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
@@ -169,12 +165,7 @@ def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
 def titled(paper: Paper, size: Size, scale: float, title: Title, number: str = "1/1") -> None:
     """Add frame and title block to a sheet.
 
-    Args:
-        paper: the sheet.
-        size: of the paper.
-        scale: of the views.
-        title: what the block says.
-        number: of the sheet, over how many there are.
+    ``number`` is the sheet's number over how many sheets there are.
     """
     _border(paper, size)
     _title_block(paper, size, scale, title, number)
@@ -253,10 +244,7 @@ def _first_angle(paper: Paper, x: float, y: float) -> None:
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Paper:
     """A table with a title, its lower left corner at the origin; columns are as wide as they must be.
 
-    Args:
-        title: stands above it.
-        head: names of the columns; a table whose columns have no names has no head.
-        rows: cells.
+    A table whose columns have no names has no head.
     """
     high = 5.0
     shown = (*([head] if any(head) else []), *rows)

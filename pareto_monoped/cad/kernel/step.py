@@ -105,9 +105,7 @@ def shapes_in(text: bytes) -> list[Shape]:
 def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape]]:
     """The file of an assembly, and the shapes of its parts there.
 
-    Args:
-        frame: the file of the assembly with a stand-in for each part.
-        parts: the file of each part, by name.
+    ``frame`` is the file of the assembly with a stand-in for each part.
     """
     stand_ins = shapes_in(frame)
     own = [_own_shape(stand_in, parts[stand_in.name]) for stand_in in stand_ins]
@@ -134,11 +132,7 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
 
 
 def _own_shape(stand_in: Shape, text: bytes) -> Shape:
-    """The shape of a part's own file.
-
-    Raises:
-        ValueError: the files are not laid out as this module expects of the kernel.
-    """
+    """The shape of a part's own file."""
     (shape,) = shapes_in(text)
     if shape.name != stand_in.name or shape.axes != shape.number + 1 or stand_in.axes > stand_in.number:
         raise ValueError(f"STEP file of {stand_in.name}: is laid out in an unknown way; install the kernel's version")
@@ -245,10 +239,7 @@ def assembly_step(
 ) -> bytes:
     """The assembly as a tree: the robot, its units, their parts. Each unique part is written once.
 
-    Args:
-        assembly: its units, and where its parts stand.
-        parts: the file of each part, by name.
-        compounds: parts of several bodies, by name; the kernel writes them in another form, here once more.
+    ``compounds`` are parts of several bodies, which the kernel writes in another form, here once more.
     """
     stand_ins = {name: compounds.get(name) or BRepPrimAPI_MakeSphere(1.0).Shape() for name in assembly.parts}
     text, shapes = spliced(tree_step(assembly, stand_ins), parts)

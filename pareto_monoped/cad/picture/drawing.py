@@ -92,10 +92,7 @@ def _axes(view: View) -> Floats:
 def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> Faces:
     """What a viewer sees of a body.
 
-    Args:
-        points_mm: corners, shape (n, 3).
-        triangles: indices of corners, shape (m, 3).
-        axes: of the view, see ``View.axes``.
+    The shapes are (n, 3) for ``points_mm`` and (m, 3) for ``triangles``; ``axes`` are those of ``View.axes``.
     """
     points = points_mm @ axes.T
     corners = points[triangles]

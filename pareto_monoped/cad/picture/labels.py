@@ -140,8 +140,7 @@ def bar_mm(px_per_mm: float, width_px: int) -> float:
 def balloons(numbers: NDArray[np.int64]) -> list[Balloon]:
     """Where the number of each visible body goes: above or below the picture, in the order of what they point to.
 
-    Args:
-        numbers: of the body at each pixel, 0 for none, shape (height, width).
+    ``numbers`` has the number of the body at each pixel, 0 for none; shape (height, width).
     """
     height, width = numbers.shape
     inside = [(number, *_innermost(numbers == number)) for number in _present(numbers) if number]

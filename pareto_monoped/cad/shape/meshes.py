@@ -155,8 +155,7 @@ Numbers = NDArray[np.uint64]
 def place_numbers(points: NDArray[np.floating]) -> Numbers:
     """A number for each point, equal for the points that a reader merges.
 
-    Args:
-        points: in the file's unit, shape (..., 3).
+    ``points`` are in the file's unit, shape (..., 3).
     """
     rounded = np.rint(points.astype(np.float32).astype(np.float64) / MERGED).astype(np.int64).view(np.uint64)
     x, y, z = np.moveaxis(rounded, -1, 0)
@@ -175,8 +174,7 @@ def flaws(corners: NDArray[np.floating]) -> str:
 
     Every edge must border two triangles, which run along it in opposite directions.
 
-    Args:
-        corners: of the triangles, as they are in the file, shape (n, 3, 3).
+    ``corners`` are those of the triangles as they are in the file, shape (n, 3, 3).
     """
     here = place_numbers(corners)
     following = here[:, [1, 2, 0]]
@@ -312,9 +310,7 @@ def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1
     along y, the joints' axis, by as many micrometres as it takes. The meshes are put together here, since manifold3d
     orders triangles by when their meshes were made, which is not the same in every process.
 
-    Args:
-        members: meshes with their matrices.
-        scale: from millimetres to the unit of the file that is to hold them.
+    ``scale`` leads from millimetres to the unit of the file that is to hold them.
     """
     starts = np.cumsum([0, *(len(mesh.points_mm) for mesh, _ in members)])
     points = np.concatenate([mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3] for mesh, matrix in members])
@@ -353,10 +349,7 @@ def _welded(mesh: Mesh) -> Mesh:
 def _touching(points: NDArray[np.float64], triangles: NDArray[np.int64], owners: NDArray[np.intp]) -> NDArray[np.intp]:
     """Members that have an edge in common with an earlier member; of several with the same edge at least the last.
 
-    Args:
-        points: in the file's unit, shape (n, 3).
-        triangles: indices of points, shape (m, 3).
-        owners: to which member each point belongs, shape (n,).
+    The shapes are (n, 3) for ``points``, (m, 3) for ``triangles`` and (n,) for ``owners``, the member of each point.
     """
     here = place_numbers(points)
     start, end = here[triangles].ravel(), here[triangles[:, [1, 2, 0]]].ravel()

@@ -44,9 +44,7 @@ _SEGMENTS = 160  # of the ball: 0.013 mm from round at a radius of 33 mm
 def foot_mould(foot: Part, block: Part) -> tuple[Mesh, Mesh]:
     """Both halves as they are printed: the plane that parts them upwards, z upwards, millimetres.
 
-    Args:
-        foot: a ball that is cut flat, with a pocket for the block's tongue.
-        block: what the foot is moulded onto; it stands on the foot's flat.
+    The foot is a ball that is cut flat, with a pocket for the tongue of the block, which stands on the foot's flat.
     """
     (ball,) = foot.balls
     radius, top = float(ball.radius_mm), float(ball.top_mm)

@@ -31,18 +31,7 @@ def design_record(
     formats: Sequence[str],
     strength: bool,
 ) -> dict[str, Any]:
-    """The content of ``design.json``, apart from the list of files.
-
-    Args:
-        searched: the design as the search found it.
-        built: the same as it was built.
-        maps: where its gearboxes come from.
-        jumps: by ``searched`` and ``as_built``: the results of both simulations.
-        calibration: the jump model of both.
-        source: where the design comes from.
-        formats: what was written.
-        strength: whether every joint had to have its required safety factor.
-    """
+    """The content of ``design.json``, apart from the list of files."""
     rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
     # Records with one motor hold it alone, as they did before there could be two.
     motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))

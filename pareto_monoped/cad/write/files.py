@@ -32,10 +32,7 @@ def part_meshes(product: Product) -> dict[str, bytes]:
 def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
     """All other files with triangles: content by path in the export's folder.
 
-    Args:
-        product: the parts.
-        shown: the visual meshes of the robot models, if there are to be any.
-        formats: of ``FORMATS``.
+    ``shown`` are the visual meshes of the robot models, if there are to be any.
     """
     made: dict[str, bytes] = {}
     if "3mf" in formats:

@@ -24,10 +24,7 @@ def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Col
     The colliders meet each other but not the floor (contype and conaffinity 2). The document therefore still makes the
     very jump that was simulated, in which only the foot touches the ground.
 
-    Args:
-        document: the MJCF that the simulation compiles.
-        shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
-        solid: primitives.
+    Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres.
     """
     root = ET.fromstring(document, parser=ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     compiler = root.find("compiler")
@@ -112,13 +109,7 @@ _EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
 
 
 def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -> str:
-    """The content of ``jump.json``.
-
-    Args:
-        arrays: the robot as it is simulated, one row.
-        design: as it is built.
-        calibration: the jump model.
-    """
+    """The content of ``jump.json``."""
     from pareto_monoped.jump.controller import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)

@@ -44,10 +44,6 @@ class Parameter:
 def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
     """All dimensions of a robot: of the design, of its leg, and of every part that is made, in the part's own frame.
 
-    Args:
-        product: the robot's parts.
-        leg: the dimensions that its links were made with.
-
     Raises:
         ValueError: two dimensions have one name.
     """

@@ -28,13 +28,7 @@ def readme(
 ) -> str:
     """The page as Markdown.
 
-    Args:
-        record: the content of ``design.json``, see ``design_record``.
-        product: the parts.
-        checks: all checks that were run.
-        formats: what was written.
-        factors: safety factors of all joints; none if the design does not jump.
-        life: of the gears under strikes, where it is known.
+    ``factors`` is empty if the design does not jump.
     """
     lines = [
         *_design(record),

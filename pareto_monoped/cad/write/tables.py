@@ -37,9 +37,7 @@ _COLUMNS = (
 def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
     """The parts list as CSV, one row per unique part.
 
-    Args:
-        product: the parts.
-        factors: safety factors of the joints; each stands with the parts that it is about.
+    The safety factor of each joint stands with the parts that it is about.
     """
     joints = _by_part(factors)
     stream = io.StringIO()

@@ -20,11 +20,8 @@ def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Se
     URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
     comment with them.
 
-    Args:
-        arrays: the robot as it is simulated.
-        joints: their friction.
-        shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
-        solid: primitives; the foot's sphere is added to them.
+    Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres; the foot's sphere joins
+    ``solid``.
     """
     root = ET.Element("robot", name="monoped")
     # Only MuJoCo reads this: keep the visual meshes and their folder.
