@@ -54,7 +54,7 @@ def built_of(
 
 
 def as_built(design: Design, maps: Maps) -> Design:
-    """The design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
+    """Return the design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
 
     Raises:
         DesignError: no gearbox of the joint's motor has the ratio.
@@ -98,7 +98,7 @@ def require_fit(robot: Robot, leg: LegDimensions) -> None:
 def assembly_pose(
     arrays: RobotArrays, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
 ) -> Pose:
-    """The pose in which the first robot is assembled: that in which its jump starts."""
+    """Return the pose in which the first robot is assembled: that in which its jump starts."""
     start = start_pose(arrays, calibration)
     stands = bool(np.isfinite(start.hip_rad[0]))
     hip = float(start.hip_rad[0]) if stands else _REST.hip_rad

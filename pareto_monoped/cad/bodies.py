@@ -75,7 +75,7 @@ class Blocking:
     _across: dict[tuple[str, int], Bools] = field(default_factory=dict)
 
     def blocked(self, direction: str, body: int) -> Bools:
-        """The bodies that a body runs into in a direction, shape (n,)."""
+        """Return the bodies that a body runs into in a direction, shape (n,)."""
         if direction in self.along:
             return np.asarray(self.along[direction][body])
         if (direction, body) not in self._across:
@@ -85,7 +85,7 @@ class Blocking:
         return self._across[direction, body]
 
     def driven_from(self, fastener: int) -> str:
-        """The side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of the screw of a bolt."""
+        """Return the side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of the screw of a bolt."""
         return self._slabs.head_side(fastener)
 
 
@@ -131,7 +131,7 @@ def blocking_of(placed: Sequence[Instance]) -> Blocking:
 
 
 def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
-    """The same matrix for bodies: true where it is for any of their instances."""
+    """Return the same matrix for bodies: true where it is for any of their instances."""
     found = np.zeros((count, count), dtype=bool)
     one, other = np.nonzero(matrix)
     found[owner[one], owner[other]] = True
@@ -139,7 +139,7 @@ def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
 
 
 def _joined(bodies: Sequence[Body], kinds: Iterable[JointKind]) -> Bools:
-    """True at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
+    """Return true at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
     wanted = frozenset(kinds)
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     for i, body in enumerate(bodies):
@@ -171,7 +171,7 @@ class _Slabs:
         self.corners = np.array([piece.section.num_vert() for piece in pieces])
 
     def along(self) -> Bools:
-        """True at (i, j) where body i, moved along +y, runs into body j."""
+        """Return true at (i, j) where body i, moved along +y, runs into body j."""
         count = len(self.bodies)
         found = np.zeros((count, count), dtype=bool)
         before = self.low[None] > self.high[:, None] - _TOUCH_MM
@@ -184,7 +184,7 @@ class _Slabs:
         return found
 
     def across(self, direction: str, body: int) -> Bools:
-        """The bodies that one runs into, moved across the axis, shape (n,)."""
+        """Return the bodies that one runs into, moved across the axis, shape (n,)."""
         sign = 1.0 if direction[0] == "+" else -1.0
         way = np.array([sign, 0.0] if direction[1] == "x" else [0.0, sign]) * _FAR_MM
         found = np.zeros(len(self.bodies), dtype=bool)
@@ -201,7 +201,7 @@ class _Slabs:
         return found
 
     def touching(self) -> Bools:
-        """True at (i, j) where two bodies lie beside or before each other with no more than play between them."""
+        """Return true at (i, j) where two bodies lie beside or before each other with no more than play between them."""
         found = np.eye(len(self.bodies), dtype=bool)
         margin = np.array([-_PLAY_MM, -_PLAY_MM, _PLAY_MM, _PLAY_MM])
         common = np.minimum(self.high[:, None], self.high[None]) - np.maximum(self.low[:, None], self.low[None])
@@ -218,7 +218,7 @@ class _Slabs:
         return found
 
     def around(self, fastener: int) -> frozenset[int]:
-        """The bodies whose material is close around a fastener."""
+        """Return the bodies whose material is close around a fastener."""
         found = set()
         for a in np.flatnonzero(self.owner == fastener).tolist():
             wide = self.section[a].offset(_NEAR_MM, m3.JoinType.Round)
@@ -232,7 +232,7 @@ class _Slabs:
         return frozenset(found)
 
     def in_the_way_of_key(self, fastener: int) -> tuple[frozenset[int], ...]:
-        """The bodies that keep a fastener from being undone: before its head, by its length and that of its key.
+        """Return the bodies that keep a fastener from being undone: before its head, by its length and that of its key.
 
         A bolt with its nut needs room at both ends. A spanner comes from beside the head, from any direction. A sprung
         ring is held by the walls of its groove and leaves it on either side.
@@ -250,7 +250,7 @@ class _Slabs:
         return (frozenset(self._before_heads(fastener, (1, -1) if role is Role.BOLT else ())),)
 
     def _before_heads(self, fastener: int, sides: tuple[int, ...], *, reach_mm: float = KEY_REACH_MM) -> set[int]:
-        """What lies before the widest end of each instance, or before the given sides (1 is +y)."""
+        """Return what lies before the widest end of each instance, or before the given sides (1 is +y)."""
         found: set[int] = set()
         for instance in self.bodies[fastener].instances:
             own = np.flatnonzero(self.instance == instance)
@@ -274,7 +274,7 @@ class _Slabs:
         return found
 
     def _beside_heads(self, fastener: int, angle_rad: float) -> set[int]:
-        """What an open spanner meets that comes to each head, at an angle to the way out from the circle's axis."""
+        """Return what an open spanner meets that comes to each head, at an angle to the way out from the circle's axis."""
         found: set[int] = set()
         for instance in self.bodies[fastener].instances:
             head = self._widest(np.flatnonzero(self.instance == instance))
@@ -296,7 +296,7 @@ class _Slabs:
         return found
 
     def head_side(self, fastener: int) -> str:
-        """The side on which a fastener is widest."""
+        """Return the side on which a fastener is widest."""
         own = np.flatnonzero(self.instance == self.bodies[fastener].instances[0])
         widest = self._widest(own)
         middle = float(self.low[own].min() + self.high[own].max())
@@ -308,12 +308,12 @@ class _Slabs:
         return int(own[int(np.argmax(size[:, 2] - size[:, 0]))])
 
     def _simple_first(self, pairs: Bools) -> list[list[int]]:
-        """The pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
+        """Return the pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
         found = np.argwhere(pairs)
         return list(found[np.argsort(self.corners[found].sum(axis=1), kind="stable")].tolist())
 
     def _covering(self, bounds: NDArray[np.float64]) -> Bools:
-        """Which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
+        """Return which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
         mine = bounds[:, None]
         return np.asarray(
             np.all((mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2]), axis=2)
@@ -321,12 +321,12 @@ class _Slabs:
 
 
 def _swept(section: m3.CrossSection, way: NDArray[np.float64]) -> m3.CrossSection:
-    """All that a section covers on a straight way."""
+    """Return all that a section covers on a straight way."""
     return m3.CrossSection.batch_boolean([section, *_strips(section, way)], m3.OpType.Add)
 
 
 def _strips(section: m3.CrossSection, way: NDArray[np.float64]) -> Iterator[m3.CrossSection]:
-    """What each edge of a section sweeps over."""
+    """Yield what each edge of a section sweeps over."""
     for polygon in section.to_polygons():
         corners = np.asarray(polygon)
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):

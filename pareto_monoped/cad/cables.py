@@ -99,7 +99,7 @@ class Cable:
 
 
 def rounded(points_mm: Points, radius_mm: float) -> Points:
-    """The same line with its corners as arcs of 16 straight pieces, shape (m, n)."""
+    """Return the same line with its corners as arcs of 16 straight pieces, shape (m, n)."""
     line = [points_mm[0]]
     for before, corner, after in zip(points_mm, points_mm[1:], points_mm[2:], strict=False):
         back, onward = ((end - corner) / np.linalg.norm(end - corner) for end in (before, after))
@@ -119,7 +119,9 @@ def rounded(points_mm: Points, radius_mm: float) -> Points:
 
 
 def rounded_length_mm(points_mm: Points, radius_mm: float) -> float:
-    """Length of a line of straight pieces whose corners are arcs: each saves 2 R tan(t / 2) - R t for a turn by t."""
+    """Return length of a line of straight pieces whose corners are arcs: each saves 2 R tan(t / 2) - R t for a turn by
+    t.
+    """
     steps = np.diff(points_mm, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     ways = steps / lengths[:, None]
@@ -128,7 +130,7 @@ def rounded_length_mm(points_mm: Points, radius_mm: float) -> float:
 
 
 def cables(robot: Robot) -> tuple[Cable, ...]:
-    """The four cables of a robot: motor and encoder of hip and knee."""
+    """Return the four cables of a robot: motor and encoder of hip and knee."""
     leg, units = robot.leg, {unit.name: unit for unit in robot.units}
     base = next(unit for unit in robot.units if any(part.role is Role.ROD for part in unit.parts))
     far_mm = float(far_cheek_z_mm(1e-3 * robot.knee.length_mm, leg)) + leg.far_cheek_mm
@@ -193,7 +195,7 @@ def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: 
 
 
 def _up(board: BoardPlace, x: float, z: float) -> list[list[float]]:
-    """The last corners: the tie, and the board's upper edge."""
+    """Return the last corners: the tie, and the board's upper edge."""
     return [[x, board.tie_y_mm, z], [x, board.high_mm, z]]
 
 
@@ -204,7 +206,7 @@ def _named(
     base: Unit,
     robot: Robot,
 ) -> tuple[Cable, Cable]:
-    """The cables of a joint's motor and encoder, with their corners in the assembly's frame."""
+    """Return the cables of a joint's motor and encoder, with their corners in the assembly's frame."""
     frame = unit_frame(base)
     area, diameter = _wire(actuator, robot.leg.of(joint).driver)
     section = 0.25 * np.pi * diameter**2
@@ -239,7 +241,9 @@ def _wire(actuator: Actuator, driver: MotorDriver) -> tuple[float, float]:
 
 
 def _thinner(board: BoardPlace, rim: float, area_mm2: float) -> str:
-    """The cure for a wire that has no room for its bend: the thickest thinner ones that have, with as much copper."""
+    """Return the cure for a wire that has no room for its bend: the thickest thinner ones that have, with as much
+    copper.
+    """
     for area, diameter in reversed([wire for wire in _WIRES if wire[0] < area_mm2]):
         if _radius_below(board, *_around(board, rim, diameter), diameter) >= _BENDS * diameter:
             count = int(np.ceil(area_mm2 / area))
@@ -248,13 +252,13 @@ def _thinner(board: BoardPlace, rim: float, area_mm2: float) -> str:
 
 
 def _around(board: BoardPlace, rim: float, diameter: float) -> tuple[float, float]:
-    """Height of a wire along the outside of the casing, and its distance behind the board."""
+    """Return height of a wire along the outside of the casing, and its distance behind the board."""
     under = float(np.sqrt(rim**2 - board.tie_x_mm**2)) + 0.5 * diameter + _PLAY_MM
     return under, board.behind_mm(0.5 * diameter + _PLAY_MM)
 
 
 def _backplate(actuator: Actuator) -> Part:
-    """The part of the housing that the actuator ends with."""
+    """Return the part of the housing that the actuator ends with."""
     parts = [part for part in actuator.parts if part.role is Role.HOUSING and part.group is Group.HOUSING]
     return min(parts, key=lambda part: (min(float(p.z0_mm) for p in part.prisms), -_width_mm(part)))
 
@@ -264,17 +268,17 @@ def _width_mm(part: Part) -> float:
 
 
 def _in_base(unit: Unit, point: Points) -> Points:
-    """A point of a unit in the base's frame, with the leg hanging down."""
+    """Return a point of a unit in the base's frame, with the leg hanging down."""
     return np.asarray(unit.turn @ point + np.array([0.0, 0.0, unit.z_mm]))
 
 
 def _back_mm(actuator: Actuator, unit: Unit) -> float:
-    """Height z of the back's outer face in the base's frame."""
+    """Return height z of the back's outer face in the base's frame."""
     return float(_in_base(unit, np.array([0.0, 0.0, -actuator.length_mm]))[2])
 
 
 def _rim_mm(actuator: Actuator) -> float:
-    """Radius of the casing."""
+    """Return radius of the casing."""
     return _width_mm(_backplate(actuator))
 
 
@@ -287,14 +291,14 @@ def _hole(actuator: Actuator, unit: Unit, way: Points) -> Points:
 
 
 def _sensor_mm(actuator: Actuator, unit: Unit) -> float:
-    """Height z of the encoder's outer end in the base's frame."""
+    """Return height z of the encoder's outer end in the base's frame."""
     (sensor,) = (p for p in actuator.parts if p.role is Role.ELECTRONICS and p.group is Group.HOUSING)
     end = min(float(prism.z0_mm) for prism in sensor.prisms)
     return float(_in_base(unit, np.array([0.0, 0.0, end]))[2])
 
 
 def _radius_below(board: BoardPlace, under: float, behind: float, diameter: float) -> float:
-    """The largest bend, from along the casing to behind the board, that keeps clear of the board's lower edge.
+    """Return the largest bend, from along the casing to behind the board, that keeps clear of the board's lower edge.
 
     The bend's middle lies R above and outside of its corner, the edge by e and f. The wire's half width h is free for
 

@@ -257,7 +257,7 @@ def _evaluated(designs: Mapping[str, Design], maps: Maps, calibration: Calibrati
 
 
 def _loads(design: Design, results: Evaluations, row: int) -> Loads:
-    """The loads of a design's parts, from a row of the results of its jump."""
+    """Return the loads of a design's parts, from a row of the results of its jump."""
     columns = {name: getattr(results, name)[row : row + 1] for name in LOAD_NAMES if name not in LENGTHS}
     return loads_of(columns | {name: np.array([getattr(design, name)]) for name in LENGTHS})
 
@@ -276,5 +276,5 @@ def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dic
 
 
 def _plain(value: float) -> float | None:
-    """A JSON number, or None where there is none."""
+    """Return a JSON number, or None where there is none."""
     return float(value) if np.isfinite(value) else None

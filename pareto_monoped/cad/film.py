@@ -59,7 +59,7 @@ class Moment:
 
 
 def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Moment]:
-    """The moments of a trace that the film shows, the apex last.
+    """Return the moments of a trace that the film shows, the apex last.
 
     The columns of ``trace`` are ``jump.single.TRACE_COLUMNS``, each of shape (steps,).
     """
@@ -71,12 +71,12 @@ def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Mome
 
 
 def hold_frames() -> int:
-    """How many times the last picture is repeated."""
+    """Return how many times the last picture is repeated."""
     return round(_HOLD_S * FRAMES_PER_S)
 
 
 def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -> Iterator[Image]:
-    """The pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
+    """Yield the pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
     pieces, floor, shown = _pieces(robot), _floor(), moments(trace, slower=slower)
     frame = _frame_of_the_film(robot, shown)
     panels, places = _panels(trace)
@@ -113,7 +113,7 @@ def _pieces(robot: Robot) -> list[_Piece]:
 
 
 def _placed(robot: Robot, pieces: list[_Piece], moment: Moment) -> Iterator[tuple[_Piece, Floats]]:
-    """Every piece with its points in the world's frame, whose origin is on the floor."""
+    """Yield every piece with its points in the world's frame, whose origin is on the floor."""
     moved = shift(1000.0 * moment.base_x_m, 0.0, 1000.0 * moment.base_z_m)
     frames = body_frames(robot, Pose(hip_rad=moment.hip_rad, knee_rad=moment.knee_rad))
     for piece in pieces:
@@ -122,7 +122,7 @@ def _placed(robot: Robot, pieces: list[_Piece], moment: Moment) -> Iterator[tupl
 
 
 def _floor() -> tuple[Floats, NDArray[np.int64]]:
-    """A plate on which the robot stands."""
+    """Return a plate on which the robot stands."""
     x, y = 260.0, 160.0
     points = np.array([(a, b, c) for c in (-8.0, 0.0) for a, b in ((-x, -y), (x, -y), (x, y), (-x, y))])
     quads = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -172,7 +172,7 @@ def _panels(trace: Mapping[str, Floats]) -> tuple[Image, tuple[float, float, flo
 
 
 def _with_cursor(panels: Image, places: tuple[float, float, float, int, int], time_s: float) -> Image:
-    """The curves with a line at a moment."""
+    """Return the curves with a line at a moment."""
     span, left, right, top, bottom = places
     image = panels.copy()
     column = min(round(left + (right - left) * time_s / span), image.shape[1] - 1)
@@ -209,7 +209,7 @@ def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> 
 
 
 def encoder() -> str:
-    """The program ffmpeg: that of the system, else that of the extra ``video``.
+    """Return the program ffmpeg: that of the system, else that of the extra ``video``.
 
     Raises:
         InputError: there is none.
@@ -235,7 +235,7 @@ def require_gif(path: Path) -> None:
 
 
 def require_video(path: Path) -> str:
-    """The encoder of a video file, before anything is drawn.
+    """Return the encoder of a video file, before anything is drawn.
 
     Raises:
         InputError: the suffix is of no format that we write, or there is no encoder.
@@ -268,7 +268,7 @@ def write_video(path: Path, pictures: Iterable[Image], *, force: bool = False) -
 
 
 def _held(pictures: Iterable[Image]) -> Iterator[Image]:
-    """The pictures, and the last one for a while longer."""
+    """Yield the pictures, and the last one for a while longer."""
     last = None
     for last in pictures:
         yield last

@@ -36,7 +36,7 @@ class Job:
     knee_motor: Motor | None = None  #: of the knee's actuator; None where both have the same
 
     def maps(self) -> JointMaps:
-        """The gearboxes of both joints.
+        """Return the gearboxes of both joints.
 
         Raises:
             MotorError: a motor has no gearbox at any ratio.
@@ -60,7 +60,8 @@ def case_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for a row of the paper's Table I with the default calibration, our best model of the paper's robot.
+    """Return the job for a row of the paper's Table I with the default calibration, our best model of the paper's
+    robot.
 
     ``strength`` defaults to that of a study with this calibration; ``Job`` describes the other arguments.
 
@@ -96,7 +97,7 @@ def trial_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for one trial of a study, with its motors and its calibration as the study stores them.
+    """Return the job for one trial of a study, with its motors and its calibration as the study stores them.
 
     ``strength`` defaults to what the study asks; ``Job`` describes the other arguments.
 
@@ -130,7 +131,7 @@ def front_jobs(
     force: bool = False,
     strength: bool | None = None,
 ) -> list[Job]:
-    """The jobs for the designs on a study's front, from the lowest jump to the highest.
+    """Return the jobs for the designs on a study's front, from the lowest jump to the highest.
 
     ``folder`` gets a folder ``trial_N`` per design; only each ``every``-th design is taken, beginning with the first.
 

@@ -42,7 +42,7 @@ class Pose:
     knee_rad: float
 
     def angle_rad(self, joint: str) -> float:
-        """Angle of a joint, ``hip`` or ``knee``."""
+        """Return angle of a joint, ``hip`` or ``knee``."""
         return {"hip": self.hip_rad, "knee": self.knee_rad}[joint]
 
 
@@ -60,7 +60,7 @@ class Instance:
 
 
 def instances(robot: Robot, pose: Pose, *, only: str | None = None) -> tuple[Instance, ...]:
-    """Every instance of every part of a robot in a pose, or of the unit named ``only``."""
+    """Return every instance of every part of a robot in a pose, or of the unit named ``only``."""
     frames = body_frames(robot, pose)
     found = []
     for unit in robot.units:
@@ -146,7 +146,7 @@ def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator
 
 
 def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[float, Callable[[float], float]]:
-    """How a part turns about its unit's z axis when the unit's output has turned by ``theta_rad``.
+    """Return how a part turns about its unit's z axis when the unit's output has turned by ``theta_rad``.
 
     A planetary gear with a fixed ring: the carrier is the output, the sun turns by the ratio, and a planet turns
     against its carrier by -z_ring / z_planet of the carrier's angle. The planet's outline is drawn for the place on the
@@ -207,7 +207,7 @@ class Product:
     solids: Future[list[SolidFacts]]
 
     def placed(self) -> Iterator[tuple[Instance, UniquePart]]:
-        """Every instance with its unique part."""
+        """Yield every instance with its unique part."""
         for instance, index in zip(self.instances, self.kinds, strict=True):
             yield instance, self.unique[index]
 
@@ -252,7 +252,7 @@ def build_product(robot: Robot, pose: Pose) -> Product:
 
 
 def step_assembly(product: Product, name: str) -> StepAssembly:
-    """What the kernel writes a product's STEP files from."""
+    """Return what the kernel writes a product's STEP files from."""
     units: dict[str, list[StepPlacement]] = {unit.name: [] for unit in product.robot.units}
     for instance, unique in product.placed():
         units[instance.unit].append(StepPlacement(part=unique.name, matrix=instance.world))
@@ -264,7 +264,9 @@ def step_assembly(product: Product, name: str) -> StepAssembly:
 
 
 def part_file_name(units: tuple[str, ...], part_name: str) -> str:
-    """Name of a part over all units: that of an actuator's part begins with the unit, or just ``actuator`` for both."""
+    """Return name of a part over all units: that of an actuator's part begins with the unit, or just ``actuator`` for
+    both.
+    """
     actuators = [unit for unit in units if unit in ACTUATOR_UNITS]
     if not actuators:
         return part_name
@@ -272,7 +274,7 @@ def part_file_name(units: tuple[str, ...], part_name: str) -> str:
 
 
 def extent_mm(mesh: Mesh) -> NDArray[np.float64]:
-    """Size of a part along its axes, shape (3,)."""
+    """Return size of a part along its axes, shape (3,)."""
     return np.asarray(mesh.points_mm.max(axis=0) - mesh.points_mm.min(axis=0))
 
 
@@ -280,7 +282,7 @@ _APART_MM = 6.0
 
 
 def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
-    """How far each box moves along an axis so that boxes that lie behind each other come apart.
+    """Return how far each box moves along an axis so that boxes that lie behind each other come apart.
 
     ``boxes_mm`` has the low and high corners, shape (n, 6).
     """
@@ -304,6 +306,6 @@ def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
 
 
 def _beside(one: NDArray[np.float64], other: NDArray[np.float64], axis: int) -> bool:
-    """Whether two boxes do not lie behind each other along the axis."""
+    """Return whether two boxes do not lie behind each other along the axis."""
     across = [k for k in range(3) if k != axis]
     return any(one[k] >= other[k + 3] or other[k] >= one[k + 3] for k in across)

@@ -39,7 +39,7 @@ ABSENT = "nothing"
 
 
 def difference(found: Any, expected: Any, *, rel_tolerance: float, field: str = "") -> Difference | None:
-    """The first place where two JSON values differ, None if there is none."""
+    """Return the first place where two JSON values differ, None if there is none."""
     if isinstance(found, dict) and isinstance(expected, dict):
         for key in (*expected, *(key for key in found if key not in expected)):
             inner = difference(
@@ -71,7 +71,8 @@ REL_TOLERANCE = 1e-9
 
 
 def is_made(job: Job, *, any_pose: bool = False) -> bool:
-    """Whether the job's folder holds this very export: same version, design, motor, calibration, source and pose.
+    """Return whether the job's folder holds this very export: same version, design, motor, calibration, source and
+    pose.
 
     Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
     have the job's formats, and every file that it lists must be there and not empty.
@@ -94,7 +95,7 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
 
 
 def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
-    """Whether all listed files are there, and the list has what the record's formats make."""
+    """Return whether all listed files are there, and the list has what the record's formats make."""
     names = [str(name) for name in record["files"]]
     needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
     if record["jumps"]["as_built"]["status"] == "cannot_stand":
@@ -106,7 +107,7 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
 
 
 def expected_record(job: Job) -> dict[str, Any]:
-    """The record that this version would write, without what is not compared."""
+    """Return the record that this version would write, without what is not compared."""
     maps = job.maps()
     built = built_of(job.design, maps, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
     record = design_record(
@@ -136,7 +137,7 @@ def record_job(
     force: bool = False,
     note: Callable[[str], None] = lambda _: None,
 ) -> Job:
-    """The job that makes an export again from its ``design.json``: the same bytes, by the same version.
+    """Return the job that makes an export again from its ``design.json``: the same bytes, by the same version.
 
     ``note`` is called with a line of text if another version made the record.
 
@@ -188,7 +189,7 @@ def record_job(
 
 
 def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -> Difference | None:
-    """The first field of a record that does not follow from its design, motor and calibration.
+    """Return the first field of a record that does not follow from its design, motor and calibration.
 
     Another version may choose other gearboxes and weigh other parts. What it built is then only compared where no
     version differs.
@@ -217,13 +218,13 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
 
 
 def _short(value: Any) -> str:
-    """A value in a message of one line."""
+    """Return a value in a message of one line."""
     text = json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _parsed(path: Path) -> Mapping[str, Any]:
-    """The content of a record."""
+    """Return the content of a record."""
     try:
         found = read_json(path)
     except json.JSONDecodeError as problem:
@@ -238,13 +239,13 @@ def _parsed(path: Path) -> Mapping[str, Any]:
 
 
 def _design(searched: Mapping[str, Any]) -> Design:
-    """The design of a record; optional variables that it does not name have their defaults."""
+    """Return the design of a record; optional variables that it does not name have their defaults."""
     values = DEFAULTS | dict(searched)
     return Design.from_array([_finite(values, name) for name in NAMES])
 
 
 def _rules(name: Any) -> RuleSet:
-    """The rules of a record, which names them if they are not those of the paper."""
+    """Return the rules of a record, which names them if they are not those of the paper."""
     for rules in RULE_SETS:
         if name == rules:
             return rules
@@ -252,14 +253,14 @@ def _rules(name: Any) -> RuleSet:
 
 
 def _object(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    """A field of a record that holds fields of its own."""
+    """Return a field of a record that holds fields of its own."""
     if not isinstance(record[name], dict):
         raise ValueError(f"{name} has no fields")
     return dict(record[name])
 
 
 def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] | None]:
-    """Values of the motor of a record, or of the hip's, and of the knee's where it has another one."""
+    """Return values of the motor of a record, or of the hip's, and of the knee's where it has another one."""
     found = _object(record, "motor_data")
     if set(found) != {"hip", "knee"}:
         return dict(found), None
@@ -267,14 +268,14 @@ def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] |
 
 
 def _names(record: Mapping[str, Any], name: str) -> list[str]:
-    """A field of a record that is a list of names."""
+    """Return a field of a record that is a list of names."""
     if not isinstance(record[name], list):
         raise ValueError(f"{name} = {_short(record[name])} is no list")
     return [str(one) for one in record[name]]
 
 
 def _finite(record: Mapping[str, Any], name: str) -> float:
-    """A field of a record that is a number."""
+    """Return a field of a record that is a number."""
     value = record[name]
     if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise ValueError(f"{name} = {_short(value)} is not a number")

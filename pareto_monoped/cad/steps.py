@@ -89,7 +89,7 @@ def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
 
 
 def stuck(assembly: Assembly) -> Iterator[Members]:
-    """The wholes of an assembly that should come apart and do not."""
+    """Yield the wholes of an assembly that should come apart and do not."""
     if isinstance(assembly, Whole):
         if assembly.stuck:
             yield assembly.members
@@ -99,7 +99,7 @@ def stuck(assembly: Assembly) -> Iterator[Members]:
 
 
 def _undone(blocking: Blocking, members: Members) -> Members:
-    """The fasteners that can be undone, one after the other."""
+    """Return the fasteners that can be undone, one after the other."""
     undone: set[int] = set()
     waiting = {k for k in members if blocking.bodies[k].is_fastener}
     while True:
@@ -112,7 +112,9 @@ def _undone(blocking: Blocking, members: Members) -> Members:
 
 
 def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str, Members] | None:
-    """A direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced halves."""
+    """Return a direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced
+    halves.
+    """
     order = sorted(rest)
     everything = (1 << len(order)) - 1
     touching = _masks(blocking.touching[np.ix_(order, order)])
@@ -137,14 +139,14 @@ def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str
 
 
 def _edges(blocking: Blocking, direction: str, order: list[int]) -> Bools:
-    """True at (i, j) where i takes j with it: it runs into j, or is tied to it."""
+    """Return true at (i, j) where i takes j with it: it runs into j, or is tied to it."""
     rows = np.stack([blocking.blocked(direction, k) for k in order])[:, order]
     chosen = np.ix_(order, order)
     return np.asarray(rows | blocking.tied[chosen] | blocking.lasting[chosen])
 
 
 def _closure(edges: Bools) -> Bools:
-    """What each node reaches, itself included."""
+    """Return what each node reaches, itself included."""
     reach = edges | np.eye(len(edges), dtype=bool)
     # Warshall 1962: ways over the first k nodes.
     for k in range(len(reach)):
@@ -175,12 +177,12 @@ def _candidates(
 
 
 def _masks(rows: Bools) -> list[int]:
-    """Each row as an integer whose bit m is the row's element m."""
+    """Return each row as an integer whose bit m is the row's element m."""
     return [int.from_bytes(row.tobytes(), "little") for row in np.packbits(rows, axis=1, bitorder="little")]
 
 
 def _bits(mask: int) -> Iterator[int]:
-    """Numbers of the bits that are set, from the lowest."""
+    """Yield numbers of the bits that are set, from the lowest."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
@@ -188,7 +190,7 @@ def _bits(mask: int) -> Iterator[int]:
 
 
 def _united(masks: Sequence[int], members: Iterable[int]) -> int:
-    """All that some of the masks hold."""
+    """Return all that some of the masks hold."""
     found = 0
     for k in members:
         found |= masks[k]
@@ -196,7 +198,7 @@ def _united(masks: Sequence[int], members: Iterable[int]) -> int:
 
 
 def _united_in(masks: Sequence[int], members: int) -> int:
-    """The same for members that are the bits of a mask."""
+    """Return the same for members that are the bits of a mask."""
     found = 0
     while members:
         low = members & -members
@@ -206,7 +208,7 @@ def _united_in(masks: Sequence[int], members: int) -> int:
 
 
 def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
-    """The pieces into which a set of bodies falls, as masks, from that of the lowest body."""
+    """Yield the pieces into which a set of bodies falls, as masks, from that of the lowest body."""
     while mask:
         piece = fresh = mask & -mask
         while fresh:
@@ -217,7 +219,7 @@ def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
 
 
 def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
-    """What it costs that units have bodies on both sides; an actuator is tested on the bench and stays whole."""
+    """Return what it costs that units have bodies on both sides; an actuator is tested on the bench and stays whole."""
     names = [{blocking.bodies[k].unit for k in side} for side in (one, other)]
     return sum(_CUT_ACTUATOR if name in ACTUATOR_UNITS else 1 for name in names[0] & names[1])
 
@@ -282,7 +284,7 @@ class Step:
 
 
 def steps_of(assembly: Assembly) -> tuple[Step, ...]:
-    """The steps in order: each assembly is made in consecutive steps, what comes to it is made before."""
+    """Return the steps in order: each assembly is made in consecutive steps, what comes to it is made before."""
     found: list[Step] = []
     _make(assembly, found)
     return tuple(found)
@@ -318,7 +320,7 @@ def _make(assembly: Assembly, found: list[Step]) -> int | None:
 
 
 def titled(step: Step, blocking: Blocking) -> str:
-    """What a step works at: the names of the units that it touches, the greatest first."""
+    """Return what a step works at: the names of the units that it touches, the greatest first."""
     names: dict[str, int] = {}
     for k in step.members:
         unit = blocking.bodies[k].unit

@@ -86,7 +86,7 @@ def held(folder: Path) -> Iterator[None]:
 
 
 def places_of(campaign: Campaign, folder: Path) -> list[Place]:
-    """The database of each study of a campaign.
+    """Return the database of each study of a campaign.
 
     It has the study's name. Where that does not exist, but another database in the folder that no name leads to has
     the same settings, it is that one: the grid has got another axis since.
@@ -123,7 +123,7 @@ def strangers(folder: Path, places: Sequence[Place]) -> list[Path]:
 
 
 def stored_state(place: Place) -> Stored:
-    """How far a study is."""
+    """Return how far a study is."""
     budget, unit = place.study.evaluations, place.study.objectives.volume_unit
     nothing = Stored(state="waiting", evaluations=0, budget=budget, hypervolume=0.0, hypervolume_unit=unit)
     try:
@@ -150,7 +150,7 @@ def stored_state(place: Place) -> Stored:
 
 
 def is_ended(place: Place, stored: Stored) -> bool:
-    """Whether running a study again would do nothing, because it has ended as its file says today.
+    """Return whether running a study again would do nothing, because it has ended as its file says today.
 
     A study whose motor or calibration is a file of the user's is run again, which looks whether the file has changed.
     """
@@ -194,7 +194,7 @@ def _meta(db: Path) -> tuple[Study, StudyMeta] | None:
 
 
 def _settings(study: Study) -> dict[str, Any]:
-    """What decides a study's trials, with the names of motors and calibration, without its own name."""
+    """Return what decides a study's trials, with the names of motors and calibration, without its own name."""
     # Of files the last part of their path: a folder with campaign, motors and databases can be moved.
     names = [[Path(name).name for name in kit] for kit in study.kits]
     settings = decisive(study, {}, {})["study"] | {"motors": names, "calibration": Path(study.calibration).name}

@@ -35,12 +35,12 @@ _BEFORE = {
 
 
 def canonical(value: Any) -> str:
-    """A text that is equal for equal values; capitals do not tell names apart, as for motors."""
+    """Return a text that is equal for equal values; capitals do not tell names apart, as for motors."""
     return json.dumps(value, sort_keys=True, default=str).casefold()
 
 
 def names_of(axis: str, values: Sequence[Any]) -> list[str]:
-    """A readable name for each value of an axis; no two are alike, also where capitals count for nothing.
+    """Return a readable name for each value of an axis; no two are alike, also where capitals count for nothing.
 
     ``values`` are different, as ``canonical`` tells them apart; any may be of a wrong type.
     """
@@ -61,7 +61,7 @@ def _texts(axis: str, values: Sequence[Any]) -> list[str]:
 
 
 def _plain(value: Any) -> str:
-    """A value in letters: a file by its stem, a list or a table by what it has."""
+    """Return a value in letters: a file by its stem, a list or a table by what it has."""
     if isinstance(value, str):
         return Path(value).stem if value.endswith(".toml") else value
     if isinstance(value, Mapping):
@@ -92,7 +92,7 @@ def _algorithms(values: Sequence[Any]) -> list[str]:
 
 
 def joined(parts: Sequence[str]) -> str:
-    """The name of a study from those of its values."""
+    """Return the name of a study from those of its values."""
     name = "_".join(parts)
     return name if len(name) <= LONGEST else f"{name[: LONGEST - 7]}-{_digest(name)}"
 
@@ -186,7 +186,7 @@ class Campaign:
 
 
 def load_campaign(path: Path) -> Campaign:
-    """The campaign in a TOML file; every study of it is checked.
+    """Return the campaign in a TOML file; every study of it is checked.
 
     Raises:
         StudyError: no readable TOML, an unknown key, a wrong type, a value named twice, too many studies, or a
@@ -228,7 +228,7 @@ def _refuse_equal_names(names: Sequence[str], source: str) -> None:
 
 
 def _base(given: Any, path: Path, source: str) -> dict[str, Any]:
-    """The keys of the base study: of a file, or of a table in the campaign file."""
+    """Return the keys of the base study: of a file, or of a table in the campaign file."""
     if isinstance(given, Mapping):
         return with_paths(given, path.parent)
     if isinstance(given, str) and given.endswith(".toml"):
@@ -257,7 +257,7 @@ def _axes(given: Mapping[str, Any], path: Path, source: str) -> dict[str, list[A
 
 
 def _combined(base: Mapping[str, Any], chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a study: those of the base with a value of each axis."""
+    """Return the keys of a study: those of the base with a value of each axis."""
     values = dict(base)
     for axis, value in chosen.items():
         key = KEYS.get(axis, axis)

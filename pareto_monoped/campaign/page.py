@@ -62,7 +62,7 @@ def section_tables(section: Section) -> str:
 
 
 def studies_table(campaign: Campaign, results: Sequence[Result]) -> str:
-    """All studies and how far they are."""
+    """Return all studies and how far they are."""
     head = ["study", "state", "jumps", "feasible", "front", "hypervolume", "time, s"]
     rows = []
     for result in results:
@@ -75,7 +75,7 @@ def studies_table(campaign: Campaign, results: Sequence[Result]) -> str:
 
 
 def failures(results: Sequence[Result]) -> str:
-    """A note for the studies that failed and one for those that are not finished; they are in no median."""
+    """Return a note for the studies that failed and one for those that are not finished; they are in no median."""
     notes = [f"{one.place.name} failed: {one.stored.reason}" for one in results if one.stored.state == "failed"]
     open_ones = [one.place.name for one in results if one.stored.state in ("waiting", "running", "unfinished")]
     if open_ones:
@@ -86,7 +86,7 @@ def failures(results: Sequence[Result]) -> str:
 
 
 def _table(section: Section, groups: Sequence[Group], title: str, *, spread: bool = False) -> str:
-    """One row per group: medians, and bands where a group has several studies."""
+    """Return one row per group: medians, and bands where a group has several studies."""
     first, second = (measure(name) for name in pair_of(section.objectives))
     levels = levels_of(section.objectives)
     volumes = [result.stored.hypervolume for result in section.results]
@@ -108,7 +108,7 @@ def _table(section: Section, groups: Sequence[Group], title: str, *, spread: boo
 
 
 def _seeds(section: Section) -> str:
-    """How seeds compare: each study's hypervolume against the median of those that differ in the seed only."""
+    """Return how seeds compare: each study's hypervolume against the median of those that differ in the seed only."""
     shares = relative(section)
     rows = []
     for group in section.by(SEEDS):
@@ -146,7 +146,7 @@ def _cell(values: Sequence[float], decimals: int) -> str:
 
 
 def _told(found: Spread, decimals: int, count: int) -> str:
-    """A median, and under it the band if there are several values."""
+    """Return a median, and under it the band if there are several values."""
 
     def text(value: float) -> str:
         return f"{value:.{decimals}f}" if math.isfinite(value) else "not reached"
@@ -157,7 +157,7 @@ def _told(found: Spread, decimals: int, count: int) -> str:
 
 
 def _strip(values: Sequence[float], ends: tuple[float, float]) -> str:
-    """One dot per study on a scale from the least to the greatest hypervolume of the section."""
+    """Return one dot per study on a scale from the least to the greatest hypervolume of the section."""
     low, high = ends
 
     def x(value: float) -> float:
@@ -173,7 +173,7 @@ def _strip(values: Sequence[float], ends: tuple[float, float]) -> str:
 
 
 def _html(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table that scrolls sideways on a narrow page; its cells are HTML already."""
+    """Return a table that scrolls sideways on a narrow page; its cells are HTML already."""
     top = "".join(f'<th scope="col"{"" if k == 0 else " class=n"}>{safe(name)}</th>' for k, name in enumerate(head))
     body = "".join(
         f'<tr><th scope="row">{row[0]}</th>' + "".join(f'<td class="n">{cell}</td>' for cell in row[1:]) + "</tr>"
@@ -192,7 +192,7 @@ MOST_CURVES = 8
 
 
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
-    """The whole HTML text."""
+    """Return the whole HTML text."""
     sections = sections_of(results, campaign.axes)
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
     script = f"(() => {{\n'use strict';\n{own}\n}})();\n"

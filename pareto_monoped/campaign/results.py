@@ -65,7 +65,7 @@ class Result:
         return float(values.max() if maximised else values.min())
 
     def least(self, levels: Floats) -> Floats:
-        """The best second objective of ``pair_of`` among designs that reach each level of the first, shape (k,).
+        """Return the best second objective of ``pair_of`` among designs that reach each level of the first, shape (k,).
 
         NaN where none does.
         """
@@ -79,14 +79,16 @@ class Result:
 
 
 def pair_of(objectives: Objectives) -> tuple[str, str]:
-    """The two objectives that a curve shows: the height, where it is one, else the first, and the first other one."""
+    """Return the two objectives that a curve shows: the height, where it is one, else the first, and the first other
+    one.
+    """
     heights = [name for name in objectives.names if is_height(name)]
     first = (heights or list(objectives.names))[0]
     return first, objectives.other_than(first).name
 
 
 def is_height(name: str) -> bool:
-    """Whether an objective is the height, or what built robots keep of it."""
+    """Return whether an objective is the height, or what built robots keep of it."""
     return name.partition(".")[0] == "height_m"
 
 
@@ -96,7 +98,7 @@ def levels_of(objectives: Objectives) -> tuple[float, ...]:
 
 
 def results_of(places: Sequence[Place], failed: Mapping[str, str] | None = None) -> list[Result]:
-    """What each study found; those that have not begun or cannot be read found nothing.
+    """Return what each study found; those that have not begun or cannot be read found nothing.
 
     ``failed`` has the reason, by name, of studies that could not be run just now, which their databases do not say.
 
@@ -162,7 +164,7 @@ class Section:
     groups: tuple[Group, ...]  #: those that differ in nothing but the seed
 
     def by(self, axis: str) -> tuple[Group, ...]:
-        """The studies by their value on one axis, whatever they have on the others."""
+        """Return the studies by their value on one axis, whatever they have on the others."""
         return _grouped(self.results, (axis,))
 
 
@@ -176,7 +178,7 @@ class Spread:
 
 
 def sections_of(results: Sequence[Result], axes: Sequence[str]) -> list[Section]:
-    """The finished studies by what can be compared, in the order of the campaign."""
+    """Return the finished studies by what can be compared, in the order of the campaign."""
     found: dict[tuple[tuple[str, ...], str], list[Result]] = {}
     for result in results:
         if result.finished:
@@ -234,7 +236,7 @@ def levels_of_section(section: Section) -> Floats:
 
 
 def attainment(group: Group, levels: Floats) -> Floats:
-    """What half, a tenth and nine tenths of the runs need at most for each level, shape (3, k).
+    """Return what half, a tenth and nine tenths of the runs need at most for each level, shape (3, k).
 
     These are empirical attainment surfaces (Grunert da Fonseca et al. 2001): order statistics of the runs' best second
     objectives at each level of the first, such as their least energies at each height.
@@ -257,12 +259,14 @@ def growth(group: Group) -> tuple[Floats, Floats]:
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The latest value at each number of evaluations, none of them before the first."""
+    """Return the latest value at each number of evaluations, none of them before the first."""
     return np.asarray(history[np.searchsorted(history[:, 0], at, side="right") - 1, 1])
 
 
 def relative(section: Section) -> dict[str, float]:
-    """Name of each study -> its hypervolume as a share of the median of the studies that differ in the seed only."""
+    """Return name of each study -> its hypervolume as a share of the median of the studies that differ in the seed
+    only.
+    """
     shares = {}
     for group in section.groups:
         middle = spread_of([result.stored.hypervolume for result in group.results]).middle
@@ -272,7 +276,7 @@ def relative(section: Section) -> dict[str, float]:
 
 
 def csv_text(campaign: Campaign, results: Sequence[Result]) -> str:
-    """The table as CSV; what a study does not have is empty.
+    """Return the table as CSV; what a study does not have is empty.
 
     Columns: name and database of the study, its value on each axis that varies, settings, how far it is, and what it
     found: ``knee_NAME`` are the objectives of the knee, ``best_NAME`` is the best value of the first objective,

@@ -75,7 +75,7 @@ def study_card(
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
 ) -> StudyCard:
-    """What the page says of one study.
+    """Return what the page says of one study.
 
     ``most_rows`` limits the trials that the page holds; ``goals`` are the objectives of all studies on the page.
     """
@@ -160,7 +160,9 @@ def _gearboxes(
     maps: Mapping[str, MapPlace],
     suffix: str = "_gearbox",
 ) -> dict[str, list[int]]:
-    """Numbers of the designs' gearboxes on the page, by joint; ``kit_rows`` has the positions of each kit's designs."""
+    """Return numbers of the designs' gearboxes on the page, by joint; ``kit_rows`` has the positions of each kit's
+    designs.
+    """
     found = {joint: np.full(len(designs), -1) for joint in ("hip", "knee")}
     for kit, rows in kit_rows:
         for joint, numbers in found.items():
@@ -183,7 +185,7 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
 def _with_alternatives(
     data: StudyData, again: Resimulation, picks: Sequence[Picked], trials: pd.DataFrame
 ) -> "dict[int, Recording]":
-    """The jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
+    """Return the jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
     jumps = dict(again.jumps)
     if not jumps:
         return jumps
@@ -221,7 +223,9 @@ def _failures(trials: pd.DataFrame) -> dict[str, int]:
 
 
 def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
-    """The knee, and, if the height is an objective, the best designs at the headline heights that the front reaches."""
+    """Return the knee, and, if the height is an objective, the best designs at the headline heights that the front
+    reaches.
+    """
     objectives = data.study.objectives
     heights = HEADLINES_M if "height_m" in objectives.names else ()
     named: list[tuple[str, Selector]] = [
@@ -241,7 +245,7 @@ def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> l
 
 
 def best_of_weights(data: StudyData) -> list[tuple[float, int]]:
-    """Each run of a weighted search: the weight of the first objective, and the trial of least cost."""
+    """Return each run of a weighted search: the weight of the first objective, and the trial of least cost."""
     settings = data.study.algorithm
     if not isinstance(settings, WeightedSettings):
         return []

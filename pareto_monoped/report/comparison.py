@@ -22,7 +22,7 @@ _POINTS = 160  # of a surface or a curve: more than a chart can show apart
 
 
 def group_of(data: StudyData) -> str:
-    """A text that is equal for studies which differ only in seed, name, description, budget or stopping rule."""
+    """Return a text that is equal for studies which differ only in seed, name, description, budget or stopping rule."""
     values = data.study.as_dict()
     for key in ("name", "description", "seed", "evaluations", "stop"):
         values.pop(key, None)
@@ -78,7 +78,7 @@ def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequ
 
 
 def _choices(studies: Sequence[StudyData]) -> list[dict[str, Any]]:
-    """The designs that two fronts by the two energies offer at some heights, as JSON values; else an empty list."""
+    """Return the designs that two fronts by the two energies offer at some heights, as JSON values; else an empty list."""
     pair = two_fronts(studies)
     if pair is None:
         return []
@@ -154,6 +154,6 @@ def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, An
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The latest value at each number of evaluations, 0 before the first."""
+    """Return the latest value at each number of evaluations, 0 before the first."""
     place = np.searchsorted(history[:, 0], at, side="right") - 1
     return np.where(place >= 0, history[np.maximum(place, 0), 1], 0.0)

@@ -45,13 +45,15 @@ class _Jumpers:
 
 @lru_cache(maxsize=1)
 def published_jumpers() -> tuple[Jumper, ...]:
-    """The jumpers of ``data/jumping_robots.toml``."""
+    """Return the jumpers of ``data/jumping_robots.toml``."""
     name = "jumping_robots.toml"
     return checked(_Jumpers, read_shipped(name, what="table of jumpers"), source=f"table of jumpers {name!r}").robots
 
 
 def own_jumpers(payload: Payload) -> list[Jumper]:
-    """The paper's Case C as simulated here, and of each front the most agile design, the knee and the highest jump."""
+    """Return the paper's Case C as simulated here, and of each front the most agile design, the knee and the highest
+    jump.
+    """
     found = []
     for case in payload.studies[0].cases:
         agility = case.measures.get("agility_m_per_s")
@@ -116,7 +118,7 @@ def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
 
 
 def context_section(payload: Payload) -> str:
-    """The chart and the table, the most agile first; those without a known agility follow by height."""
+    """Return the chart and the table, the most agile first; those without a known agility follow by height."""
     own = own_jumpers(payload)
     everyone = [*((jumper, False) for jumper in published_jumpers()), *((jumper, True) for jumper in own)]
     everyone.sort(key=lambda entry: (-(entry[0].agility_m_per_s or 0.0), -(entry[0].height_m or 0.0)))
@@ -171,7 +173,7 @@ _MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
 
 
 def _chart(own: Sequence[Jumper]) -> str:
-    """Height gained over mass, both logarithmic, as SVG in the page's colours."""
+    """Return height gained over mass, both logarithmic, as SVG in the page's colours."""
     everyone = [*((jumper, False) for jumper in published_jumpers()), *((jumper, True) for jumper in own)]
     shown = [(jumper, ours) for jumper, ours in everyone if jumper.mass_kg and jumper.height_m]
     places = [(_x(jumper.mass_kg or 1.0), _y(jumper.height_m or 1.0)) for jumper, _ in shown]
@@ -197,7 +199,7 @@ Box = tuple[float, float, float, float]
 
 
 def _label_place(x: float, y: float, wide: float, taken: Sequence[Box]) -> tuple[Box, str, float, float]:
-    """Where the label of a point at (x, y) covers nothing: its rectangle, anchor, and offset from the point."""
+    """Return where the label of a point at (x, y) covers nothing: its rectangle, anchor, and offset from the point."""
     tries = (
         ((x + 8.0, x + 8.0 + wide, y - 6.0, y + 4.0), "start", 8.0, 4.0),
         ((x - 8.0 - wide, x - 8.0, y - 6.0, y + 4.0), "end", -8.0, 4.0),

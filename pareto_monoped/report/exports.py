@@ -30,7 +30,7 @@ _FOLDER = re.compile(r"^trial_(\d+)$")
 def read_models(
     folder: Path, studies: Sequence[StudyData], *, note: Callable[[str], None] = lambda _: None
 ) -> list[Mapping[int, Model3D]]:
-    """The exported designs of some studies: per study, models by trial.
+    """Return the exported designs of some studies: per study, models by trial.
 
     A folder ``trial_N`` counts for a study if it is an up-to-date export of its trial N, in any pose, or has a GLB file
     but no record.
@@ -60,7 +60,7 @@ def read_models(
 
 
 def _is_export(folder: Path, data: StudyData, trial: int) -> bool:
-    """Whether a folder holds an up-to-date export of a trial; a GLB file without a record is taken for one."""
+    """Return whether a folder holds an up-to-date export of a trial; a GLB file without a record is taken for one."""
     if not (data.trials["trial"] == trial).any():
         return False
     if not (folder / RECORD).exists():
@@ -69,7 +69,7 @@ def _is_export(folder: Path, data: StudyData, trial: int) -> bool:
 
 
 def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
-    """Triangles of a GLB file with their colours, about ``most`` of them at the most."""
+    """Return triangles of a GLB file with their colours, about ``most`` of them at the most."""
     import trimesh
 
     scene = trimesh.load_scene(path)
@@ -85,7 +85,7 @@ def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
 
 
 def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
-    """One model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
+    """Return one model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
 
     ``bodies`` has for each body its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255. ``most``
     counts all triangles; there are more if so many bodies have only their least number.

@@ -248,7 +248,7 @@ def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:
 
 
 def _states_data(card: StudyCard, row: int) -> dict[str, Any]:
-    """The columns of a jump with the height of the foot, and the time of lift-off."""
+    """Return the columns of a jump with the height of the foot, and the time of lift-off."""
     trial = card.trials.trial[row]
     data: dict[str, Any] = dict(unpacked(card.jumps, trial))
     thigh, shank = (float(card.trials.columns[name][row] or 0.0) for name in ("thigh_length_m", "shank_length_m"))
@@ -323,6 +323,6 @@ def sensitivity_figure(trial: int, found: Sequence[Sensitivity], shown: Sequence
 
 
 def sensitivity_page(trial: int, found: Sequence[Sensitivity], shown: Sequence[Measure]) -> str:
-    """The chart as HTML that needs no network."""
+    """Return the chart as HTML that needs no network."""
     text: str = sensitivity_figure(trial, found, shown).to_html(include_plotlyjs=True, full_html=True)
     return text

@@ -26,19 +26,19 @@ Axes2 = tuple[str, str]
 
 
 def values(column: Column, rows: Sequence[int] | None = None) -> NDArray[np.float64]:
-    """A column, or some of its rows, with NaN where there is no value."""
+    """Return a column, or some of its rows, with NaN where there is no value."""
     chosen = column if rows is None else [column[row] for row in rows]
     return np.array([np.nan if value is None else value for value in chosen], dtype=np.float64)
 
 
 def _places(card: StudyCard, rows: Sequence[int], across_up: Axes2) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where trials stand, to the right and upward, in the units shown."""
+    """Return where trials stand, to the right and upward, in the units shown."""
     across, up = (values(card.trials.columns[name], rows) * measure(name).scale for name in across_up)
     return across, up
 
 
 def front_figure(payload: Payload, figure: Any) -> bool:
-    """The first objective upward over the second; a third is the colour of the designs on the front."""
+    """Return the first objective upward over the second; a third is the colour of the designs on the front."""
     axes = figure.add_subplot()
     up, across, *third = payload.objectives
     places = (across, up)
@@ -79,19 +79,19 @@ def _limits(axes: Any, payload: Payload, marks: Sequence[Mark], places: Axes2) -
 
 
 def axis_title(name: str) -> str:
-    """A measure with the unit that it is shown in."""
+    """Return a measure with the unit that it is shown in."""
     entry = measure(name)
     return f"{entry.label} ({entry.shown_unit})"
 
 
 def _designs(card: StudyCard, places: Axes2) -> list[Mark]:
-    """The designs on the front, unnamed."""
+    """Return the designs on the front, unnamed."""
     across, up = _places(card, card.front, places)
     return [(x, y, "") for x, y in zip(across.tolist(), up.tolist(), strict=True) if np.isfinite(x + y)]
 
 
 def _simulated(card: StudyCard, places: Axes2) -> list[Mark]:
-    """The paper's designs as simulated for a study, without those that do not jump."""
+    """Return the paper's designs as simulated for a study, without those that do not jump."""
     marks = []
     for case in card.cases:
         known = {**case.measures, "height_m": case.height_m, "energy_j": case.energy_j}

@@ -34,7 +34,7 @@ class MotorTables:
 
 
 def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
-    """The stage 1 map of a motor.
+    """Return the stage 1 map of a motor.
 
     ``first`` is the number of the map's first gearbox on the page.
     """
@@ -69,7 +69,9 @@ def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
 
 
 def gearbox_numbers(actuator_map: "ActuatorMap", ratios: NDArray[np.float64], first: int) -> list[int]:
-    """Numbers of the gearboxes that ratios get, shape (n,), counted as in ``motor_tables``; -1 where there is none."""
+    """Return numbers of the gearboxes that ratios get, shape (n,), counted as in ``motor_tables``; -1 where there is
+    none.
+    """
     has_gearbox = np.array([entry.actuator is not None for entry in actuator_map.entries])
     interval = actuator_map.interval_index(ratios)
     numbers: list[int] = np.where(interval >= 0, first + (np.cumsum(has_gearbox) - 1)[interval], -1).tolist()
@@ -96,7 +98,7 @@ def leg_table(d: LegDimensions) -> LegTable:
 
 
 def _upper_end(d: LegDimensions) -> Arc:
-    """The round upper end of the base's cheeks; it does not depend on the knee actuator's length."""
+    """Return the round upper end of the base's cheeks; it does not depend on the knee actuator's length."""
     cheek = next(part for part in base_parts(0.1, d) if part.role is Role.PLATE)
     outline = cheek.prisms[0].outline
     assert isinstance(outline, Path)

@@ -47,7 +47,7 @@ _FAR = 4  # a line is not drawn on over so many times the distance of the two po
 
 
 def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
-    """The jumps as text.
+    """Return the jumps as text.
 
     ``recordings`` goes by keys such as the number of a trial; each has ``frames`` frames, or fewer in a short jump.
     """
@@ -77,7 +77,7 @@ def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
 
 
 def _joined(columns: Sequence[NDArray[np.float64]], size: float) -> Ints:
-    """One column of all jumps in a row, in counts."""
+    """Return one column of all jumps in a row, in counts."""
     row = np.concatenate(columns) if columns else np.zeros(0)
     return np.asarray(np.floor(row / size + 0.5), dtype=np.int64)
 
@@ -131,13 +131,13 @@ def _zigzag(values: Ints) -> Ints:
 
 
 def _bits(codes: Ints, rice: int | Ints) -> Ints:
-    """Length of each code in bits."""
+    """Return length of each code in bits."""
     ones = codes >> rice
     return np.where(ones < _LONG, ones + 1 + rice, _LONG + _LONG_BITS)
 
 
 def _bytes(sizes: Ints, ends: Ints, codes: Sequence[Ints], rices: Sequence[int]) -> tuple[list[int], bytes]:
-    """Length of each jump in bytes, and all of them one after the other: its two ends, then column after column."""
+    """Return length of each jump in bytes, and all of them one after the other: its two ends, then column after column."""
     n, width = len(sizes), len(codes)
     # The row of all numbers in the order of writing, sorted by jump, then column, then frame.
     owner = np.concatenate([np.repeat(np.arange(n), 2), *(np.repeat(np.arange(n), sizes) for _ in codes)])
@@ -212,7 +212,7 @@ def _guess(
     i: int,
     step_s: float,
 ) -> int:
-    """The predicted count of frame ``i``, with steps of ``s`` seconds."""
+    """Return the predicted count of frame ``i``, with steps of ``s`` seconds."""
     if i == 0:
         return 0
     since = steps[i] - steps[i - 1]
@@ -253,7 +253,7 @@ def packed_column(values: Any) -> str:
 
 
 def unpacked_column(text: str) -> NDArray[np.float64]:
-    """The numbers of ``packed``, shape (n,); NaN where there is none."""
+    """Return the numbers of ``packed``, shape (n,); NaN where there is none."""
     upper = np.frombuffer(base64.b64decode(text), dtype=np.uint8).reshape(-1, 3)
     words = np.zeros((len(upper), 4), dtype=np.uint8)
     words[:, 1:] = upper
@@ -279,5 +279,5 @@ def column(values: Any, digits: int = DIGITS) -> Column:
 
 
 def number(value: float) -> Number:
-    """A number to four decimals, None if it is not finite."""
+    """Return a number to four decimals, None if it is not finite."""
     return round(float(value), 4) if np.isfinite(value) else None

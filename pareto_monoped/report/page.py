@@ -60,12 +60,12 @@ from 150 to 350 mm."""
 
 
 def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
-    """What decides a map: the motor and the rules."""
+    """Return what decides a map: the motor and the rules."""
     return actuator_map.motor, actuator_map.settings.rules
 
 
 def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
-    """The page's content.
+    """Return the page's content.
 
     ``sources`` has one per database, in the order of the command line; ``literal`` are the paper's cases under the
     ``paper`` calibration, as in ``jump.table1.Spread``.
@@ -137,7 +137,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
 
 
 def _axes(cards: Sequence[StudyCard]) -> list[str]:
-    """The measures and variables that trials differ in."""
+    """Return the measures and variables that trials differ in."""
     differ = set()
     for card in cards:
         for name, values in card.trials.columns.items():
@@ -149,7 +149,7 @@ def _axes(cards: Sequence[StudyCard]) -> list[str]:
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:
-    """Names of the studies; where several have the same, with what they are for, seed, database or number.
+    """Return names of the studies; where several have the same, with what they are for, seed, database or number.
 
     Each is as long as it must be, so that no two are alike.
     """
@@ -165,14 +165,14 @@ def _labels(sources: Sequence[Source]) -> list[str]:
 
 
 def _title(cards: Sequence[StudyCard]) -> str:
-    """The study's name, where it is one study, or one by several objectives; else the first one's and a count."""
+    """Return the study's name, where it is one study, or one by several objectives; else the first one's and a count."""
     by = {(card.name, tuple(card.objectives)) for card in cards}
     one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
     return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"
 
 
 def _aim(source: Source) -> str:
-    """The objectives of a study but the height, in words."""
+    """Return the objectives of a study but the height, in words."""
     measures = source.data.study.objectives.measures
     return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")
 
@@ -253,7 +253,7 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 
 
 def page(payload: Payload) -> str:
-    """The whole HTML text."""
+    """Return the whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     # Only this script may run, whatever else gets into the page, and nothing may be loaded.
     policy = (
@@ -281,7 +281,7 @@ def page(payload: Payload) -> str:
 
 
 def embedded(payload: Payload) -> str:
-    """The payload as JSON for a script element."""
+    """Return the payload as JSON for a script element."""
     return embedded_json(payload)
 
 
@@ -298,10 +298,10 @@ def _plain(value: Any) -> Any:
 
 
 def fingerprint(script: str) -> str:
-    """What a page's policy calls the one script that may run."""
+    """Return what a page's policy calls the one script that may run."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
 
 
 def asset(name: str) -> str:
-    """The text of a script, style sheet or page of the report."""
+    """Return the text of a script, style sheet or page of the report."""
     return (resources.files("pareto_monoped.report") / "assets" / name).read_text(encoding="utf-8")

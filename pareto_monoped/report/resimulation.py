@@ -107,7 +107,7 @@ def jumps_of(
 
 
 def paper_cases(maps: "Maps", calibration: "Calibration") -> "tuple[list[Case], dict[int, Recording]]":
-    """The paper's designs, simulated, and the jumps of those that jump, by place among them."""
+    """Return the paper's designs, simulated, and the jumps of those that jump, by place among them."""
     from pareto_monoped.jump.evaluate import Evaluator
 
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])

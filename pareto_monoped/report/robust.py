@@ -19,7 +19,7 @@ MOST_ALTERNATIVES = 5
 
 
 def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int, int]) -> Robust | None:
-    """The designs of a study under uncertainty; None where nothing of the kind is stored.
+    """Return the designs of a study under uncertainty; None where nothing of the kind is stored.
 
     ``row_of`` leads from a trial to its row on the page; trials without one are left out.
     """
@@ -45,7 +45,7 @@ def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int
 
 
 def names_of(studies: Sequence[StudyData], robust: Sequence[Robust | None]) -> tuple[str, ...]:
-    """What some study on the page has beside its jumps' measures: those under uncertainty, then own functions."""
+    """Return what some study on the page has beside its jumps' measures: those under uncertainty, then own functions."""
     there = {name for data in studies for name in data.trials if is_robust(name)}
     there.update(name for one in robust if one is not None for name in one.packed)
     own = dict.fromkeys(name for data in studies for name in data.trials if is_own(name))
@@ -63,7 +63,7 @@ def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> t
 
 
 def influences_of(stored: Mapping[tuple[int, About], StoredSensitivity]) -> dict[str, dict[str, Influences]]:
-    """The stored sensitivities of a study by trial number and kind of factors."""
+    """Return the stored sensitivities of a study by trial number and kind of factors."""
     found: dict[str, dict[str, Influences]] = {}
     for (trial, about), one in stored.items():
         factors = one.result.factors

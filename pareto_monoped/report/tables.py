@@ -19,7 +19,7 @@ from pareto_monoped.report.schema import Comparison, Number, Payload, Quantity, 
 
 
 def safe(value: object) -> str:
-    """Text for HTML, inside an element or a quoted attribute."""
+    """Return text for HTML, inside an element or a quoted attribute."""
     return escape(str(value), quote=True)
 
 
@@ -80,7 +80,7 @@ def _number(value: Number, decimals: int) -> str:
 
 
 def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
-    """An HTML table; the first cell of each row is its heading."""
+    """Return an HTML table; the first cell of each row is its heading."""
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
     body = "".join(
@@ -95,7 +95,7 @@ def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption
 
 
 def cases_table(payload: Payload) -> str:
-    """The paper's designs, and their heights and energies as published and as simulated here."""
+    """Return the paper's designs, and their heights and energies as published and as simulated here."""
     columns = [
         "design",
         *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables),
@@ -179,7 +179,9 @@ def comparison_tables(payload: Payload) -> str:
 
 
 def _choices_table(comparison: Comparison) -> str:
-    """What choosing by mechanical energy costs at the battery; an empty text if the studies are not two such fronts."""
+    """Return what choosing by mechanical energy costs at the battery; an empty text if the studies are not two such
+    fronts.
+    """
     if not comparison.choices:
         return ""
     found = [side for row in comparison.choices for side in (row["mechanical"], row["battery"]) if side is not None]
@@ -233,7 +235,7 @@ ENERGIES = ("energy_j", "electrical_energy_j")
 
 
 def kind(payload: Payload) -> str:
-    """What the page is about, in one line above its title."""
+    """Return what the page is about, in one line above its title."""
     if tuple(payload.objectives) == ("height_m", "energy_j"):
         return "Pareto report: jump height against energy of a monoped"
     labels = [measure(name).label for name in payload.objectives]
@@ -241,7 +243,7 @@ def kind(payload: Payload) -> str:
 
 
 def order(payload: Payload) -> str:
-    """The order of the designs on the front, for readers who hear the page."""
+    """Return the order of the designs on the front, for readers who hear the page."""
     first = payload.objectives[0]
     if first == "height_m":
         return "Designs on the front, from the lowest jump to the highest"
@@ -253,7 +255,7 @@ ASKED = ("energy_j", "electrical_energy_j", "mass_kg")
 
 
 def ask_fields(payload: Payload) -> str:
-    """The number fields of the form: the first objective wanted, and what may be spent for it."""
+    """Return the number fields of the form: the first objective wanted, and what may be spent for it."""
     there = {name for card in payload.studies for name in (*card.trials.columns, *card.trials.packed)}
     names = dict.fromkeys((*payload.objectives[:2], *(name for name in ASKED if name in there)))
     ids = ("ask-height", "ask-energy")
@@ -275,7 +277,7 @@ MOST_ROWS = 60
 
 
 def designs_table(payload: Payload) -> str:
-    """One table per study with a front: its designs, or some evenly along it."""
+    """Return one table per study with a front: its designs, or some evenly along it."""
     names = dict.fromkeys((*payload.goals, *ASKED, *(str(variable["name"]) for variable in payload.variables)))
     quantities = {q.name: q for q in payload.quantities}
     parts = []

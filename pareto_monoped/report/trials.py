@@ -21,7 +21,7 @@ _HISTORY_POINTS = 300  # of a convergence curve
 
 
 def rows_per_study(sizes: Sequence[int]) -> list[int]:
-    """How many rows each study gets: all of them, or a share of ``MOST_ROWS`` in proportion to its trials."""
+    """Return how many rows each study gets: all of them, or a share of ``MOST_ROWS`` in proportion to its trials."""
     total = sum(sizes)
     return [size if total <= MOST_ROWS else max(size * MOST_ROWS // total, 1) for size in sizes]
 
@@ -44,7 +44,7 @@ def trial_columns(
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
 ) -> Trials:
-    """The trials on the page.
+    """Return the trials on the page.
 
     ``numbers`` are more columns: where the page has what the trial chooses, such as its gearboxes. ``total`` counts the
     trials in the database.
@@ -64,12 +64,12 @@ def trial_columns(
 
 
 def values_of(trials: pd.DataFrame, name: str) -> NDArray[np.float64]:
-    """A column of the trials, shape (n,); NaN for an objective that only another study on the page has."""
+    """Return a column of the trials, shape (n,); NaN for an objective that only another study on the page has."""
     return trials[name].to_numpy(dtype=np.float64) if name in trials else np.full(len(trials), np.nan)
 
 
 def front_columns(bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
-    """What the page has of the front alone: the masses of base, thigh and shank, shape (n, 3)."""
+    """Return what the page has of the front alone: the masses of base, thigh and shank, shape (n, 3)."""
     return {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
 
 

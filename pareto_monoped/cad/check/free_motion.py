@@ -67,7 +67,7 @@ class _Turn:
     strikers: frozenset[str]  #: names of the strikers
 
     def meet_in_stop(self, one: PlacedMesh, other: PlacedMesh) -> bool:
-        """Whether one part is a bumper and the other a striker."""
+        """Return whether one part is a bumper and the other a striker."""
         names = {one.name, other.name}
         return bool(names & self.soft) and bool(names & self.strikers)
 
@@ -100,7 +100,7 @@ def _turn(
     moving: list[tuple[Instance, m3.Manifold]],
     frame: Matrix,
 ) -> _Turn:
-    """A joint between two bodies; ``frame`` leads from the assembly's frame to one with its origin on the axis."""
+    """Return a joint between two bodies; ``frame`` leads from the assembly's frame to one with its origin on the axis."""
 
     def named(role: Role) -> frozenset[str]:
         return frozenset(instance.name for instance, _ in (*fixed, *moving) if instance.part.role is role)
@@ -117,7 +117,7 @@ def _turn(
 
 
 def _by_body(product: Product) -> Bodies:
-    """The parts of each body with both joints at zero, with their meshes."""
+    """Return the parts of each body with both joints at zero, with their meshes."""
     found: Bodies = {"base": [], "thigh": [], "shank": []}
     for instance, kind in zip(instances(product.robot, _ZERO), product.kinds, strict=True):
         # What turns inside an actuator turns with the next body and has its own check.
@@ -167,7 +167,7 @@ def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
 
 
 def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: float, to_rad: float) -> float | None:
-    """The first angle on the way at which one of the pairs overlaps, None if none does."""
+    """Return the first angle on the way at which one of the pairs overlaps, None if none does."""
 
     def meets(angle_rad: float) -> bool:
         for one, other in pairs:
@@ -191,7 +191,7 @@ def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: flo
 
 
 def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
-    """How far the shank stays from the base at any hip angle, negative if they can meet.
+    """Return how far the shank stays from the base at any hip angle, negative if they can meet.
 
     A part of the base lies within the circle about the hip axis that it reaches. The clearance is the distance of the
     shank's parts from that circle, the least over the knee's range and over all pairs that have a common stretch along
@@ -234,7 +234,7 @@ def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:
 
 
 def _may_meet(one: PlacedMesh, other: PlacedMesh, reach: Mapping[str, tuple[float, float]]) -> bool:
-    """Whether turning about the y axis can bring two meshes together."""
+    """Return whether turning about the y axis can bring two meshes together."""
     if one.low[1] >= other.high[1] - TOUCH_MM or other.low[1] >= one.high[1] - TOUCH_MM:
         return False
     (least, greatest), (other_least, other_greatest) = reach[one.name], reach[other.name]

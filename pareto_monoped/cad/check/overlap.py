@@ -51,7 +51,7 @@ class PlacedMesh:
 
     @classmethod
     def of(cls, name: str, body: m3.Manifold, matrix: Matrix) -> "PlacedMesh":
-        """A mesh moved by a 4 x 4 matrix."""
+        """Return a mesh moved by a 4 x 4 matrix."""
         moved = placed(body, matrix)
         box = np.asarray(moved.bounding_box())
         return cls(name=name, body=moved, low=box[:3], high=box[3:])
@@ -66,12 +66,12 @@ def near(meshes: Sequence[PlacedMesh]) -> Iterator[tuple[PlacedMesh, PlacedMesh]
 
 
 def boxes_meet(one: PlacedMesh, other: PlacedMesh) -> bool:
-    """Whether two bounding boxes overlap."""
+    """Return whether two bounding boxes overlap."""
     return bool(np.all(one.low < other.high - TOUCH_MM) and np.all(other.low < one.high - TOUCH_MM))
 
 
 def overlap_of(one: PlacedMesh, other: PlacedMesh, where: str) -> Iterator[Overlap]:
-    """The overlap of two meshes, if they have one."""
+    """Yield the overlap of two meshes, if they have one."""
     shared = one.body ^ other.body
     volume = shared.volume()
     if volume > _LEAST_MM3:
@@ -80,7 +80,7 @@ def overlap_of(one: PlacedMesh, other: PlacedMesh, where: str) -> Iterator[Overl
 
 
 def deepest(limit: Limit, looked_at: str, found: Iterable[Overlap]) -> Check:
-    """A check of overlaps: each pair of parts counts once, with its deepest overlap."""
+    """Return a check of overlaps: each pair of parts counts once, with its deepest overlap."""
     worst: dict[tuple[str, str], Overlap] = {}
     for overlap in found:
         key = (overlap.one, overlap.other)
@@ -127,7 +127,7 @@ class _Stack:
 
 
 def _record(part: Part) -> _Stack | None:
-    """The layers of a part in its own frame; None if it is not made of prisms only."""
+    """Return the layers of a part in its own frame; None if it is not made of prisms only."""
     rows, bores, sections = [], [], []
     for number, prism in enumerate(part.prisms):
         inner = [_bore_radius(hole) for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
@@ -154,7 +154,7 @@ def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
 
 
 def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
-    """A part's layers where an instance of it stands; its axis is parallel to the joints'."""
+    """Return a part's layers where an instance of it stands; its axis is parallel to the joints'."""
     if record is None:
         return None
     world = instance.world
@@ -167,14 +167,16 @@ def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
 
 
 def _bore_radius(hole: Circle | InternalGear) -> float:
-    """Radius of a hole around the part's axis; 0 for one that is elsewhere."""
+    """Return radius of a hole around the part's axis; 0 for one that is elsewhere."""
     if isinstance(hole, InternalGear):
         return float(hole.tip_radius_mm)
     return float(hole.radius_mm) if float(hole.x_mm) == 0.0 and float(hole.y_mm) == 0.0 else 0.0
 
 
 def _apart(one: _Stack | None, other: _Stack | None) -> bool:
-    """Whether the records of two instances say that they keep apart, so that their meshes need not be intersected."""
+    """Return whether the records of two instances say that they keep apart, so that their meshes need not be
+    intersected.
+    """
     if one is None or other is None:
         return False
     on_one_axis = float(np.abs(one.axis - other.axis).max()) <= TOUCH_MM
@@ -187,20 +189,20 @@ def _apart(one: _Stack | None, other: _Stack | None) -> bool:
 
 
 def _common(one: _Stack, other: _Stack) -> NDArray[np.bool_]:
-    """Which layers have a stretch of the axis in common, shape (n of one, n of the other)."""
+    """Return which layers have a stretch of the axis in common, shape (n of one, n of the other)."""
     a, b = one.rows[:, None], other.rows[None]
     return np.asarray(np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 2], b[..., 2]) > TOUCH_MM)
 
 
 def _as_rings(one: _Stack, other: _Stack) -> bool:
-    """Whether two instances on one axis are rings, one around the other or one behind the other."""
+    """Return whether two instances on one axis are rings, one around the other or one behind the other."""
     a, b = one.rows[:, None], other.rows[None]
     radial = np.minimum(a[..., 1], b[..., 1]) - np.maximum(a[..., 0], b[..., 0]) > TOUCH_MM
     return not bool(np.any(radial & _common(one, other)))
 
 
 def _in_holes(one: _Stack, other: _Stack) -> bool:
-    """Whether every layer of one stands in a round hole of each layer of the other beside it, such as a screw."""
+    """Return whether every layer of one stands in a round hole of each layer of the other beside it, such as a screw."""
     beside = _common(one, other)
     room = other.bores[:, 3] - np.hypot(*(other.bores[:, 1:3] - one.axis).T)
     widest = np.zeros(len(other.rows))
@@ -209,7 +211,7 @@ def _in_holes(one: _Stack, other: _Stack) -> bool:
 
 
 def _in_layers(one: _Stack, other: _Stack) -> bool:
-    """Whether the flat shapes of two layers with a common stretch of the axis never have an area in common."""
+    """Return whether the flat shapes of two layers with a common stretch of the axis never have an area in common."""
     return all(
         (one.sections[a] ^ other.sections[b]).area() <= _LEAST_MM2 for a, b in np.argwhere(_common(one, other)).tolist()
     )

@@ -17,11 +17,11 @@ class Limit:
     at_least: bool = False  #: whether it is a lower limit
 
     def allows(self, value: float) -> bool:
-        """Whether a measured value is within the limit; NaN is not."""
+        """Return whether a measured value is within the limit; NaN is not."""
         return value >= self.value if self.at_least else value <= self.value
 
     def of(self, body: str) -> "Limit":
-        """The limit for one body, ``{}`` in its name replaced by the body's."""
+        """Return the limit for one body, ``{}`` in its name replaced by the body's."""
         return replace(self, name=self.name.format(body))
 
 
@@ -101,7 +101,7 @@ class Check:
 
 
 def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check:
-    """A check of measured values: fails for each one that is beyond the limit.
+    """Return a check of measured values: fails for each one that is beyond the limit.
 
     Without findings the measured value is the limit's own for a lower limit, else 0.
     """
@@ -119,7 +119,7 @@ def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check
 
 
 def count_of(limit: Limit, looked_at: str, failures: Sequence[str]) -> Check:
-    """A check of things that are right or wrong: the measured value is the number of the wrong ones."""
+    """Return a check of things that are right or wrong: the measured value is the number of the wrong ones."""
     return Check(
         name=limit.name,
         looked_at=looked_at,

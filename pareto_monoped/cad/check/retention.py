@@ -74,7 +74,7 @@ def check(robot: Robot) -> Check:
 
 
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
-    """Every instance that can move, and how many were looked at."""
+    """Return every instance that can move, and how many were looked at."""
     placed = instances(robot, POSE)
     pieces = slabs(placed)
     runs_into = _contacts(placed, pieces)
@@ -158,7 +158,7 @@ def _contacts(placed: Sequence[Instance], pieces: Sequence[Slab]) -> dict[tuple[
 
 
 def threads(placed: Sequence[Instance], pieces: Sequence[Slab]) -> Bools:
-    """True at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
+    """Return true at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
     low, high = np.array([slab.low for slab in pieces]), np.array([slab.high for slab in pieces])
     bounds = np.array([slab.section.bounds() for slab in pieces])
@@ -181,7 +181,7 @@ def threads(placed: Sequence[Instance], pieces: Sequence[Slab]) -> Bools:
 
 
 def _joints(placed: Sequence[Instance], runs_into: dict[tuple[str, str], Bools]) -> Bools:
-    """True at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
+    """Return true at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
     for i, instance in enumerate(placed):
         joint = instance.part.joint
@@ -202,7 +202,7 @@ def _diameter_mm(part: Part) -> float:
 
 
 def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
-    """The pieces of all instances in the assembly, in their order; gears by their root circles if ``blunt``."""
+    """Return the pieces of all instances in the assembly, in their order; gears by their root circles if ``blunt``."""
     local: dict[int, list[tuple[m3.CrossSection, float, float]]] = {}
     found = []
     for k, instance in enumerate(placed):
@@ -218,7 +218,7 @@ def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
 
 
 def _sections(part: Part, *, blunt: bool) -> Iterator[tuple[m3.CrossSection, float, float]]:
-    """The prisms of a part, a slice of its balls, and discs for its countersunk heads."""
+    """Yield the prisms of a part, a slice of its balls, and discs for its countersunk heads."""
     for prism in part.prisms:
         section = _section([_blunt(prism.outline) if blunt else prism.outline])
         if prism.holes:
@@ -240,7 +240,7 @@ def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
 
 
 def _blunt(shape: Shape) -> Shape:
-    """A gear without its teeth: what is surely material, or surely not."""
+    """Return a gear without its teeth: what is surely material, or surely not."""
     if isinstance(shape, ExternalGear | InternalGear):
         return Circle(radius_mm=float(shape.root_radius_mm))
     return shape

@@ -48,7 +48,7 @@ def run_checks(
     other_files: Mapping[str, bytes],
     factors: Sequence[JointFactor] | None = None,
 ) -> tuple[Check, ...]:
-    """All checks of a product against the robot that is simulated.
+    """Return all checks of a product against the robot that is simulated.
 
     Args:
         product: solids, meshes, instances.

@@ -66,7 +66,7 @@ def _on_axis(one: _Round, other: _Round) -> bool:
 
 
 def _same(one: _Round, other: _Round) -> bool:
-    """Whether a head and a countersink begin and end at the same heights, as wide as each other."""
+    """Return whether a head and a countersink begin and end at the same heights, as wide as each other."""
     return max(abs(one.low - other.low), abs(one.high - other.high), abs(one.size - other.size)) < _SAME_MM
 
 
@@ -79,7 +79,7 @@ _Local = tuple[float, float, float, float, float]
 
 
 def _each(instance: Instance, of: Callable[[Part], Iterator[_Local]]) -> Iterator[_Round]:
-    """What a part has, where an instance has it."""
+    """Yield what a part has, where an instance has it."""
     for x, y, one, other, size in of(instance.part):
         ends = [instance.world @ np.array([x, y, z, 1.0]) for z in (one, other)]
         low, high = sorted(float(end[1]) for end in ends)
@@ -119,7 +119,7 @@ def _threads(part: Part) -> Iterator[_Local]:
 
 
 def _holes(part: Part) -> Iterator[_Local]:
-    """All round holes with their radii."""
+    """Yield all round holes with their radii."""
     for prism in part.prisms:
         for hole in prism.holes:
             if isinstance(hole, Circle | Pattern):
@@ -128,7 +128,7 @@ def _holes(part: Part) -> Iterator[_Local]:
 
 
 def _cores(part: Part) -> Iterator[_Local]:
-    """The threaded end of a screw, which is drawn with the radius of its core."""
+    """Yield the threaded end of a screw, which is drawn with the radius of its core."""
     if part.role in SCREWS:
         radius, low, high = min(_cylinders(part))
         yield 0.0, 0.0, low, high, radius
@@ -141,7 +141,7 @@ def _diameter_mm(part: Part) -> float:
 
 
 def _cylinders(part: Part) -> list[tuple[float, float, float]]:
-    """Radius and both heights of the cylinders of a screw."""
+    """Return radius and both heights of the cylinders of a screw."""
     return [
         (float(prism.outline.radius_mm), float(prism.z0_mm), float(prism.z1_mm))
         for prism in part.prisms
@@ -198,7 +198,7 @@ def _offsets_mm(fastener: Instance, holes: list[_Hole]) -> dict[str, float]:
 
 
 def _shaft(fastener: Instance) -> tuple[NDArray[np.float64], float, float]:
-    """Where a fastener's axis pierces the x-z plane, and its extent along y, in the assembly's frame."""
+    """Return where a fastener's axis pierces the x-z plane, and its extent along y, in the assembly's frame."""
     ends = [
         fastener.world @ np.array([0.0, 0.0, float(z), 1.0]) for p in fastener.part.prisms for z in (p.z0_mm, p.z1_mm)
     ]
@@ -207,7 +207,7 @@ def _shaft(fastener: Instance) -> tuple[NDArray[np.float64], float, float]:
 
 
 def _bolts_holes(instance: Instance) -> Iterator[_Hole]:
-    """Every round hole of an instance."""
+    """Yield every round hole of an instance."""
     for prism in instance.part.prisms:
         for x, y in _centres_mm(prism):
             ends = [instance.world @ np.array([x, y, float(z), 1.0]) for z in (prism.z0_mm, prism.z1_mm)]

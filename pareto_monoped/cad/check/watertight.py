@@ -25,7 +25,8 @@ _CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
 
 def meshes_of(name: str, content: bytes) -> Mapping[str, Corners]:
-    """The corners of the triangles of every mesh in a file, in the file's unit, shape (n, 3, 3), by the mesh's name.
+    """Return the corners of the triangles of every mesh in a file, in the file's unit, shape (n, 3, 3), by the mesh's
+    name.
 
     Raises:
         ValueError: the name does not end in ``.stl``, ``.3mf`` or ``.glb``.
@@ -46,7 +47,7 @@ def read_stl(content: bytes) -> Corners:
 
 
 def read_3mf(content: bytes) -> Corners:
-    """A 3MF file with one object."""
+    """Return a 3MF file with one object."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         root = ET.fromstring(archive.read("3D/3dmodel.model"))
     points = np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in root.iter(f"{_CORE}vertex")])
@@ -93,7 +94,7 @@ def check(product: Product, part_files: Mapping[str, bytes], other_files: Mappin
 
 
 def _open_meshes(corners: Mapping[str, Corners]) -> list[str]:
-    """A sentence for every mesh that is not closed."""
+    """Return a sentence for every mesh that is not closed."""
     # An assembly has the triangles of the parts' own files, which need only one look.
     known: dict[bytes, str] = {}
     found = []

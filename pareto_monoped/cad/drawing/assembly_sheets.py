@@ -51,7 +51,7 @@ _NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show e
 
 
 def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
-    """The sheet of the assembly.
+    """Return the sheet of the assembly.
 
     Raises:
         ValueError: the robot fits no sheet.
@@ -107,7 +107,7 @@ def _centred(papers: Sequence[Paper]) -> Paper:
 
 
 def _lists(product: Product) -> list[Paper]:
-    """The list of items, in the order of ``bom.csv``."""
+    """Return the list of items, in the order of ``bom.csv``."""
     rows = [
         (
             f"{k}",
@@ -157,7 +157,7 @@ def exploded_sheets(product: Product) -> list[Sheet]:
 
 
 def _filled(views: Sequence[tuple[str, list[Seen]]]) -> tuple[int, Sheet]:
-    """The largest scale at which the first view fits a sheet, and with it as many more as fit."""
+    """Return the largest scale at which the first view fits a sheet, and with it as many more as fit."""
     for scale in (scale for scale in SCALES if scale <= _SCALE):
         papers = [_view(name, seen, scale) for name, seen in views]
         for size in (A1, A0):
@@ -175,7 +175,9 @@ def _view(name: str, seen: Sequence[Seen], scale: float) -> Paper:
 
 
 def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
-    """The parts of each unit that no unit before it has, pulled apart, seen from the front with their axes upright."""
+    """Yield the parts of each unit that no unit before it has, pulled apart, seen from the front with their axes
+    upright.
+    """
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     shown: set[int] = set()
     for unit in product.robot.units:
@@ -205,7 +207,7 @@ def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
 
 
 def _groups(product: Product, unit: str, shown: set[int]) -> Iterator[_Group]:
-    """The items of a unit that are not shown yet, each with its instances at the first of its heights."""
+    """Yield the items of a unit that are not shown yet, each with its instances at the first of its heights."""
     found: dict[int, dict[float, list[tuple[Instance, UniquePart]]]] = {}
     for (instance, unique), kind in zip(product.placed(), product.kinds, strict=True):
         if instance.unit == unit and kind not in shown:
@@ -225,7 +227,7 @@ _CABLE_SHEET_NOTES = (
 
 
 def cable_sheet(product: Product) -> tuple[Paper, Size, float]:
-    """The sheet.
+    """Return the sheet.
 
     Raises:
         ValueError: the robot fits no sheet.
@@ -264,7 +266,7 @@ def _seen(product: Product, axes: NDArray[np.float64]) -> Iterator[Seen]:
 def _cable_sheet_view(
     name: str, seen: Sequence[Seen], axes: NDArray[np.float64], made: Sequence[Cable], scale: float
 ) -> Paper:
-    """The outlines with the cables over them, and a name at every corner."""
+    """Return the outlines with the cables over them, and a name at every corner."""
     paper = drawn(seen, scale)
     tags = []
     for letter, cable in zip(ascii_uppercase, made, strict=False):
@@ -277,7 +279,7 @@ def _cable_sheet_view(
 
 
 def _tables(made: Sequence[Cable]) -> list[Paper]:
-    """What is cut, and the corners."""
+    """Return what is cut, and the corners."""
     cut = [
         (
             letter,

@@ -84,7 +84,7 @@ def leg_section(product: Product) -> list[Seen]:
 
 
 def drawn(seen: Sequence[Seen], scale: float) -> Paper:
-    """The regions on paper, cut ones hatched, neighbouring parts in different directions."""
+    """Return the regions on paper, cut ones hatched, neighbouring parts in different directions."""
     paper = Paper()
     for one in seen:
         region = shapely.transform(one.region, lambda points: points * scale)
@@ -100,14 +100,14 @@ def drawn(seen: Sequence[Seen], scale: float) -> Paper:
 
 
 def within(seen: Sequence[Seen], low_mm: float, high_mm: float) -> list[Seen]:
-    """The regions of a view between two heights."""
+    """Return the regions of a view between two heights."""
     band = shapely.box(-1e5, low_mm, 1e5, high_mm)
     clipped = [replace(one, region=one.region.intersection(band)) for one in seen]
     return [one for one in clipped if not one.region.is_empty]
 
 
 def areas(seen: Sequence[Seen]) -> dict[int, float]:
-    """The largest visible region of each item in mm2 of the robot."""
+    """Return the largest visible region of each item in mm2 of the robot."""
     found: dict[int, float] = {}
     for one in seen:
         found[one.item] = max(found.get(one.item, 0.0), max((p.area for p in polygons(one.region)), default=0.0))
@@ -122,7 +122,7 @@ def to_view(axes: Floats) -> Floats:
 
 
 def outline_of(section: m3.CrossSection) -> BaseGeometry:
-    """A region of the plane as a Shapely geometry."""
+    """Return a region of the plane as a Shapely geometry."""
     rings = [np.asarray(ring) for ring in section.to_polygons() if len(ring) > 2]
     # Manifold gives outer boundaries anticlockwise and holes clockwise; even-odd filling needs no order.
     region: BaseGeometry = shapely.Polygon()
@@ -132,7 +132,7 @@ def outline_of(section: m3.CrossSection) -> BaseGeometry:
 
 
 def captioned(paper: Paper, name: str, scale: float) -> Paper:
-    """A finished view with its name and scale over it, and its middle, without these, at y = 0."""
+    """Return a finished view with its name and scale over it, and its middle, without these, at y = 0."""
     left, low, right, high = paper.box()
     paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
     centred = Paper()
@@ -200,7 +200,7 @@ def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
 
 
 def _columns(paper: Paper) -> tuple[float, float]:
-    """Where the columns of balloons stand."""
+    """Return where the columns of balloons stand."""
     left, _, right, _ = paper.box()
     return left - _COLUMN_MM, right + _COLUMN_MM
 
@@ -227,7 +227,7 @@ def _ends(region: BaseGeometry) -> Iterator[_End]:
 
 
 def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int, Point]:
-    """The middle of every balloon: near the height of its leader's end, in an order in which no leaders cross."""
+    """Return the middle of every balloon: near the height of its leader's end, in an order in which no leaders cross."""
     found: dict[int, Point] = {}
     for to_right, x in zip((False, True), columns, strict=True):
         tips = {item: end.tip for item, end in ends.items() if end.to_right is to_right}
@@ -241,7 +241,7 @@ def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int,
 def _hits(
     ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
 ) -> tuple[list[int], float]:
-    """The items whose leaders cross other parts, once for each crossing, and the length of all leaders."""
+    """Return the items whose leaders cross other parts, once for each crossing, and the length of all leaders."""
     placed = _placed(ends, columns)
     lines = shapely.linestrings([[placed[item], ends[item].tip] for item in order])
     own, other = tree.query(lines, predicate="intersects")

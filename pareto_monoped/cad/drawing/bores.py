@@ -95,7 +95,7 @@ class Bore:
             yield f"{text}{', both sides' if len(sides) == 2 else '' if True in sides else ', far side'}"
 
     def _ends_at_mouth(self, above: bool) -> bool:
-        """Whether these holes end where the feature does: a narrower step of the same feature has no cone."""
+        """Return whether these holes end where the feature does: a narrower step of the same feature has no cone."""
         assert self.feature is not None
         end = float(self.feature.high_mm) - self.high if above else float(self.feature.low_mm) - self.low
         return abs(end) < _SAME_MM
@@ -109,7 +109,7 @@ class Bore:
 
 
 def bores(part: Part, *, on_axis: bool = False) -> tuple[Bore, ...]:
-    """The round holes of a part beside its axis, largest circle first; those on the axis too if asked for."""
+    """Return the round holes of a part beside its axis, largest circle first; those on the axis too if asked for."""
     found: dict[Circle | Pattern, list[tuple[float, float]]] = {}
     for prism in sorted(part.prisms, key=lambda p: float(p.z0_mm)):
         for hole in prism.holes:
@@ -145,7 +145,7 @@ def chamfer_text(along: float, across_mm: float) -> str:
 
 
 def number(value: float) -> str:
-    """A length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
+    """Return a length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -155,7 +155,7 @@ def _central(shape: Circle | Pattern) -> bool:
 
 
 def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Hole | None:
-    """The part's feature that these holes belong to."""
+    """Return the part's feature that these holes belong to."""
     for feature in part.features:
         if not isinstance(feature, Hole) or shape not in feature.shapes:
             continue
@@ -165,7 +165,7 @@ def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Ho
 
 
 def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bool:
-    """Whether no material stands before either end of a hole."""
+    """Return whether no material stands before either end of a hole."""
     (x, y), *_ = shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
     reach = 0.98 * float(shape.radius_mm)  # a narrower hole beyond leaves a step
     points = [(x, y), (x + reach, y), (x - reach, y), (x, y + reach), (x, y - reach)]
@@ -178,7 +178,7 @@ def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bo
 
 
 def _covers(prism: Prism, x: float, y: float) -> bool:
-    """Whether a prism has material at a point."""
+    """Return whether a prism has material at a point."""
 
     def within(shape: Shape) -> bool:
         return any(shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y) for contour in contours(shape))

@@ -58,14 +58,14 @@ def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> 
 
 
 def base_tangent_mm(gear: ExternalGear, count: int, *, allowance_mm: float) -> float:
-    """Length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
+    """Return length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     along = m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + 2.0 * float(gear.shift) * m * np.sin(a)
     return float(along + allowance_mm * np.cos(a))
 
 
 def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -> float:
-    """Distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
+    """Return distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     width = 0.5 * np.pi + 2.0 * float(gear.shift) * np.tan(a) + allowance_mm / m
     angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + width / z)
@@ -76,7 +76,8 @@ def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -
 def measure(
     gear: ExternalGear | InternalGear, *, series: int = GENERAL_SERIES, hole: bool = False, play_mm: float = 0.0
 ) -> Span:
-    """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
+    """Return what to measure, with its limits: the drawn teeth have the most material, so backlash is at least as
+    drawn.
 
     ``series`` is that of the tooth thickness tolerance (DIN 3967). With ``hole`` the outline of an external gear is
     that of a hole which a plug of these measures fits; its spaces are at least ``play_mm`` wider than drawn.
@@ -107,7 +108,7 @@ def gear_rows(
     making: ToothMaking | None = None,
     hardness: str = "",
 ) -> list[tuple[str, str]]:
-    """The rows of the table: what, and its value.
+    """Return the rows of the table: what, and its value.
 
     ``accuracy_class`` (ISO 1328-1) counts where ``making`` says nothing; ``hole`` is as for ``measure``.
     """
@@ -150,7 +151,7 @@ def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking, series: int
 
 
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
-    """What the rating of the teeth takes for granted; of splines, only how they are made."""
+    """Return what the rating of the teeth takes for granted; of splines, only how they are made."""
     if not making.quality:
         return [("Making", making.making)]
     layer = {"CHD": "Case depth CHD (ISO 18203), finished", "NHD": "Nitriding depth NHD (ISO 18203)"}
@@ -167,7 +168,7 @@ def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
 
 @lru_cache(maxsize=256)
 def _inverse_involute(value: float) -> float:
-    """The angle whose involute function is ``value``, by Newton's method."""
+    """Return the angle whose involute function is ``value``, by Newton's method."""
     angle = float(np.cbrt(3.0 * value))  # inv a = a^3 / 3 + ...
     for _ in range(30):
         step = (np.tan(angle) - angle - value) / np.tan(angle) ** 2
@@ -189,13 +190,14 @@ _SHOULDERS = "shoulders"
 
 
 def datum_fit(fits: Sequence[Fit]) -> Fit | None:
-    """The fit whose axis positions refer to: the largest seat, or the largest of all."""
+    """Return the fit whose axis positions refer to: the largest seat, or the largest of all."""
     seats = [fit for fit in fits if fit.seat] or list(fits)
     return max(seats, key=lambda fit: float(fit.diameter_mm), default=None)
 
 
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
-    """A row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without fits.
+    """Return a row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without
+    fits.
 
     ``alone`` tells for each fit whether its face stands around the part's axis; patterns have their place in their
     callouts.

@@ -106,7 +106,7 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
 
 
 def fits_between(text: str, span: float) -> bool:
-    """Whether a text fits over a dimension line of this length."""
+    """Return whether a text fits over a dimension line of this length."""
     return span >= width_mm(text, LETTER_MM) + 2.0
 
 
@@ -155,7 +155,7 @@ FRAME_MM = 5.0
 
 
 def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
-    """A tolerance frame (ISO 1101) with its lower left corner at (x, y); returns its width.
+    """Return a tolerance frame (ISO 1101) with its lower left corner at (x, y); returns its width.
 
     ``cells`` are the symbol's name (``position``, ``coaxial``, ``square``, ``round``), the value and the datum.
     """
@@ -250,7 +250,7 @@ def place_tags(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
 
 
 def _pieces(paper: Paper) -> NDArray[np.object_]:
-    """Every straight piece of the lines of a paper, and its arrow heads."""
+    """Return every straight piece of the lines of a paper, and its arrow heads."""
     runs = [np.vstack([s.points, s.points[:1]]) if s.closed else s.points for s in paper.strokes]
     pairs = [np.stack([run[:-1], run[1:]], axis=1) for run in runs if len(run) > 1]
     straight = shapely.linestrings(np.concatenate(pairs)) if pairs else np.empty(0, dtype=object)
@@ -258,7 +258,7 @@ def _pieces(paper: Paper) -> NDArray[np.object_]:
 
 
 def _free(tag: Tag, scale: float, lines: shapely.STRtree, texts: Floats, leaders: Sequence[Floats]) -> _Place:
-    """The nearest free place of a name, at best one whose leader crosses nothing that can be read or followed."""
+    """Return the nearest free place of a name, at best one whose leader crosses nothing that can be read or followed."""
     at, radius = scale * np.array([tag.x, tag.y]), scale * tag.radius
     around = np.array([_label(tag, 0.0, 0.0, align).box() for align in _ALIGNS])
     lowered = tag.height_mm * (0.5 - 0.5 * _WAYS[:, 1])
@@ -291,7 +291,7 @@ def _label(tag: Tag, x: float, y: float, align: Align) -> Label:
 
 
 def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Which boxes, shape (n, 4), meet a line, another text or a leader; all of them at once, as there are many."""
+    """Return which boxes, shape (n, 4), meet a line, another text or a leader; all of them at once, as there are many."""
     high, low = boxes[:, None, 2:] + _APART_MM, boxes[:, None, :2] - _APART_MM
     covered = np.any(np.all((texts[:, :2] < high) & (texts[:, 2:] > low), axis=2), axis=1)
     areas = _grown(boxes, _CLEAR_MM)
@@ -301,14 +301,14 @@ def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDAr
 
 
 def _leaders(at: Floats, radius: float, boxes: Floats) -> Floats:
-    """The lines from what is named to the nearest points of the boxes of its name, shape (n, 2, 2)."""
+    """Return the lines from what is named to the nearest points of the boxes of its name, shape (n, 2, 2)."""
     ends = np.clip(at, boxes[:, :2], boxes[:, 2:])
     along = (ends - at) / np.hypot(*(ends - at).T)[:, None]
     return np.stack([at + radius * along, ends - _LEADER_GAP_MM * along], axis=1)
 
 
 def _crossing(leaders: Floats, texts: Floats, others: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Which leaders, shape (n, 2, 2), meet a text or another leader."""
+    """Return which leaders, shape (n, 2, 2), meet a text or another leader."""
     obstacles = np.concatenate([others, _grown(texts, _CLEAR_MM)])
     return np.asarray(np.any(shapely.intersects(shapely.linestrings(leaders)[:, None], obstacles), axis=1))
 

@@ -23,7 +23,7 @@ _POINTS_PER_MM = 72.0 / 25.4
 
 
 def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
-    """A document of one page per sheet."""
+    """Return a document of one page per sheet."""
     bodies = [
         b"<< /Type /Catalog /Pages 2 0 R >>",
         b"",  # the list of pages, filled in below
@@ -60,7 +60,7 @@ def _pdf_file(bodies: Sequence[bytes]) -> bytes:
 
 
 def _content(paper: Paper) -> Iterator[str]:
-    """The operators that draw a page, in millimetres."""
+    """Yield the operators that draw a page, in millimetres."""
     yield f"{_POINTS_PER_MM:.8f} 0 0 {_POINTS_PER_MM:.8f} 0 0 cm 1 J 1 j"
     style: tuple[float, tuple[float, ...]] | None = None
     for stroke in paper.strokes:
@@ -117,7 +117,7 @@ class Origin:
 
 
 def origin_of(record: Mapping[str, Any]) -> Origin:
-    """The same from the record of an export, which may still lack what is computed last."""
+    """Return the same from the record of an export, which may still lack what is computed last."""
     source = record["source"]
     name = (
         f"case {source['case']}"
@@ -133,13 +133,13 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
 
 
 def part_drawings(parts: Sequence[ListedPart], origin: Origin, first: int = 1) -> dict[str, bytes]:
-    """The drawing of every part that is not bought, by the part's name."""
+    """Return the drawing of every part that is not bought, by the part's name."""
     made = [unique for unique in parts if unique.part.process != "bought"]
     return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, first)}
 
 
 def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
-    """The drawing of one part."""
+    """Return the drawing of one part."""
     part = unique.part
     tolerances, finish = _TOLERANCES[part.process]
     title = Title(
@@ -161,7 +161,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:
-    """The drawing of the robot."""
+    """Return the drawing of the robot."""
     title = Title(
         name="monoped",
         number=f"{origin.digest}-00",
@@ -185,7 +185,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
 def _drawn(
     part: Part, _fits: tuple[Fit, ...], _teeth: tuple[ToothMaking, ...], _accuracy_class: int | None, _note: str
 ) -> Sheet:
-    """The sheet of a part without its title block."""
+    """Return the sheet of a part without its title block."""
     return part_sheet(part)
 
 

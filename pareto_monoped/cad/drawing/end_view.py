@@ -18,7 +18,7 @@ _SAME_MM = 1e-3
 
 
 def sees_more_from_above(part: RoundPart) -> bool:
-    """Whether more kinds of holes open towards the upper end than towards the lower one."""
+    """Return whether more kinds of holes open towards the upper end than towards the lower one."""
     above = sum(_open(part, bore, from_above=True) for bore in part.bores)
     below = sum(_open(part, bore, from_above=False) for bore in part.bores)
     middle = 0.5 * (part.body.bounds[0] + part.body.bounds[2])
@@ -26,7 +26,7 @@ def sees_more_from_above(part: RoundPart) -> bool:
 
 
 def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
-    """The view with its callouts; the axis stands at the origin.
+    """Return the view with its callouts; the axis stands at the origin.
 
     ``datum`` is the letter of the axis that positions refer to, if there is one.
     """
@@ -65,7 +65,7 @@ def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_abo
 
 
 def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
-    """A callout: number and size, circle, countersink.
+    """Return a callout: number and size, circle, countersink.
 
     With ``far_side`` the holes open on the other side only.
     """
@@ -83,14 +83,14 @@ def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
 
 
 def _open(part: RoundPart, bore: Bore, *, from_above: bool) -> bool:
-    """Whether a viewer along the axis looks onto the mouth of a hole."""
+    """Return whether a viewer along the axis looks onto the mouth of a hole."""
     x, y = bore.centres[0]
     height = seen(part.body, float(np.hypot(x, y)), from_above=from_above)
     return height is not None and abs(height - (bore.high if from_above else bore.low)) < _SAME_MM
 
 
 def _visible(part: RoundPart, bore: Bore) -> bool:
-    """Whether a hole is seen: at its mouth, or through a wider one before it."""
+    """Return whether a hole is seen: at its mouth, or through a wider one before it."""
     return any(
         _open(part, other, from_above=part.from_above) and other.radius >= bore.radius
         for other in part.bores
@@ -99,7 +99,9 @@ def _visible(part: RoundPart, bore: Bore) -> bool:
 
 
 def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDArray[np.float64]]:
-    """The hole of each pattern that its leader ends at: of the rightmost two, in turn the upper and the lower one."""
+    """Return the hole of each pattern that its leader ends at: of the rightmost two, in turn the upper and the lower
+    one.
+    """
     found = []
     side = 1.0
     for bore in bores:

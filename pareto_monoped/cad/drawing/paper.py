@@ -28,7 +28,7 @@ _OTHERS = {"Ø": "Oslash", "°": "degree", "±": "plusminus", TIMES: "multiply",
 
 
 def width_mm(text: str, height_mm: float) -> float:
-    """Width of a line of text.
+    """Return width of a line of text.
 
     Raises:
         ValueError: a letter that the drawings do not use.
@@ -107,12 +107,12 @@ class Label:
     upward: bool = False  #: whether it runs upward, to be read from the right
 
     def start(self) -> tuple[float, float]:
-        """Where the first letter begins."""
+        """Return where the first letter begins."""
         back = {"left": 0.0, "centre": 0.5, "right": 1.0}[self.align] * width_mm(self.text, self.height_mm)
         return (self.x, self.y - back) if self.upward else (self.x - back, self.y)
 
     def box(self) -> tuple[float, float, float, float]:
-        """What it covers: least x and y, greatest x and y."""
+        """Return what it covers: least x and y, greatest x and y."""
         x, y = self.start()
         long, below = width_mm(self.text, self.height_mm), DESCENT / CAPITAL * self.height_mm
         if self.upward:
@@ -198,7 +198,7 @@ class Paper:
         ]
 
     def box(self) -> tuple[float, float, float, float]:
-        """What it covers: least x and y, greatest x and y; zeros for an empty paper."""
+        """Return what it covers: least x and y, greatest x and y; zeros for an empty paper."""
         corners = [*(stroke.points for stroke in self.strokes), *(fill.points for fill in self.fills)]
         corners += [np.reshape(label.box(), (2, 2)) for label in self.labels]
         if not corners:
@@ -208,7 +208,7 @@ class Paper:
 
 
 def circle_points(x: float, y: float, radius: float) -> Points:
-    """Points around a circle, close enough for the eye."""
+    """Return points around a circle, close enough for the eye."""
     step = 2.0 * np.arccos(1.0 - min(_CHORD_MM / max(radius, 1e-9), 0.3))
     angles = np.linspace(0.0, 2.0 * np.pi, int(np.ceil(2.0 * np.pi / step)), endpoint=False)
     return np.stack([x + radius * np.cos(angles), y + radius * np.sin(angles)], axis=1)

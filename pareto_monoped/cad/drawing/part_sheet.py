@@ -19,7 +19,7 @@ from pareto_monoped.geometry.parts import Part
 
 
 def round_part(part: Part) -> RoundPart:
-    """What the views are drawn from."""
+    """Return what the views are drawn from."""
     body = half_section(part)
     found = RoundPart(body=body, teeth=teeth_of(part), bores=bores(part), fits=part.fits, from_above=True)
     above = sees_more_from_above(found)
@@ -58,13 +58,13 @@ def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
 
 
 def _making(part: Part, teeth: Teeth) -> ToothMaking | None:
-    """How these teeth are made, if the part says so."""
+    """Return how these teeth are made, if the part says so."""
     gear = (int(teeth.gear.teeth), float(teeth.gear.module_mm))
     return next((one for one in part.teeth if (one.teeth, one.module_mm) == gear), None)
 
 
 def _gear_title(teeth: Teeth, drawn: RoundPart) -> str:
-    """A title that tells several gears of one part apart."""
+    """Return a title that tells several gears of one part apart."""
     if len(drawn.teeth) == 1:
         return "Gear data"
     near, far = sorted(abs(z - drawn.datum) for z in (teeth.low, teeth.high))
@@ -72,7 +72,7 @@ def _gear_title(teeth: Teeth, drawn: RoundPart) -> str:
 
 
 def round_notes(drawn: RoundPart) -> Iterator[str]:
-    """What no dimension says."""
+    """Yield what no dimension says."""
     chamfer = common_chamfer(drawn.body)
     if chamfer is not None:
         yield f"Chamfers without dimension {chamfer_text(*chamfer)}."
@@ -88,7 +88,7 @@ Sheet = tuple[Paper, Size, float]
 
 
 def part_sheet(part: Part) -> Sheet:
-    """The sheet of a part without its title block.
+    """Return the sheet of a part without its title block.
 
     Raises:
         ValueError: no sheet is large enough.
@@ -118,7 +118,7 @@ def placed(
     tables: Sequence[Paper],
     notes: Sequence[str],
 ) -> Sheet:
-    """The smallest sheet on which the views are readable, at the largest scale that it has room for.
+    """Return the smallest sheet on which the views are readable, at the largest scale that it has room for.
 
     ``bare_mm`` is the size of the views without dimensions at full size, ``readable`` the least scale if a sheet allows
     it.
@@ -150,7 +150,7 @@ def placed(
 
 
 def _blank(bare_mm: tuple[float, float], scale: float) -> Paper:
-    """The room that views need without dimensions."""
+    """Return the room that views need without dimensions."""
     paper = Paper()
     paper.line([(0.0, 0.0), (scale * bare_mm[0], scale * bare_mm[1])])
     return paper

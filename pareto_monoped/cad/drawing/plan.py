@@ -57,7 +57,7 @@ class Plan:
 
 
 def plan_of(part: Part) -> Plan:
-    """The part turned and moved: long side along the sheet, origin at its own axis if it has a hole there."""
+    """Return the part turned and moved: long side along the sheet, origin at its own axis if it has a hole there."""
     shapes = _shapes(part)
     outlines = [contour for contour, _, _, _ in shapes]
     found = bores(part, on_axis=True)
@@ -87,7 +87,7 @@ def plan_of(part: Part) -> Plan:
 
 
 def nodes(contour: Contour) -> list[tuple[Points, Line | Arc]]:
-    """The points where a contour's pieces begin, with the piece that follows."""
+    """Return the points where a contour's pieces begin, with the piece that follows."""
     found = []
     for piece in contour.pieces:
         assert isinstance(piece, Line | Arc)
@@ -96,7 +96,7 @@ def nodes(contour: Contour) -> list[tuple[Points, Line | Arc]]:
 
 
 def is_square(contour: Contour) -> bool:
-    """Whether a contour consists of lines along the sheet's edges only."""
+    """Return whether a contour consists of lines along the sheet's edges only."""
     return bool(contour.pieces) and all(isinstance(p, Line) and _along(p) for p in contour.pieces)
 
 
@@ -116,7 +116,7 @@ def rounded_rectangle(contour: Contour) -> tuple[float, float, float, float, flo
 
 
 def repeats(contour: Contour) -> int:
-    """How often a contour repeats itself around the origin, as a sprocket does; 1 for most."""
+    """Return how often a contour repeats itself around the origin, as a sprocket does; 1 for most."""
     points = np.array([point for point, _ in nodes(contour)])
     radii, angles = np.hypot(*points.T), np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     for count in range(len(points) // 2, 2, -1):
@@ -173,7 +173,7 @@ def _equal(one: Contour, other: Contour) -> bool:
 
 
 def _turn(outlines: Sequence[Contour]) -> float:
-    """Angle by which to turn a part: most of its edges' length along the sheet, and the longer side across it."""
+    """Return angle by which to turn a part: most of its edges' length along the sheet, and the longer side across it."""
     lengths: dict[float, float] = {}
     for contour in outlines:
         for piece in contour.pieces:
@@ -236,7 +236,7 @@ def _along(line: Line) -> bool:
 
 
 def cut_along(plan: Plan, x: float) -> BaseGeometry:
-    """The material on the plane across the sheet at ``x``, in coordinates z and y."""
+    """Return the material on the plane across the sheet at ``x``, in coordinates z and y."""
     line = shapely.linestrings([(x, plan.bounds[1] - 1.0), (x, plan.bounds[3] + 1.0)])
     solid = [
         box(layer.low, piece.bounds[1], layer.high, piece.bounds[3])
@@ -252,7 +252,7 @@ def cut_along(plan: Plan, x: float) -> BaseGeometry:
 
 
 def _cut_bore(bore: Bore, y: float, off: float) -> Iterator[BaseGeometry]:
-    """Where a hole, whose axis lies ``off`` the plane, opens it: the cylinder, and cones cut through their axis."""
+    """Yield where a hole, whose axis lies ``off`` the plane, opens it: the cylinder, and cones cut through their axis."""
     if off < bore.radius - _SAME_MM:
         half = float(np.sqrt(bore.radius**2 - off**2))
         yield box(bore.low, y - half, bore.high, y + half)

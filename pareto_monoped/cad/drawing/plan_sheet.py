@@ -38,7 +38,7 @@ _SAME_MM = 1e-6
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
-    """The view from above without names; the plan's origin stands at (0, 0)."""
+    """Return the view from above without names; the plan's origin stands at (0, 0)."""
     paper = Paper()
     above: BaseGeometry = shapely.Polygon()
     for layer in plan.layers:
@@ -60,7 +60,7 @@ def plan_view(plan: Plan, scale: float) -> Paper:
 
 
 def axis_tags(scale: float) -> list[Tag]:
-    """The names of the axes of the tables' coordinates, at the tips of their arrows."""
+    """Return the names of the axes of the tables' coordinates, at the tips of their arrows."""
     tip = _AXIS_MM / scale
     return [
         Tag(text=name, x=x, y=y, radius=0.0, height_mm=LETTER_MM) for name, x, y in (("X", tip, 0.0), ("Y", 0.0, tip))
@@ -68,7 +68,7 @@ def axis_tags(scale: float) -> list[Tag]:
 
 
 def section_place(plan: Plan) -> float:
-    """Where the section is taken: through the axis of the largest round hole, or the middle."""
+    """Return where the section is taken: through the axis of the largest round hole, or the middle."""
     x0, _, x1, _ = plan.bounds
     wide = max((bore for bore in plan.bores), key=lambda bore: bore.radius, default=None)
     return wide.centres[0][0] if wide is not None else 0.5 * (x0 + x1)
@@ -86,7 +86,7 @@ def section_marks(paper: Paper, plan: Plan, scale: float) -> None:
 
 
 def section_at(plan: Plan, scale: float) -> Paper:
-    """The section across the sheet, seen from the left."""
+    """Return the section across the sheet, seen from the left."""
     x = section_place(plan)
     paper = Paper()
     area = shapely.transform(cut_along(plan, x), lambda points: points * scale)
@@ -159,7 +159,7 @@ def _lines(paper: Paper, shape: BaseGeometry, width: float, dashes: tuple[float,
 
 
 def _seen(plan: Plan, bore: Bore) -> bool:
-    """Whether no material stands above the mouth of a hole, or the hole is seen through a wider one."""
+    """Return whether no material stands above the mouth of a hole, or the hole is seen through a wider one."""
     x, y = bore.centres[0]
     covering = [
         layer for layer in plan.layers if layer.low > bore.high - _SAME_MM and shapely.contains_xy(layer.area(), x, y)
@@ -172,18 +172,18 @@ def _seen(plan: Plan, bore: Bore) -> bool:
 
 
 def node_tag(text: str, point: np.ndarray) -> Tag:
-    """The number of a node."""
+    """Return the number of a node."""
     return Tag(text=text, x=float(point[0]), y=float(point[1]), radius=0.0, height_mm=_NODE_MM)
 
 
 def hole_tag(text: str, bore: Bore, index: int) -> Tag:
-    """The name of a hole."""
+    """Return the name of a hole."""
     x, y = bore.centres[index]
     return Tag(text=text, x=x, y=y, radius=bore.radius, height_mm=LETTER_MM)
 
 
 def shape_tag(text: str, x: float, y: float, radius: float = 0.0) -> Tag:
-    """The name of a window, or of a boss of some radius."""
+    """Return the name of a window, or of a boss of some radius."""
     return Tag(text=text, x=x, y=y, radius=radius, height_mm=LETTER_MM)
 
 
@@ -192,7 +192,7 @@ _ROWS = 34
 
 
 def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
-    """The view from above, and a section where the part has more than one thickness."""
+    """Return the view from above, and a section where the part has more than one thickness."""
     above = plan_view(plan, scale)
     cut = _has_section(plan)
     if cut:
@@ -202,7 +202,7 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
 
 
 def _has_section(plan: Plan) -> bool:
-    """Whether there is more to see across the sheet than one thickness."""
+    """Return whether there is more to see across the sheet than one thickness."""
     flush = all(abs(bore.low - plan.low) < 1e-6 and abs(bore.high - plan.high) < 1e-6 for bore in plan.bores)
     return not (plan.is_flat and flush)
 
@@ -232,7 +232,7 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
 
 
 def _around(plan: Plan) -> Iterator[float]:
-    """Radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
+    """Yield radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
     for layer in plan.layers:
         if layer.outline.circle is not None:
             yield float(layer.outline.circle.radius_mm)
@@ -240,7 +240,7 @@ def _around(plan: Plan) -> Iterator[float]:
 
 
 def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
-    """What no dimension says."""
+    """Yield what no dimension says."""
     x0, y0, x1, y1 = plan.bounds
     if part.balls:
         for ball in part.balls:
@@ -266,7 +266,7 @@ def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> l
 
 
 def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
-    """A row for each hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
+    """Return a row for each hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
@@ -288,7 +288,7 @@ def _rightmost(bore: Bore) -> int:
 
 
 def _kind(bore: Bore) -> str:
-    """What the holes of one letter have in common."""
+    """Return what the holes of one letter have in common."""
     text = bore.size()
     if isinstance(bore.shape, Pattern):
         turn = 360.0 / bore.count
@@ -299,7 +299,7 @@ def _kind(bore: Bore) -> str:
 
 
 def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:
-    """Rows of nodes, rows of windows and bosses, and the names of both."""
+    """Return rows of nodes, rows of windows and bosses, and the names of both."""
     rows: list[tuple[str, ...]] = []
     shapes: list[tuple[str, ...]] = []
     tags: list[Tag] = []

@@ -57,13 +57,13 @@ class RoundPart:
 
 
 def diameter_text(radius: float, fits: Sequence[Fit]) -> str:
-    """A diameter with its fit."""
+    """Return a diameter with its fit."""
     zone = next((f" {fit.zone}" for fit in fits if fit.holds(2.0 * radius)), "")
     return f"Ø{number(2.0 * radius)}{zone}"
 
 
 def section_view(part: RoundPart, scale: float) -> Paper:
-    """The section with its dimensions; the axis lies on y = 0."""
+    """Return the section with its dimensions; the axis lies on y = 0."""
     paper = Paper()
     sign = -1.0 if part.from_above else 1.0
 
@@ -116,7 +116,7 @@ def _holed(part: RoundPart) -> tuple[BaseGeometry, BaseGeometry]:
 
 
 def _meet(bore: Bore, profile: BaseGeometry, other: Bore, other_profile: BaseGeometry) -> bool:
-    """Whether two holes would be drawn over each other; steps of one hole belong together."""
+    """Return whether two holes would be drawn over each other; steps of one hole belong together."""
     if bore.centres == other.centres:
         return False
     return bool(profile.buffer(0.3).intersects(other_profile))
@@ -128,7 +128,7 @@ def _pitch(bore: Bore) -> float:
 
 
 def _bore_profile(bore: Bore) -> BaseGeometry:
-    """A hole with its cones in the section's plane."""
+    """Return a hole with its cones in the section's plane."""
     at, r = _pitch(bore), bore.radius
     pieces: list[BaseGeometry] = [box(bore.low, at - r, bore.high, at + r)]
     for mouth, face, inwards in zip(bore.mouths, (bore.low, bore.high), (1.0, -1.0), strict=True):
@@ -145,7 +145,7 @@ def _on_paper(shape: BaseGeometry, x_of: Callable[[float], float], scale: float,
 def _hatched(
     part: RoundPart, half: BaseGeometry, x_of: Callable[[float], float], scale: float, side: float
 ) -> BaseGeometry:
-    """The cut area without teeth, which are never hatched (ISO 2203)."""
+    """Return the cut area without teeth, which are never hatched (ISO 2203)."""
     for teeth in part.teeth:
         one, other = sorted((float(teeth.gear.tip_radius_mm), float(teeth.gear.root_radius_mm)))
         half = half.difference(box(teeth.low, one, teeth.high, other))
@@ -300,12 +300,12 @@ def _lengths(part: RoundPart, x_of: Callable[[float], float], scale: float) -> t
 
 
 def _reach_at(body: BaseGeometry, z: float) -> float:
-    """The outermost radius at a height."""
+    """Return the outermost radius at a height."""
     return max(r for height, r, _, _ in edges(body) if abs(height - z) < _SAME_MM)
 
 
 def _open_outwards(body: BaseGeometry, face: Face, top: float) -> bool:
-    """Whether nothing stands outside a face on its empty side."""
+    """Return whether nothing stands outside a face on its empty side."""
     z = face.z + (2e-3 if face.up else -2e-3)
     return not body.intersects(box(z - 5e-4, face.outer - 1e-3, z + 5e-4, top + 1.0))
 

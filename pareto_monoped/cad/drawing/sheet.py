@@ -62,12 +62,13 @@ def scale_text(scale: float) -> str:
 
 
 def inner_mm(size: Size) -> tuple[float, float]:
-    """Width of a sheet within its frame, and height above its title block."""
+    """Return width of a sheet within its frame, and height above its title block."""
     return (size.width_mm - BINDING_MM - MARGIN_MM, size.height_mm - 2.0 * MARGIN_MM - TITLE_MM[1])
 
 
 def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: Sequence[str]) -> Paper | None:
-    """A sheet with its views in a row, tables at the right or below, and notes, but without frame and title block.
+    """Return a sheet with its views in a row, tables at the right or below, and notes, but without frame and title
+    block.
 
     None if they do not fit.
 
@@ -151,7 +152,7 @@ def _written(notes: Sequence[str], width: float) -> Paper:
 
 
 def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
-    """A text broken into lines between its words."""
+    """Return a text broken into lines between its words."""
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word
@@ -220,7 +221,7 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
 
 
 def _fitting(value: str, width: float, height: float) -> float:
-    """The height, or a smaller one at which a value fits its cell."""
+    """Return the height, or a smaller one at which a value fits its cell."""
     long = width_mm(value, height)
     return height if long <= width else height * width / long
 
@@ -242,7 +243,7 @@ def _first_angle(paper: Paper, x: float, y: float) -> None:
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Paper:
-    """A table with a title, its lower left corner at the origin; columns are as wide as they must be.
+    """Return a table with a title, its lower left corner at the origin; columns are as wide as they must be.
 
     A table whose columns have no names has no head.
     """

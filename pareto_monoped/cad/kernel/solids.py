@@ -38,7 +38,7 @@ _ON_EDGE_MM = 1e-5  # from where an edge should be to where fused solids have it
 
 
 def beveled(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
-    """A solid with cones on the edges of its cylinders.
+    """Return a solid with cones on the edges of its cylinders.
 
     Raises:
         ValueError: a bevel stands on no edge of the solid, or does not fit there.
@@ -56,7 +56,7 @@ def _adds(bevel: Bevel) -> bool:
 
 
 def _head(bevel: Bevel) -> TopoDS_Shape:
-    """The cone of a countersunk head, around its shank."""
+    """Return the cone of a countersunk head, around its shank."""
     ((x, y),) = bevel.centres_mm()
     along = float(bevel.end_mm) - float(bevel.face_mm)
     axes = gp_Ax2(gp_Pnt(x, y, float(bevel.face_mm)), gp_Dir(0.0, 0.0, float(np.sign(along))))
@@ -81,7 +81,7 @@ def _chamfered(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
 
 
 def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Face], np.ndarray]:
-    """The circular edges between a plane and something else: edges, planes, and rows of x, y, z, radius."""
+    """Return the circular edges between a plane and something else: edges, planes, and rows of x, y, z, radius."""
     borders = EdgeMap()
     TopExp.MapShapesAndAncestors_s(solid, TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_FACE, borders)
     edges, faces, rows = [], [], []
@@ -105,7 +105,7 @@ _FIT_MM = 1e-6  # distance of splines from their points
 
 
 def solid_of(part: Part) -> TopoDS_Shape:
-    """One instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
+    """Return one instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
 
     The part's numbers must be floats, not arrays.
     """
@@ -114,7 +114,9 @@ def solid_of(part: Part) -> TopoDS_Shape:
 
 @lru_cache(maxsize=256)
 def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...] = ()) -> TopoDS_Shape:
-    """The same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so parts."""
+    """Return the same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so
+    parts.
+    """
     pieces, left = [], list(bevels)
     # Before the fusion, pieces have few faces, which makes their cones cheap.
     layers = [layer for prism in regrouped(prisms) for layer in without_teeth(prism, bevels)]
@@ -129,7 +131,7 @@ def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    """The solids that a shape consists of: itself if it is one."""
+    """Return the solids that a shape consists of: itself if it is one."""
     explorer, found = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID), []
     while explorer.More():
         found.append(explorer.Current())
@@ -138,7 +140,7 @@ def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
 
 
 def wire_of(contour: Contour, z_mm: float = 0.0) -> TopoDS_Wire:
-    """A closed curve as a wire in a plane across the z axis, anticlockwise."""
+    """Return a closed curve as a wire in a plane across the z axis, anticlockwise."""
     wire = BRepBuilderAPI_MakeWire()
     for edge in _circle(contour.circle, z_mm) if contour.circle is not None else _edges(contour, z_mm):
         wire.Add(edge)
@@ -211,6 +213,6 @@ def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
 
 
 def _only(shape: TopoDS_Shape) -> TopoDS_Shape:
-    """The one solid of a shape, or the shape if there are several."""
+    """Return the one solid of a shape, or the shape if there are several."""
     solids = solids_in(shape)
     return solids[0] if len(solids) == 1 else shape

@@ -75,7 +75,7 @@ class Shape:
 
 
 def shapes_in(text: bytes) -> list[Shape]:
-    """The shapes of all parts in a STEP file of the kernel, in their order."""
+    """Return the shapes of all parts in a STEP file of the kernel, in their order."""
     links = {found[1]: found for found in _LINK.finditer(text)}
     shapes = []
     for link in links.values():
@@ -103,7 +103,7 @@ def shapes_in(text: bytes) -> list[Shape]:
 
 
 def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape]]:
-    """The file of an assembly, and the shapes of its parts there.
+    """Return the file of an assembly, and the shapes of its parts there.
 
     ``frame`` is the file of the assembly with a stand-in for each part.
     """
@@ -132,7 +132,7 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
 
 
 def _own_shape(stand_in: Shape, text: bytes) -> Shape:
-    """The shape of a part's own file."""
+    """Return the shape of a part's own file."""
     (shape,) = shapes_in(text)
     if shape.name != stand_in.name or shape.axes != shape.number + 1 or stand_in.axes > stand_in.number:
         raise ValueError(f"STEP file of {stand_in.name}: is laid out in an unknown way; install the kernel's version")
@@ -140,12 +140,12 @@ def _own_shape(stand_in: Shape, text: bytes) -> Shape:
 
 
 def _count(shape: Shape) -> int:
-    """How many entities a shape has, without the axes."""
+    """Return how many entities a shape has, without the axes."""
     return shape.last - shape.number + 1 - (_AXES if shape.number < shape.axes else 0)
 
 
 def _moved(text: bytes, shape: Shape, number: int, axes: int) -> bytes:
-    """The entities of a shape without its axes, the first of them with a new number, and with other axes."""
+    """Return the entities of a shape without its axes, the first of them with a new number, and with other axes."""
     first_after = shape.axes + _AXES
     body = text.index(b"\n#%d = " % first_after, shape.start) + 1
     first = text[shape.start : text.index(b"\n#%d = " % shape.axes, shape.start) + 1]
@@ -202,7 +202,7 @@ class _Document:
         return label
 
     def text(self, name: str) -> bytes:
-        """The file without colours."""
+        """Return the file without colours."""
         self.shapes.UpdateAssemblies()
         for printer in Message.DefaultMessenger_s().Printers():
             printer.SetTraceLevel(Message_Gravity.Message_Fail)
@@ -227,7 +227,7 @@ class _Document:
 
 
 def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
-    """One part, in millimetres."""
+    """Return one part, in millimetres."""
     document = _Document()
     document.part(solid, name)
     text = document.text(name)
@@ -237,7 +237,7 @@ def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
 def assembly_step(
     assembly: StepAssembly, parts: Mapping[str, bytes], compounds: Mapping[str, TopoDS_Shape] = MappingProxyType({})
 ) -> bytes:
-    """The assembly as a tree: the robot, its units, their parts. Each unique part is written once.
+    """Return the assembly as a tree: the robot, its units, their parts. Each unique part is written once.
 
     ``compounds`` are parts of several bodies, which the kernel writes in another form, here once more.
     """
@@ -247,7 +247,7 @@ def assembly_step(
 
 
 def tree_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
-    """The same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
+    """Return the same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
     document = _Document()
     labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []
@@ -265,7 +265,7 @@ def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:
 
 
 def _renumbered(text: bytes) -> bytes:
-    """Number the usages of parts from 1, as the kernel's own count continues from file to file."""
+    """Return number the usages of parts from 1, as the kernel's own count continues from file to file."""
     count = 0
 
     def usage(found: re.Match[bytes]) -> bytes:

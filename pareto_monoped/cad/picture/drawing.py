@@ -90,7 +90,7 @@ def _axes(view: View) -> Floats:
 
 
 def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> Faces:
-    """What a viewer sees of a body.
+    """Return what a viewer sees of a body.
 
     The shapes are (n, 3) for ``points_mm`` and (m, 3) for ``triangles``; ``axes`` are those of ``View.axes``.
     """
@@ -107,7 +107,7 @@ def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> F
 
 
 def draw(bodies: Sequence[Body], view: View, *, width: int, height: int) -> Drawn:
-    """A picture of all bodies, scaled to fill it."""
+    """Return a picture of all bodies, scaled to fill it."""
     axes, still = view.axes(), np.zeros(3)
     shown = [
         Shown(
@@ -119,7 +119,7 @@ def draw(bodies: Sequence[Body], view: View, *, width: int, height: int) -> Draw
 
 
 def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float = 0.04) -> Drawn:
-    """A picture of faces that one viewer sees, scaled to fill it."""
+    """Return a picture of faces that one viewer sees, scaled to fill it."""
     # Two by two pixels are drawn per pixel of the picture, which smooths edges.
     w, h = 2 * width, 2 * height
     boxes = np.array([one.faces.box_mm + one.move_mm for one in shown])
@@ -150,7 +150,7 @@ def prepare() -> None:
 
 
 def png(image: NDArray[np.uint8]) -> bytes:
-    """The bytes of a PNG file (ISO 15948) of an RGB image, shape (height, width, 3)."""
+    """Return the bytes of a PNG file (ISO 15948) of an RGB image, shape (height, width, 3)."""
     height, width, _ = image.shape
     # Each row begins with its filter: 2, the difference to the row above, which suits flat shading.
     above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
@@ -221,7 +221,8 @@ def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
 
 @compiled
 def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, line: Floats, jump: float) -> Floats:
-    """Colours from 0 to 1 of a picture of half the width and height, with lines where another body or depth begins.
+    """Return colours from 0 to 1 of a picture of half the width and height, with lines where another body or depth
+    begins.
 
     Args:
         winner: index of the triangle at each pixel, shape (2 height, 2 width); the last colour's where none is.

@@ -61,7 +61,7 @@ shading and black lines show."""
 
 
 def colour(k: int) -> Colour:
-    """The k-th colour; they repeat after ``len(PALETTE)``, and numbers in the picture tell equal ones apart."""
+    """Return the k-th colour; they repeat after ``len(PALETTE)``, and numbers in the picture tell equal ones apart."""
     return PALETTE[k % len(PALETTE)]
 
 
@@ -94,7 +94,7 @@ class Balloon:
 
 
 def labelled(drawn: Drawn, legend: Sequence[Row], *, legend_width: int = 330) -> Image:
-    """The picture with a scale bar, and with numbers and a legend if there are rows; wider by the legend."""
+    """Return the picture with a scale bar, and with numbers and a legend if there are rows; wider by the legend."""
     from PIL import Image as Pillow
     from PIL import ImageDraw
 
@@ -126,19 +126,20 @@ def _seen(numbers: NDArray[np.int64], legend: Sequence[Row]) -> tuple[NDArray[np
 
 
 def _present(numbers: NDArray[np.int64]) -> list[int]:
-    """The different numbers of a picture, all of which are small, in rising order."""
+    """Return the different numbers of a picture, all of which are small, in rising order."""
     return np.flatnonzero(np.bincount(numbers.ravel())).tolist()
 
 
 def bar_mm(px_per_mm: float, width_px: int) -> float:
-    """The longest of 1, 2, 5, 10, 20, 50 ... mm that takes at most a quarter of the picture's width."""
+    """Return the longest of 1, 2, 5, 10, 20, 50 ... mm that takes at most a quarter of the picture's width."""
     most = _BAR_SHARE * width_px / px_per_mm
     decade = 10.0 ** np.floor(np.log10(most))
     return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most * (1.0 + 1e-9)))
 
 
 def balloons(numbers: NDArray[np.int64]) -> list[Balloon]:
-    """Where the number of each visible body goes: above or below the picture, in the order of what they point to.
+    """Return where the number of each visible body goes: above or below the picture, in the order of what they point
+    to.
 
     ``numbers`` has the number of the body at each pixel, 0 for none; shape (height, width).
     """
@@ -161,7 +162,7 @@ def _x(found: tuple[int, float, float]) -> float:
 
 
 def _innermost(mask: NDArray[np.bool_]) -> tuple[float, float]:
-    """The point of a region that is farthest from its edge: to the right and down, in pixels."""
+    """Return the point of a region that is farthest from its edge: to the right and down, in pixels."""
     from scipy.ndimage import distance_transform_cdt
 
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
@@ -231,7 +232,7 @@ def _font(size: float) -> "FreeTypeFont":
 
 
 def numbered(names: Mapping[str, int], colours: Mapping[str, Colour]) -> Iterator[Row]:
-    """Rows of a legend from names with their counts, numbered from 1 in their order."""
+    """Yield rows of a legend from names with their counts, numbered from 1 in their order."""
     for k, (name, count) in enumerate(names.items(), 1):
         text = name.replace("_", " ") + (f" ({count})" if count > 1 else "")
         yield Row(number=k, text=text, colour=colours[name])

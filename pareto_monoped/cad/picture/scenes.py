@@ -47,7 +47,7 @@ class Scene:
 
 
 def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
-    """The robot in its pose."""
+    """Return the robot in its pose."""
     bodies = []
     for instance, unique in product.placed():
         if instance.part.visibility is Visibility.INSIDE:
@@ -57,7 +57,7 @@ def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) ->
 
 
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
-    """An actuator with a quarter cut away, its output to the left, each part in its own colour."""
+    """Return an actuator with a quarter cut away, its output to the left, each part in its own colour."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
     upright = _axis_to_the_left() @ np.linalg.inv(unit_frame(unit))
     members = [
@@ -69,7 +69,7 @@ def section_scene(product: Product, unit_name: str, *, width: int = 1000, height
 
 
 def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Scene:
-    """The knee joint with a quarter cut away: thigh, shank and what is between them, around the joint's axis."""
+    """Return the knee joint with a quarter cut away: thigh, shank and what is between them, around the joint's axis."""
     in_joint = np.linalg.inv(body_frames(product.robot, product.pose)["shank"])
     # Joint axis, which is y, to the left; what points up stays up.
     turned = np.zeros((4, 4))
@@ -87,7 +87,7 @@ def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Sce
 
 
 def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -> Scene:
-    """All parts of the robot pulled apart along the joints' axis, the units in their own colours."""
+    """Return all parts of the robot pulled apart along the joints' axis, the units in their own colours."""
     order = [unit.name for unit in product.robot.units]
     names = {name: sum(instance.unit == name for instance in product.instances) for name in order}
     colours = {name: colour(k) for k, name in enumerate(order)}
@@ -124,7 +124,7 @@ def _body(mesh: Mesh, at: Floats, hue: tuple[float, float, float], number: int =
 
 
 def _axis_to_the_left() -> Floats:
-    """The actuator's axis along -x of the picture's scene, output to the left; the first planet on top."""
+    """Return the actuator's axis along -x of the picture's scene, output to the left; the first planet on top."""
     matrix = np.zeros((4, 4))
     matrix[0, 2], matrix[1, 1], matrix[2, 0], matrix[3, 3] = -1.0, 1.0, 1.0, 1.0
     return matrix
@@ -136,7 +136,7 @@ def _boxes_meet(box: Iterable[float], half: float) -> bool:
 
 
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:
-    """The body without the quarter that lies towards the viewer and above the axis."""
+    """Return the body without the quarter that lies towards the viewer and above the axis."""
     far = body.trim_by_plane((0.0, 1.0, 0.0), 0.0)
     near_low = body.trim_by_plane((0.0, -1.0, 0.0), 0.0).trim_by_plane((0.0, 0.0, -1.0), 0.0)
     return m3.Manifold.compose([far, near_low])
@@ -162,7 +162,7 @@ class Stage:
     _seen: dict[tuple[int, bool], Faces] = field(default_factory=dict)
 
     def faces(self, instance: int, from_left: bool) -> Faces:
-        """What one of the two viewers sees of an instance; most steps show it again."""
+        """Return what one of the two viewers sees of an instance; most steps show it again."""
         if (instance, from_left) not in self._seen:
             seen = faces_of(self.corners_mm[instance], self.triangles[instance], _VIEWS[from_left].axes())
             self._seen[instance, from_left] = seen
@@ -170,7 +170,7 @@ class Stage:
 
 
 def stage_of(blocking: Blocking, placed: Sequence[Instance]) -> Stage:
-    """The stage of an assembly from its instances in their places."""
+    """Return the stage of an assembly from its instances in their places."""
     parts = {id(instance.part): instance.part for instance in placed}
     shells = {key: shell_of(part, _TOLERANCE_MM) for key, part in parts.items()}
     corners, triangles = [], []
@@ -186,7 +186,7 @@ def stage_of(blocking: Blocking, placed: Sequence[Instance]) -> Stage:
 
 
 def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
-    """The picture of a step, seen from the side from which most comes."""
+    """Return the picture of a step, seen from the side from which most comes."""
     blocking, boxes = stage.blocking, stage.boxes
     moves: dict[int, Floats] = {}
     groups = [(addition.members, addition.out) for addition in step.additions]
@@ -215,7 +215,7 @@ def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
 
 
 def _legend(fresh: Sequence[int], blocking: Blocking) -> tuple[dict[int, int], tuple[Row, ...]]:
-    """The number of each new body, and a row per kind of part."""
+    """Return the number of each new body, and a row per kind of part."""
     names: dict[tuple[str, str], int] = {}
     counts: list[int] = []
     number = {}
@@ -237,7 +237,7 @@ def _legend(fresh: Sequence[int], blocking: Blocking) -> tuple[dict[int, int], t
 def _way(
     members: frozenset[int], there: set[int], out: str, boxes: Sequence[Floats], moves: Mapping[int, Floats]
 ) -> Floats:
-    """How far a set moves out until it has passed all that lies before it, shape (3,)."""
+    """Return how far a set moves out until it has passed all that lies before it, shape (3,)."""
     axis, sign = _AXES.index(out[1]), 1.0 if out[0] == "+" else -1.0
     others = [k for k in range(3) if k != axis]
     distance = 0.0

@@ -40,12 +40,12 @@ _ON_EDGE_MM = 1e-6  # from the edge of a cylinder to its points; far above round
 
 
 def has_cone(bevel: Bevel) -> bool:
-    """Whether there is a ring between cone and cylinder."""
+    """Return whether there is a ring between cone and cylinder."""
     return float(bevel.edge_mm) != float(bevel.at.radius_mm)
 
 
 def beveled(points_mm: Points, triangles: Triangles, bevels: Iterable[Bevel]) -> tuple[Points, Triangles]:
-    """The mesh with cones on the edges of its cylinders.
+    """Return the mesh with cones on the edges of its cylinders.
 
     Args:
         points_mm: shape (n, 3).
@@ -68,7 +68,7 @@ def beveled(points_mm: Points, triangles: Triangles, bevels: Iterable[Bevel]) ->
 def _face_beveled(
     points: Points, triangles: Triangles, face_mm: float, upward: bool, rings: list[tuple[Bevel, float, float]]
 ) -> tuple[Points, Triangles]:
-    """All bevels of one plane across the axis, in caps that look up or down."""
+    """Return all bevels of one plane across the axis, in caps that look up or down."""
     in_plane = np.abs(points[:, 2] - face_mm) < _ON_EDGE_MM
     cap = np.all(in_plane[triangles], axis=1)
     cap[cap] = (_doubled_area(points[triangles[cap]]) > 0.0) == upward
@@ -121,7 +121,7 @@ def _border(triangles: Triangles) -> Triangles:
 
 
 def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:
-    """Triangles that fill closed lines in a plane across the axis."""
+    """Return triangles that fill closed lines in a plane across the axis."""
     loops = _loops(border)
     seen = np.array([1.0, 1.0 if upward else -1.0])  # from the side to which they look, the lines run anticlockwise
     corners = np.asarray(m3.triangulate([points[loop, :2] * seen for loop in loops]), dtype=np.int64)
@@ -153,7 +153,7 @@ Numbers = NDArray[np.uint64]
 
 
 def place_numbers(points: NDArray[np.floating]) -> Numbers:
-    """A number for each point, equal for the points that a reader merges.
+    """Return a number for each point, equal for the points that a reader merges.
 
     ``points`` are in the file's unit, shape (..., 3).
     """
@@ -164,13 +164,13 @@ def place_numbers(points: NDArray[np.floating]) -> Numbers:
 
 
 def edge_numbers(start: Numbers, end: Numbers) -> Numbers:
-    """A number for each directed edge, from the numbers of its ends."""
+    """Return a number for each directed edge, from the numbers of its ends."""
     numbers: Numbers = start * _START + end * _END
     return numbers
 
 
 def flaws(corners: NDArray[np.floating]) -> str:
-    """What keeps triangles from enclosing a volume, in words; empty if nothing does.
+    """Return what keeps triangles from enclosing a volume, in words; empty if nothing does.
 
     Every edge must border two triangles, which run along it in opposite directions.
 
@@ -220,7 +220,7 @@ class Mesh:
 
 
 def mesh_of(part: Part, tolerance_mm: float = TOLERANCE_MM) -> Mesh:
-    """The mesh of one instance of a part in its own frame."""
+    """Return the mesh of one instance of a part in its own frame."""
     return _mesh(part.prisms, part.balls, part.bevels, tolerance_mm)
 
 
@@ -245,7 +245,7 @@ def _united(prisms: Sequence[Prism], balls: Sequence[Ball], bevels: Sequence[Bev
 
 
 def shell_of(part: Part, tolerance_mm: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Triangles that show a part: its prisms and balls one by one, with the cones on them, in its own frame.
+    """Return triangles that show a part: its prisms and balls one by one, with the cones on them, in its own frame.
 
     The pieces are not united, which would take four fifths of the time: inside the part there are faces that nobody
     sees. A cone on an edge that only the united part has is left out.
@@ -276,19 +276,19 @@ def _shell(
 
 
 def _exact(prism: Prism) -> Prism:
-    """The prism with its ends rounded to multiples of 2^-40 mm."""
+    """Return the prism with its ends rounded to multiples of 2^-40 mm."""
     z0, z1 = (float(np.ldexp(np.rint(np.ldexp(float(z), 40)), -40)) for z in (prism.z0_mm, prism.z1_mm))
     return replace(prism, z0_mm=z0, z1_mm=z1)
 
 
 def _has_twins(mesh: Mesh) -> bool:
-    """Whether two points of a mesh are one in a file."""
+    """Return whether two points of a mesh are one in a file."""
     numbers = np.sort(place_numbers(mesh.points_mm))
     return bool(np.any(numbers[1:] == numbers[:-1]))
 
 
 def mesh_from(body: m3.Manifold) -> Mesh:
-    """The triangles of a manifold."""
+    """Return the triangles of a manifold."""
     raw = body.to_mesh64()
     return Mesh(
         points_mm=np.asarray(raw.vert_properties)[:, :3].astype(np.float64),
@@ -298,7 +298,7 @@ def mesh_from(body: m3.Manifold) -> Mesh:
 
 
 def _mesh_of(points_mm: NDArray[np.float64], triangles: NDArray[np.int64]) -> Mesh:
-    """Triangles with the manifold that they bound."""
+    """Return triangles with the manifold that they bound."""
     body = m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
     return Mesh(points_mm=points_mm, triangles=triangles, body=body)
 
@@ -327,12 +327,12 @@ def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1
 
 
 def placed(body: m3.Manifold, matrix: NDArray[np.float64]) -> m3.Manifold:
-    """A manifold moved by a 4 x 4 matrix."""
+    """Return a manifold moved by a 4 x 4 matrix."""
     return body.transform(matrix[:3, :])
 
 
 def _welded(mesh: Mesh) -> Mesh:
-    """The same mesh with the ends of edges shorter than ``WELD_MM`` made one point."""
+    """Return the same mesh with the ends of edges shorter than ``WELD_MM`` made one point."""
     edges = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     short = np.all(np.abs(mesh.points_mm[edges[:, 0]] - mesh.points_mm[edges[:, 1]]) < WELD_MM, axis=1)
     if not short.any():

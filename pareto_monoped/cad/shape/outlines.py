@@ -48,14 +48,14 @@ def ends(piece: Line | Arc | Spline) -> tuple[Points, Points]:
 
 
 def on_arc(arc: Arc, angle_rad: float) -> Points:
-    """The point of an arc at an angle."""
+    """Return the point of an arc at an angle."""
     return np.array(
         [arc.x_mm + arc.radius_mm * np.cos(angle_rad), arc.y_mm + arc.radius_mm * np.sin(angle_rad)], dtype=np.float64
     )
 
 
 def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
-    """Points along a contour, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
+    """Return points along a contour, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
     if contour.circle is not None:
         circle = contour.circle
         full = Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)
@@ -72,7 +72,7 @@ def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
 
 
 def corners(contour: Contour) -> Points:
-    """Points of a contour among which are all its extremes along x and y, to rounding, shape (n, 2)."""
+    """Return points of a contour among which are all its extremes along x and y, to rounding, shape (n, 2)."""
     circle = contour.circle
     if circle is not None:
         arcs = [Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)]
@@ -83,13 +83,13 @@ def corners(contour: Contour) -> Points:
 
 
 def _quarters(start_rad: float, end_rad: float) -> Points:
-    """The multiples of a right angle between two angles: there an arc is farthest along x or y."""
+    """Return the multiples of a right angle between two angles: there an arc is farthest along x or y."""
     low, high = sorted((start_rad, end_rad))
     return 0.5 * np.pi * np.arange(np.ceil(low / (0.5 * np.pi)), np.floor(high / (0.5 * np.pi)) + 1.0)
 
 
 def _arc_points(arc: Arc, tolerance_mm: float) -> Points:
-    """Points on an arc without its last one, which is the next piece's first."""
+    """Return points on an arc without its last one, which is the next piece's first."""
     sweep = float(arc.end_rad) - float(arc.start_rad)
     radius = float(arc.radius_mm)
     step = min(2.0 * np.arccos(max(1.0 - tolerance_mm / radius, 0.5)), _COARSEST_STEP)
@@ -142,7 +142,7 @@ class Teeth:
 
 
 def outline(teeth: Teeth) -> Contour:
-    """The closed outline of a gear, anticlockwise.
+    """Return the closed outline of a gear, anticlockwise.
 
     Raises:
         ValueError: the fillet does not fit between the flanks.
@@ -222,14 +222,16 @@ def _half_space(t: Teeth) -> _Half:
 
 
 def _flank(t: Teeth, start_mm: float, end_mm: float) -> Spline:
-    """Points of the involute, evenly spaced in roll angle, along which it is smoothest."""
+    """Return points of the involute, evenly spaced in roll angle, along which it is smoothest."""
     base = t.base_radius_mm
     rolls = np.linspace(np.sqrt(max(start_mm**2 - base**2, 0.0)), np.sqrt(end_mm**2 - base**2), _FLANK_POINTS)
     return Spline(np.array([_polar(r, t.half_angle(r)) for r in np.hypot(base, rolls)]))
 
 
 def _placed(piece: Line | Arc | Spline, angle: float, *, mirror: bool) -> Line | Arc | Spline:
-    """A piece of the upper half turned by ``angle``: run backwards, or mirrored to the lower half and run forwards."""
+    """Return a piece of the upper half turned by ``angle``: run backwards, or mirrored to the lower half and run
+    forwards.
+    """
     if isinstance(piece, Arc):
         centre = np.array([piece.x_mm, piece.y_mm], dtype=np.float64)
         x, y = _turned(centre * [1.0, -1.0] if mirror else centre, angle)
@@ -254,7 +256,7 @@ def _turned(points: Point, angle: float) -> Point:
 
 
 def _arc(centre: Point, first: Point, last: Point) -> Arc:
-    """The short arc from one point to another."""
+    """Return the short arc from one point to another."""
     a = float(np.arctan2(first[1] - centre[1], first[0] - centre[0]))
     b = float(np.arctan2(last[1] - centre[1], last[0] - centre[0]))
     sweep = (b - a + np.pi) % (2.0 * np.pi) - np.pi
@@ -274,7 +276,7 @@ def _angle(base_mm: float, radius_mm: float) -> float:
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
-    """The closed curves that bound a shape, one per separate region.
+    """Return the closed curves that bound a shape, one per separate region.
 
     Raises:
         TypeError: a kind of shape that has no outline here.
@@ -294,7 +296,7 @@ def contours(shape: Shape) -> tuple[Contour, ...]:
 
 
 def regions(outline: Shape, holes: Sequence[Shape]) -> list[tuple[Contour, list[Contour]]]:
-    """The separate regions of an outline, each with the holes that lie in it."""
+    """Return the separate regions of an outline, each with the holes that lie in it."""
     outer = contours(outline)
     inner = [contour for hole in holes for contour in contours(hole)]
     if len(outer) == 1:
@@ -308,7 +310,7 @@ def regions(outline: Shape, holes: Sequence[Shape]) -> list[tuple[Contour, list[
 
 
 def _contains(points: Points, point: Points) -> bool:
-    """Whether a polygon contains a point: a ray along x from there leaves it an odd number of times."""
+    """Return whether a polygon contains a point: a ray along x from there leaves it an odd number of times."""
     x, y = (points - point).T
     x_next, y_next = np.roll(x, -1), np.roll(y, -1)
     crosses = (y > 0.0) != (y_next > 0.0)
@@ -318,7 +320,7 @@ def _contains(points: Points, point: Points) -> bool:
 
 
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:
-    """One polygon per contour of the shapes."""
+    """Return one polygon per contour of the shapes."""
     return [polygon(contour, tolerance_mm) for shape in shapes for contour in contours(shape)]
 
 

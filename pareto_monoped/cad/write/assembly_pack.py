@@ -135,7 +135,7 @@ def assembly_pack(product: Listed) -> dict[str, bytes]:
 
 
 def _one(product: Listed, role: Role | None) -> Part:
-    """The part with a role; without one, what the foot is moulded onto."""
+    """Return the part with a role; without one, what the foot is moulded onto."""
     foot = next(unique.part for unique in product.unique if unique.part.role is Role.FOOT)
     if role is not None:
         return foot
@@ -227,7 +227,7 @@ def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
 
 
 def _chain(product: Listed) -> Iterator[str]:
-    """How the chain is tensioned."""
+    """Yield how the chain is tensioned."""
     notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
     yield "<h2>Chain</h2><ol>"
@@ -245,7 +245,7 @@ def _chain(product: Listed) -> Iterator[str]:
 
 
 def _cables(product: Listed) -> Iterator[str]:
-    """What is cut, and where it runs."""
+    """Yield what is cut, and where it runs."""
     made = cables(product.robot)
     yield "<h2>Cables</h2>"
     yield (

@@ -31,7 +31,7 @@ def design_record(
     formats: Sequence[str],
     strength: bool,
 ) -> dict[str, Any]:
-    """The content of ``design.json``, apart from the list of files."""
+    """Return the content of ``design.json``, apart from the list of files."""
     rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
     # Records with one motor hold it alone, as they did before there could be two.
     motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))

@@ -66,12 +66,12 @@ _RADIUS, _HEIGHT, _START_DEG, _END_DEG = 40, 40, 50, 51
 
 
 def is_flat(part: Part) -> bool:
-    """Whether a part is one plate that a laser can cut."""
+    """Return whether a part is one plate that a laser can cut."""
     return part.process == "laser cut" and len(part.prisms) == 1
 
 
 def dxf(part: Part) -> str:
-    """The text of a DXF file (R12, which every laser's software reads) of a flat part.
+    """Return the text of a DXF file (R12, which every laser's software reads) of a flat part.
 
     Raises:
         ValueError: the part is not flat, or has curves that R12 cannot hold.
@@ -86,7 +86,7 @@ def dxf(part: Part) -> str:
 
 
 def _notes(part: Part) -> Iterator[Pair]:
-    """A text beside the first of all equal holes that are worked on after cutting; the file shows z upwards."""
+    """Yield a text beside the first of all equal holes that are worked on after cutting; the file shows z upwards."""
     for bore in bores(part, on_axis=True):
         details = list(bore.details(from_above=True))
         threaded = bore.feature is not None and bore.feature.thread is not None
@@ -105,7 +105,7 @@ def _notes(part: Part) -> Iterator[Pair]:
 
 
 def _contour(name: str, contour: Contour) -> Iterator[Pair]:
-    """The entities of a closed curve of the part ``name``."""
+    """Yield the entities of a closed curve of the part ``name``."""
     if contour.circle is not None:
         yield from _circle(contour.circle)
     for piece in contour.pieces:

@@ -25,12 +25,12 @@ from pareto_monoped.robot.population import RobotArrays
 
 
 def part_meshes(product: Product) -> dict[str, bytes]:
-    """The STL file of every unique part, by the part's name."""
+    """Return the STL file of every unique part, by the part's name."""
     return {unique.name: meshes.stl(unique.mesh) for unique in product.unique}
 
 
 def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
-    """All other files with triangles: content by path in the export's folder.
+    """Return all other files with triangles: content by path in the export's folder.
 
     ``shown`` are the visual meshes of the robot models, if there are to be any.
     """

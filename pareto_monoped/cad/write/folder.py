@@ -149,7 +149,7 @@ FORMATS = tuple(FILES)
 
 
 def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
-    """The formats asked for, in the order of ``FORMATS``; all of them for None.
+    """Return the formats asked for, in the order of ``FORMATS``; all of them for None.
 
     Raises:
         InputError: an unknown name.
@@ -189,7 +189,7 @@ def require_free(out_dir: Path, *, force: bool) -> None:
 
 
 def safe(name: str) -> str:
-    """A name that cannot lead out of the folder.
+    """Return a name that cannot lead out of the folder.
 
     Raises:
         OutputError: it could.
@@ -209,13 +209,13 @@ def write(folder: Path, name: str, content: str | bytes) -> None:
 
 
 def files_in(folder: Path) -> list[str]:
-    """All files of a folder, as paths relative to it."""
+    """Return all files of a folder, as paths relative to it."""
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
 @contextmanager
 def beside(out_dir: Path) -> Iterator[Path]:
-    """A temporary folder beside the target; what is still in it when the block ends is deleted."""
+    """Return a temporary folder beside the target; what is still in it when the block ends is deleted."""
     # The name is noted before there is a folder, because an interrupt may come as soon as it has been made. With 64
     # random bits it is nobody else's.
     folder = out_dir.parent / f".{out_dir.name}-{secrets.token_hex(8)}"
@@ -297,7 +297,9 @@ def _earlier_files(out_dir: Path) -> list[Path]:
 
 
 def _written_by_exports(name: str) -> bool:
-    """Whether an export writes a file of this name, or into its folder at least, of which not all files are listed."""
+    """Return whether an export writes a file of this name, or into its folder at least, of which not all files are
+    listed.
+    """
     made = (*ALWAYS, *(path for files in FILES.values() for path, _ in files))
     first, *rest = Path(name).parts or ("",)
     folders = {path.partition("/")[0] for path in made if "/" in path}

@@ -62,7 +62,7 @@ def items(product: Listed) -> list[Item]:
 
 
 def by_designation(product: Listed) -> dict[str, list[Cable]]:
-    """The robot's cables, those of one kind together."""
+    """Return the robot's cables, those of one kind together."""
     found: dict[str, list[Cable]] = {}
     for cable in cables(product.robot):
         found.setdefault(cable.designation, []).append(cable)
@@ -70,7 +70,7 @@ def by_designation(product: Listed) -> dict[str, list[Cable]]:
 
 
 def hardware(product: Listed) -> str:
-    """The purchasing list as CSV."""
+    """Return the purchasing list as CSV."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -96,7 +96,7 @@ def tightening(part: Part) -> tuple[str, str]:
 
 
 def _split(part: Part) -> tuple[str, str]:
-    """What to order, and what else the note of a part says: its first clause, with the sizes that belong to it."""
+    """Return what to order, and what else the note of a part says: its first clause, with the sizes that belong to it."""
     head, _, rest = part.note.partition("; ")
     # A size such as "6804, 20 x 32 x 7 mm (ISO 15)" belongs to the designation.
     clauses = head.split(", ")
@@ -129,7 +129,7 @@ _CABLES_COLUMNS = (
 
 
 def cables_csv(product: Listed) -> str:
-    """The corners as CSV, with the thigh hanging down."""
+    """Return the corners as CSV, with the thigh hanging down."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_CABLES_COLUMNS)

@@ -32,7 +32,7 @@ _RELATIONS = (
 
 
 def stl(mesh: Mesh, *, scale: float = 1.0) -> bytes:
-    """A binary STL file; in millimetres, or in metres with ``scale`` 0.001."""
+    """Return a binary STL file; in millimetres, or in metres with ``scale`` 0.001."""
     corners = (mesh.points_mm * scale)[mesh.triangles].astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
@@ -43,7 +43,7 @@ def stl(mesh: Mesh, *, scale: float = 1.0) -> bytes:
 
 
 def threemf(mesh: Mesh, name: str) -> bytes:
-    """A 3MF file (3MF core specification 1.3) of one object, in millimetres, lying on the plate."""
+    """Return a 3MF file (3MF core specification 1.3) of one object, in millimetres, lying on the plate."""
     points = mesh.points_mm - np.array([0.0, 0.0, mesh.points_mm[:, 2].min()])
     vertices = "".join(f'<vertex x="{x:.6g}" y="{y:.6g}" z="{z:.6g}"/>' for x, y, z in points.tolist())
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in mesh.triangles.tolist())
@@ -68,7 +68,9 @@ def threemf(mesh: Mesh, name: str) -> bytes:
 
 
 def glb(product: Product) -> bytes:
-    """The assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored once."""
+    """Return the assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored
+    once.
+    """
     import trimesh  # here, because it takes longer to import than all other files to write
 
     scene = trimesh.Scene(base_frame="world")
@@ -160,7 +162,7 @@ def colliders(product: Product) -> tuple[Collider, ...]:
 
 
 def _around_actuator(product: Product, name: str, actuator: Actuator) -> Collider:
-    """A cylinder as long and wide as an actuator's housing."""
+    """Return a cylinder as long and wide as an actuator's housing."""
     unit = next(unit for unit in product.robot.units if unit.name == name)
     middle = unit_frame(unit) @ np.array([0.0, 0.0, -0.5 * actuator.length_mm, 1.0])
     return Collider(
@@ -173,7 +175,7 @@ def _around_actuator(product: Product, name: str, actuator: Actuator) -> Collide
 
 
 def _around_parts(product: Product, name: str, *, unit: str, roles: tuple[Role, ...]) -> Collider:
-    """A box with a margin around those parts of a unit that can be seen and have one of the roles."""
+    """Return a box with a margin around those parts of a unit that can be seen and have one of the roles."""
     bodies = set()
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for instance, unique in product.placed():
@@ -194,5 +196,5 @@ def _around_parts(product: Product, name: str, *, unit: str, roles: tuple[Role, 
 
 
 def numbers(*values: float) -> str:
-    """Values as an XML attribute, each with all its digits."""
+    """Return values as an XML attribute, each with all its digits."""
     return " ".join(repr(float(value)) for value in values)

@@ -19,7 +19,7 @@ from pareto_monoped.robot.population import RobotArrays
 
 
 def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """The simulation's MJCF with visual meshes (group 2) and colliders (group 3) added.
+    """Return the simulation's MJCF with visual meshes (group 2) and colliders (group 3) added.
 
     The colliders meet each other but not the floor (contype and conaffinity 2). The document therefore still makes the
     very jump that was simulated, in which only the foot touches the ground.
@@ -109,7 +109,7 @@ _EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
 
 
 def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -> str:
-    """The content of ``jump.json``."""
+    """Return the content of ``jump.json``."""
     from pareto_monoped.jump.controller import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)
@@ -126,5 +126,5 @@ def _finite(value: np.ndarray) -> object:
 
 
 def replay_script() -> str:
-    """The text of ``replay.py``, which needs MuJoCo and NumPy only."""
+    """Return the text of ``replay.py``, which needs MuJoCo and NumPy only."""
     return (resources.files("pareto_monoped") / "data" / "replay.py").read_text(encoding="utf-8")

@@ -42,7 +42,8 @@ class Parameter:
 
 
 def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
-    """All dimensions of a robot: of the design, of its leg, and of every part that is made, in the part's own frame.
+    """Return all dimensions of a robot: of the design, of its leg, and of every part that is made, in the part's own
+    frame.
 
     Raises:
         ValueError: two dimensions have one name.
@@ -56,7 +57,7 @@ def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
 
 
 def parameters_csv(rows: Iterable[Parameter]) -> str:
-    """The text of ``parameters.csv``."""
+    """Return the text of ``parameters.csv``."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -65,7 +66,7 @@ def parameters_csv(rows: Iterable[Parameter]) -> str:
 
 
 def equations(rows: Iterable[Parameter]) -> str:
-    """The text of the equations file: a line such as ``"thigh_length" = 320mm`` per dimension."""
+    """Return the text of the equations file: a line such as ``"thigh_length" = 320mm`` per dimension."""
     return "".join(f'"{row.name}" = {row.text}{row.unit}\n' for row in rows)
 
 
@@ -81,7 +82,9 @@ def _of_design(product: Product) -> Iterator[Parameter]:
 
 
 def _of_leg(leg: LegDimensions) -> Iterator[Parameter]:
-    """Every number of the leg's dimensions that is a length or a count, with the meaning that the record gives it."""
+    """Yield every number of the leg's dimensions that is a length or a count, with the meaning that the record gives
+    it.
+    """
     meanings = {
         name: " ".join(text.split())
         for names, text in _ATTRIBUTE.findall(LegDimensions.__doc__ or "")

@@ -26,7 +26,7 @@ def readme(
     factors: Sequence[JointFactor] = (),
     life: GearLife | None = None,
 ) -> str:
-    """The page as Markdown.
+    """Return the page as Markdown.
 
     ``factors`` is empty if the design does not jump.
     """
@@ -115,7 +115,7 @@ def _making(product: Product) -> Iterator[str]:
 
 
 def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: GearLife | None) -> Iterator[str]:
-    """The factors, and whether anybody asked for them."""
+    """Yield the factors, and whether anybody asked for them."""
     yield from ("## Strength", "")
     if not record["strength"]:
         yield from ("Strength was not asked for: this design may not hold.", "")

@@ -35,7 +35,7 @@ _COLUMNS = (
 
 
 def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
-    """The parts list as CSV, one row per unique part.
+    """Return the parts list as CSV, one row per unique part.
 
     The safety factor of each joint stands with the parts that it is about.
     """
@@ -82,7 +82,7 @@ def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
 
 
 def _note(part: Part) -> str:
-    """What the maker must know: grade and accuracy, fits, note, joint."""
+    """Return what the maker must know: grade and accuracy, fits, note, joint."""
     return "; ".join(
         filter(
             None,
@@ -116,7 +116,7 @@ _STRENGTH_TABLE_COLUMNS = (
 
 
 def strength_table(factors: Sequence[JointFactor]) -> str:
-    """The table as CSV, a row per joint; without rows if the design does not jump."""
+    """Return the table as CSV, a row per joint; without rows if the design does not jump."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_STRENGTH_TABLE_COLUMNS)
@@ -143,7 +143,7 @@ def strength_table(factors: Sequence[JointFactor]) -> str:
 
 
 def checks_record(checks: Sequence[Check]) -> str:
-    """The checks as JSON, in the order in which they ran."""
+    """Return the checks as JSON, in the order in which they ran."""
     rows = [
         {
             "check": check.name,

@@ -15,7 +15,8 @@ _NO_TURN = "0 0 0"
 
 
 def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """The URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``, frame ``foot``.
+    """Return the URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``, frame
+    ``foot``.
 
     URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
     comment with them.
@@ -99,7 +100,7 @@ def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
 
 
 def _rotor_comment(arrays: RobotArrays, joints: Joints, joint: int) -> str:
-    """What a simulator must add for the parts that turn with the joint's motor."""
+    """Return what a simulator must add for the parts that turn with the joint's motor."""
     name, inertia_kg_m2 = JOINTS[joint], float(arrays.armature_kg_m2[0, joint])
     if name == "hip" or joints.rotors == "armature":
         return f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "
