@@ -27,18 +27,13 @@ class Built:
     """A design as it is exported."""
 
     design: Design  #: with lengths of whole 0.1 mm and real ratios
-    robot: Robot  #: its parts
+    robot: Robot
     arrays: RobotArrays  #: the robot as it is simulated
-    pose: Pose  #: of the assembly
+    pose: Pose
 
 
 def built_of(
-    design: Design,
-    maps: Maps,
-    calibration: Calibration,
-    *,
-    hip_rad: float | None = None,
-    knee_rad: float | None = None,
+    design: Design, maps: Maps, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
 ) -> Built:
     """Build a design in the pose in which its jump starts, or at the given angles.
 
@@ -60,14 +55,12 @@ def as_built(design: Design, maps: Maps) -> Design:
         DesignError: no gearbox of the joint's motor has the ratio.
     """
     both = joint_maps(maps)
-    return design.replace(
-        {
-            "thigh_length_m": round(round(design.thigh_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
-            "shank_length_m": round(round(design.shank_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
-            "hip_ratio": both.hip.lookup(design.hip_ratio).ratio,
-            "knee_ratio": both.knee.lookup(design.knee_ratio).ratio,
-        }
+    thigh_m, shank_m = (
+        round(round(length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4)
+        for length_m in (design.thigh_length_m, design.shank_length_m)
     )
+    hip, knee = both.hip.lookup(design.hip_ratio).ratio, both.knee.lookup(design.knee_ratio).ratio
+    return design.replace({"thigh_length_m": thigh_m, "shank_length_m": shank_m, "hip_ratio": hip, "knee_ratio": knee})
 
 
 def require_fit(robot: Robot, leg: LegDimensions) -> None:
@@ -100,7 +93,9 @@ def assembly_pose(
 ) -> Pose:
     """Return the pose in which the first robot is assembled: that in which its jump starts."""
     start = start_pose(arrays, calibration)
-    stands = bool(np.isfinite(start.hip_rad[0]))
-    hip = float(start.hip_rad[0]) if stands else _REST.hip_rad
-    knee = float(start.knee_rad[0]) if stands else _REST.knee_rad
-    return Pose(hip_rad=hip if hip_rad is None else hip_rad, knee_rad=knee if knee_rad is None else knee_rad)
+    rest = _REST
+    if np.isfinite(start.hip_rad[0]):
+        rest = Pose(hip_rad=float(start.hip_rad[0]), knee_rad=float(start.knee_rad[0]))
+    return Pose(
+        hip_rad=rest.hip_rad if hip_rad is None else hip_rad, knee_rad=rest.knee_rad if knee_rad is None else knee_rad
+    )

@@ -5,7 +5,7 @@ covers its outline; across y it runs into what its outline sweeps over at the sa
 that lead out of the assembly, so that blocking does not depend on the distance.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import manifold3d as m3
@@ -47,7 +47,7 @@ _SPRUNG = frozenset({Role.RETAINING_RING})
 class Body:
     """Instances of one part at one place of one unit."""
 
-    unit: str  #: name of the unit
+    unit: str
     instances: tuple[int, ...]  #: indices of the placed instances
     instance: Instance  #: the first of them
 
@@ -59,7 +59,7 @@ class Body:
 
 @dataclass(slots=True, kw_only=True)
 class Blocking:
-    """Bodies, and which of them is in the way of which."""
+    """Bodies, and which of them block which."""
 
     bodies: tuple[Body, ...]  #: in the order of the assembly
     #: For +y and -y: true at (i, j) where body i, moved that way, runs into body j; shape (n, n)
@@ -67,9 +67,8 @@ class Blocking:
     lasting: Bools  #: true at (i, j) where two bodies are never taken apart
     tied: Bools  #: true at (i, j) where one is a screw in the other's thread
     touching: Bools  #: true at (i, j) where two bodies touch
-    #: For each fastener the bodies in the way of it and of its key, one set for each way to undo it
-    key: Mapping[int, tuple[frozenset[int], ...]]
-    goes_through: Mapping[int, frozenset[int]]  #: for each fastener the bodies that it joins
+    key: Mapping[int, tuple[frozenset[int], ...]]  #: per fastener the bodies in the way of its key, per way to undo it
+    goes_through: Mapping[int, frozenset[int]]  #: per fastener the bodies that it joins
     _slabs: "_Slabs"
     _flexible: Bools
     _across: dict[tuple[str, int], Bools] = field(default_factory=dict)
@@ -85,46 +84,40 @@ class Blocking:
         return self._across[direction, body]
 
     def driven_from(self, fastener: int) -> str:
-        """Return the side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of the screw of a bolt."""
+        """Return the side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of a bolt's screw."""
         return self._slabs.head_side(fastener)
 
 
 def bodies_of(placed: Sequence[Instance]) -> tuple[Body, ...]:
-    """Instances of one part of one unit that lie at one height belong together."""
+    """Return the bodies; instances of one part of one unit that lie at one height are one."""
     groups: dict[tuple[int, str, float], list[int]] = {}
     for k, instance in enumerate(placed):
         height = round(float(instance.world[1, 3]), 3)
         groups.setdefault((id(instance.part), instance.unit, height), []).append(k)
-    return tuple(
-        Body(unit=placed[members[0]].unit, instances=tuple(members), instance=placed[members[0]])
-        for members in groups.values()
-    )
+    first = {members[0]: tuple(members) for members in groups.values()}
+    return tuple(Body(unit=placed[k].unit, instances=members, instance=placed[k]) for k, members in first.items())
 
 
 def blocking_of(placed: Sequence[Instance]) -> Blocking:
     """Look at all pairs of bodies of an assembly in ``retention.POSE``."""
     bodies = bodies_of(placed)
     pieces = slabs(placed, blunt=False)
-    view = _Slabs(bodies, placed, pieces)
-    count = len(bodies)
+    view, count = _Slabs(bodies, placed, pieces), len(bodies)
     owner = np.empty(len(placed), dtype=np.intp)
     for k, body in enumerate(bodies):
         owner[list(body.instances)] = k
-    tied = _grouped(threads(placed, pieces), owner, count)
-    lasting = _joined(bodies, _LASTING)
     limp = np.array([body.instance.part.role in _LIMP for body in bodies])
     flexible = _joined(bodies, _FLEXIBLE) | (limp[:, None] & limp[None])
     forward = view.along() & ~flexible & ~np.eye(count, dtype=bool)
     fasteners = [k for k, body in enumerate(bodies) if body.is_fastener]
-    joined = {k: view.around(k) for k in fasteners}
     return Blocking(
         bodies=bodies,
         along={"+y": forward, "-y": forward.T.copy()},
-        lasting=lasting,
-        tied=tied,
+        lasting=_joined(bodies, _LASTING),
+        tied=_grouped(threads(placed, pieces), owner, count),
         touching=view.touching(),
         key={k: view.in_the_way_of_key(k) for k in fasteners},
-        goes_through=joined,
+        goes_through={k: view.around(k) for k in fasteners},
         _slabs=view,
         _flexible=flexible,
     )
@@ -138,9 +131,8 @@ def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
     return found
 
 
-def _joined(bodies: Sequence[Body], kinds: Iterable[JointKind]) -> Bools:
+def _joined(bodies: Sequence[Body], wanted: frozenset[JointKind]) -> Bools:
     """Return true at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
-    wanted = frozenset(kinds)
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     for i, body in enumerate(bodies):
         joint = body.instance.part.joint
@@ -187,21 +179,29 @@ class _Slabs:
         """Return the bodies that one runs into, moved across the axis, shape (n,)."""
         sign = 1.0 if direction[0] == "+" else -1.0
         way = np.array([sign, 0.0] if direction[1] == "x" else [0.0, sign]) * _FAR_MM
-        found = np.zeros(len(self.bodies), dtype=bool)
+        met: set[int] = set()
         for a in np.flatnonzero(self.owner == body).tolist():
             swept = _swept(self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter), way)
-            if swept.is_empty():
-                continue
-            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
-            meets = (common > _SLIDE_MM) & (self.owner != body) & self._covering(np.array([swept.bounds()]))[0]
-            for b in np.flatnonzero(meets).tolist():
-                j = int(self.owner[b])
-                if not found[j] and (swept ^ self.section[b]).area() > _AREA_MM2:
-                    found[j] = True
+            if not swept.is_empty():
+                self._meet(swept, self._beside(a, swept, _SLIDE_MM) & (self.owner != body), met)
+        found = np.zeros(len(self.bodies), dtype=bool)
+        found[list(met)] = True
         return found
 
+    def _beside(self, a: int, path: m3.CrossSection, common_mm: float) -> Bools:
+        """Return which slabs have more than a height in common with slab ``a`` and a box that meets that of a path."""
+        common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
+        return (common > common_mm) & self._covering(np.array([path.bounds()]))[0]
+
+    def _meet(self, path: m3.CrossSection, looked_at: Bools, met: set[int]) -> None:
+        """Add the bodies whose slabs, of those that are looked at, share an area with a path."""
+        for b in np.flatnonzero(looked_at).tolist():
+            j = int(self.owner[b])
+            if j not in met and (path ^ self.section[b]).area() > _AREA_MM2:
+                met.add(j)
+
     def touching(self) -> Bools:
-        """Return true at (i, j) where two bodies lie beside or before each other with no more than play between them."""
+        """Return true at (i, j) where two bodies lie beside or before each other with at most play between them."""
         found = np.eye(len(self.bodies), dtype=bool)
         margin = np.array([-_PLAY_MM, -_PLAY_MM, _PLAY_MM, _PLAY_MM])
         common = np.minimum(self.high[:, None], self.high[None]) - np.maximum(self.low[:, None], self.low[None])
@@ -219,20 +219,14 @@ class _Slabs:
 
     def around(self, fastener: int) -> frozenset[int]:
         """Return the bodies whose material is close around a fastener."""
-        found = set()
+        found: set[int] = set()
         for a in np.flatnonzero(self.owner == fastener).tolist():
             wide = self.section[a].offset(_NEAR_MM, m3.JoinType.Round)
-            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
-            near = (common > _DEPTH_MM) & (self.owner != fastener) & self._covering(np.array([wide.bounds()]))[0]
-            found |= {
-                int(self.owner[b])
-                for b in np.flatnonzero(near).tolist()
-                if int(self.owner[b]) not in found and (wide ^ self.section[b]).area() > _AREA_MM2
-            }
+            self._meet(wide, self._beside(a, wide, _DEPTH_MM) & (self.owner != fastener), found)
         return frozenset(found)
 
     def in_the_way_of_key(self, fastener: int) -> tuple[frozenset[int], ...]:
-        """Return the bodies that keep a fastener from being undone: before its head, by its length and that of its key.
+        """Return the bodies that block a fastener and its key, per way to undo it: before its head, by both lengths.
 
         A bolt with its nut needs room at both ends. A spanner comes from beside the head, from any direction. A sprung
         ring is held by the walls of its groove and leaves it on either side.
@@ -258,23 +252,17 @@ class _Slabs:
             widest = self._widest(own)
             head_up = float(self.low[widest] + self.high[widest]) > low + high
             reach = reach_mm if self.bodies[fastener].instance.part.role in _SPRUNG else high - low + reach_mm
-            path = self.slim[widest]
             for side in sides or ((1,) if head_up else (-1,)):
-                start = high if side > 0 else low
                 if side > 0:
-                    before = (self.low > start - _FLUSH_MM) & (self.low < start + reach)
+                    before = (self.low > high - _FLUSH_MM) & (self.low < high + reach)
                 else:
-                    before = (self.high < start + _FLUSH_MM) & (self.high > start - reach)
+                    before = (self.high < low + _FLUSH_MM) & (self.high > low - reach)
                 before &= (self.owner != fastener) & self._covering(self.bounds[[widest]])[0]
-                found |= {
-                    int(self.owner[b])
-                    for b in np.flatnonzero(before).tolist()
-                    if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
-                }
+                self._meet(self.slim[widest], before, found)
         return found
 
     def _beside_heads(self, fastener: int, angle_rad: float) -> set[int]:
-        """Return what an open spanner meets that comes to each head, at an angle to the way out from the circle's axis."""
+        """Return what an open spanner meets at each head, at an angle to the way out from the circle's axis."""
         found: set[int] = set()
         for instance in self.bodies[fastener].instances:
             head = self._widest(np.flatnonzero(self.instance == instance))
@@ -283,16 +271,9 @@ class _Slabs:
             half, reach = _JAW * radius, radius + SPANNER_REACH_MM
             outwards = np.arctan2(*self.outwards[instance][[1, 0]])
             path = m3.CrossSection([np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])])
-            path = path.rotate(float(np.degrees(outwards + angle_rad))).translate(
-                (0.5 * (left + right), 0.5 * (low + high))
-            )
-            common = np.minimum(self.high[head], self.high) - np.maximum(self.low[head], self.low)
-            meets = (common > _DEPTH_MM) & (self.instance != instance) & self._covering(np.array([path.bounds()]))[0]
-            found |= {
-                int(self.owner[b])
-                for b in np.flatnonzero(meets).tolist()
-                if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
-            }
+            path = path.rotate(float(np.degrees(outwards + angle_rad)))
+            path = path.translate((0.5 * (left + right), 0.5 * (low + high)))
+            self._meet(path, self._beside(head, path, _DEPTH_MM) & (self.instance != instance), found)
         return found
 
     def head_side(self, fastener: int) -> str:
@@ -303,7 +284,7 @@ class _Slabs:
         return "+y" if float(self.low[widest] + self.high[widest]) > middle else "-y"
 
     def _widest(self, own: NDArray[np.intp]) -> int:
-        """Of some slabs the widest: the head of a screw."""
+        """Return the widest of some slabs: the head of a screw."""
         size = self.bounds[own]
         return int(own[int(np.argmax(size[:, 2] - size[:, 0]))])
 
@@ -315,9 +296,8 @@ class _Slabs:
     def _covering(self, bounds: NDArray[np.float64]) -> Bools:
         """Return which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
         mine = bounds[:, None]
-        return np.asarray(
-            np.all((mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2]), axis=2)
-        )
+        meets = (mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2])
+        return np.asarray(np.all(meets, axis=2))
 
 
 def _swept(section: m3.CrossSection, way: NDArray[np.float64]) -> m3.CrossSection:

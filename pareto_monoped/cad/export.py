@@ -1,6 +1,6 @@
 """Export a design: build it as it can be built, check it, and write one folder that is either whole or not there.
 
-What the kernel's process makes for an export while this one simulates and checks: solids, drawings and pictures.
+The kernel's process makes solids, drawings and pictures while this one simulates and checks.
 """
 
 import gc
@@ -41,14 +41,14 @@ from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
 _AT_ONCE = 6
 """Drawings in a question: few, so that both processes end at about the same time."""
+_NAMED_FAILURES = 3  # more would not fit on a line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ordered:
     """Files that are being made; None for what is not wanted."""
 
-    #: The STEP file of the assembly, and those of the parts by name
-    solids: Future[tuple[bytes, dict[str, bytes]]] | None
+    solids: Future[tuple[bytes, dict[str, bytes]]] | None  #: STEP files of the assembly, and of the parts by name
     pack: Future[dict[str, bytes]] | None  #: the assembly pack: content by path
     sheets: Sequence[Future[dict[str, bytes]]]  #: the parts' drawings by name, some in each
     pictures: Mapping[str, Future[bytes]]  #: PNG files by name
@@ -80,11 +80,9 @@ def order(product: Product, record: Mapping[str, Any], formats: Collection[str])
     # The longest first, as the last ones may be done in either process.
     pack = kernel.do(assembly_pack, listed) if "assembly" in formats else None
     solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in formats else None
+    sheets = _sheets(listed.unique, origin_of(record)) if "pdf" in formats else ()
     return Ordered(
-        solids=solids,
-        pack=pack,
-        sheets=_sheets(listed.unique, origin_of(record)) if "pdf" in formats else (),
-        pictures=files.pictures(product) if "png" in formats else {},
+        solids=solids, pack=pack, sheets=sheets, pictures=files.pictures(product) if "png" in formats else {}
     )
 
 
@@ -97,16 +95,13 @@ def _sheets(parts: Sequence[ListedPart], origin: Origin) -> list[Future[dict[str
     ]
 
 
-_NAMED_FAILURES = 3  # more would not fit on a line
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSummary:
     """What an export made."""
 
-    folder: Path  #: where it is
+    folder: Path
     record: dict[str, Any]  #: the content of its ``design.json``
-    checks: tuple[Check, ...]  #: all checks; all of them passed
+    checks: tuple[Check, ...]  #: all of them passed
     files: tuple[str, ...]  #: paths relative to the folder
     gear_life: GearLife | None  #: of the gears under strikes, where it is known
 
@@ -127,19 +122,11 @@ def export_design(
 ) -> ExportSummary:
     """Build, check and write everything about one design.
 
-    Args:
-        design: as searched; it is built with lengths of whole 0.1 mm and the real ratios, and simulated again.
-        maps: the gearboxes of both joints, or of hip and knee.
-        calibration: the jump model, for the second simulation and the MJCF.
-        out_dir: the folder to make; its parent is made too.
-        formats: some of ``FORMATS``; default all.
-        force: replace the files of an earlier export there. Other files in the folder stay.
-        hip_rad: angle of the hip in the assembly, in place of the start pose's.
-        knee_rad: angle of the knee, likewise.
-        source: where the design comes from, written into ``design.json``.
-        strength: refuse a design with a joint that has less than its required safety factor. The factors are listed
-            either way.
-        progress: called with the name of each step as it begins.
+    The design is built with lengths of whole 0.1 mm and the real ratios, and simulated again, in the start pose of its
+    jump or at the angles ``hip_rad`` and ``knee_rad``. With ``force`` the files of an earlier export are replaced;
+    other files in the folder stay. With ``strength`` a design is refused if a joint has less than its required safety
+    factor; the factors are listed either way. ``source`` says where the design comes from and stands in
+    ``design.json``. ``progress`` is called with the name of each step as it begins.
 
     Raises:
         InputError: an unknown format.
@@ -248,7 +235,7 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
 
 
 def simulated_jumps(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> dict[str, dict[str, Any]]:
-    """Status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
+    """Return status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
     return _jumps(designs, _evaluated(designs, maps, calibration))
 
 

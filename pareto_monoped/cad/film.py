@@ -1,6 +1,6 @@
-"""A jump as a film, drawn without a display: the robot as it is built, with its heights and torques beside it.
+"""A jump as a film, drawn without a display and written as a GIF or, by ffmpeg, as a video.
 
-The pictures of a film as a file: an animated GIF, or a video by ffmpeg.
+It shows the robot as it is built, with its heights and torques beside it.
 """
 
 import shutil
@@ -35,6 +35,13 @@ _VIEW = View(towards=(-0.45, 1.0, -0.16))
 _FLOOR = (0.86, 0.87, 0.89)
 _MARGIN_MM = 60.0
 _COLOURS = ("#0072b2", "#d55e00")  # Okabe and Ito's blue and vermilion: base and foot, hip and knee
+_STILL: Floats = np.zeros(3)
+_GIF_COLOURS = 96  # shading needs no more, and each bit counts
+VIDEOS = {
+    ".mp4": ("mp4", ("-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart")),
+    ".webm": ("webm", ("-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-pix_fmt", "yuv420p")),
+}
+"""Suffix -> ffmpeg's name of the format, and the encoder. Both play in browsers; yuv420p is what all players know."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +83,7 @@ def hold_frames() -> int:
 
 
 def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -> Iterator[Image]:
-    """Yield the pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
+    """Yield the pictures of a jump, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
     pieces, floor, shown = _pieces(robot), _floor(), moments(trace, slower=slower)
     frame = _frame_of_the_film(robot, shown)
     panels, places = _panels(trace)
@@ -91,24 +98,14 @@ def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -
         yield np.hstack((picture, _with_cursor(panels, places, moment.time_s)))
 
 
-_STILL: Floats = np.zeros(3)
-
-
 def _pieces(robot: Robot) -> list[_Piece]:
     found = []
     for one in instances(robot, Pose(hip_rad=0.0, knee_rad=0.0)):
-        if one.part.visibility is Visibility.INSIDE:
-            continue
-        points, triangles = shell_of(one.part, _TOLERANCE_MM)
-        at = one.in_body
-        found.append(
-            _Piece(
-                body=one.body,
-                points_mm=points @ at[:3, :3].T + at[:3, 3],
-                triangles=triangles,
-                colour=one.part.material.colour,
-            )
-        )
+        if one.part.visibility is not Visibility.INSIDE:
+            points, triangles = shell_of(one.part, _TOLERANCE_MM)
+            points = points @ one.in_body[:3, :3].T + one.in_body[:3, 3]
+            colour = one.part.material.colour
+            found.append(_Piece(body=one.body, points_mm=points, triangles=triangles, colour=colour))
     return found
 
 
@@ -131,7 +128,7 @@ def _floor() -> tuple[Floats, NDArray[np.int64]]:
 
 
 def _frame_of_the_film(robot: Robot, shown: list[Moment]) -> Faces:
-    """Faces without triangles, as large as the whole jump: every picture so has one scale and one place."""
+    """Return faces without triangles, as large as the whole jump, so that all pictures have one scale and place."""
     reach = 1000.0 * (robot.design.thigh_length_m + robot.design.shank_length_m)
     top = 1000.0 * max(moment.base_z_m for moment in shown) + 160.0
     x = np.array([1000.0 * moment.base_x_m for moment in shown])
@@ -139,13 +136,12 @@ def _frame_of_the_film(robot: Robot, shown: list[Moment]) -> Faces:
     high = np.array([x.max() + 0.5 * reach, 180.0, top])
     corners = np.array([[(low, high)[k][i] for i, k in enumerate(which)] for which in np.ndindex(2, 2, 2)])
     seen = corners @ _VIEW.axes().T
-    return Faces(
-        box_mm=np.stack([seen.min(axis=0), seen.max(axis=0)]), corners_mm=np.zeros((0, 3, 3)), light=np.zeros(0)
-    )
+    box = np.stack([seen.min(axis=0), seen.max(axis=0)])
+    return Faces(box_mm=box, corners_mm=np.zeros((0, 3, 3)), light=np.zeros(0))
 
 
 def _panels(trace: Mapping[str, Floats]) -> tuple[Image, tuple[float, float, float, int, int]]:
-    """Curves of the whole jump; time at the left and right edge, and these edges with top and bottom in pixels."""
+    """Return curves of the whole jump; time at left and right edge, and these edges with top and bottom in pixels."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -180,16 +176,8 @@ def _with_cursor(panels: Image, places: tuple[float, float, float, int, int], ti
     return image
 
 
-VIDEOS = {
-    ".mp4": ("mp4", ("-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart")),
-    ".webm": ("webm", ("-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-pix_fmt", "yuv420p")),
-}
-"""Suffix -> ffmpeg's name of the format, and the encoder. Both play in browsers; yuv420p is what all players know."""
-_FILM_FILES_COLOURS = 96  # of a GIF; shading needs no more, and each bit counts
-
-
 def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> int:
-    """Write an animated GIF that repeats; returns the number of pictures.
+    """Write an animated GIF that repeats, and return the number of pictures.
 
     Raises:
         OutputError: it cannot be written, or would replace a file of another kind.
@@ -197,7 +185,7 @@ def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> 
     from PIL import Image as Pillow
 
     frames = [Pillow.fromarray(picture) for picture in pictures]
-    palette = frames[len(frames) // 2].quantize(colors=_FILM_FILES_COLOURS, dither=Pillow.Dither.NONE)
+    palette = frames[len(frames) // 2].quantize(colors=_GIF_COLOURS, dither=Pillow.Dither.NONE)
     drawn = [frame.quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]
     rest = 1000 // FRAMES_PER_S
     times = [rest] * (len(drawn) - 1) + [rest * hold_frames()]
@@ -220,8 +208,7 @@ def encoder() -> str:
     require_extra("video", "--video", instead="install the program ffmpeg, or use --gif")
     import imageio_ffmpeg
 
-    program: str = imageio_ffmpeg.get_ffmpeg_exe()
-    return program
+    return str(imageio_ffmpeg.get_ffmpeg_exe())
 
 
 def require_gif(path: Path) -> None:
@@ -246,7 +233,7 @@ def require_video(path: Path) -> str:
 
 
 def write_video(path: Path, pictures: Iterable[Image], *, force: bool = False) -> int:
-    """Write a video; returns the number of pictures.
+    """Write a video, and return the number of pictures.
 
     Raises:
         InputError: see ``require_video``.
@@ -269,9 +256,8 @@ def write_video(path: Path, pictures: Iterable[Image], *, force: bool = False) -
 
 def _held(pictures: Iterable[Image]) -> Iterator[Image]:
     """Yield the pictures, and the last one for a while longer."""
-    last = None
+    last: Image | None = None
     for last in pictures:
         yield last
-    for _ in range(hold_frames() if last is not None else 0):
-        assert last is not None
-        yield last
+    if last is not None:
+        yield from [last] * hold_frames()

@@ -41,10 +41,8 @@ class Job:
         Raises:
             MotorError: a motor has no gearbox at any ratio.
         """
-        return JointMaps(
-            hip=map_of(self.motor, self.rules),
-            knee=map_of(self.motor if self.knee_motor is None else self.knee_motor, self.rules),
-        )
+        hip = map_of(self.motor, self.rules)
+        return JointMaps(hip=hip, knee=hip if self.knee_motor is None else map_of(self.knee_motor, self.rules))
 
 
 def case_job(
@@ -60,8 +58,7 @@ def case_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """Return the job for a row of the paper's Table I with the default calibration, our best model of the paper's
-    robot.
+    """Return the job for a row of the paper's Table I with the default calibration, our best model of that robot.
 
     ``strength`` defaults to that of a study with this calibration; ``Job`` describes the other arguments.
 

@@ -1,9 +1,4 @@
-"""An export again, from its ``design.json``; a record that contradicts itself is refused.
-
-Compare JSON values, numbers to within a tolerance, and say where they differ.
-
-Whether the export that a job asks for exists already, complete and up to date.
-"""
+"""An export again from its ``design.json``, and whether an export exists already; contradictory records are refused."""
 
 import json
 import math
@@ -30,8 +25,7 @@ class Difference:
     """A place where two values differ."""
 
     field: str  #: its keys from the outside in, with dots between them
-    #: found, expected: what stands there; ``ABSENT`` where there is nothing
-    found: Any
+    found: Any  #: what stands there; ``ABSENT`` where there is nothing
     expected: Any
 
 
@@ -42,12 +36,9 @@ def difference(found: Any, expected: Any, *, rel_tolerance: float, field: str = 
     """Return the first place where two JSON values differ, None if there is none."""
     if isinstance(found, dict) and isinstance(expected, dict):
         for key in (*expected, *(key for key in found if key not in expected)):
-            inner = difference(
-                found.get(key, ABSENT),
-                expected.get(key, ABSENT),
-                rel_tolerance=rel_tolerance,
-                field=f"{field}.{key}" if field else str(key),
-            )
+            at = f"{field}.{key}" if field else str(key)
+            a, b = found.get(key, ABSENT), expected.get(key, ABSENT)
+            inner = difference(a, b, rel_tolerance=rel_tolerance, field=at)
             if inner is not None:
                 return inner
         return None
@@ -68,16 +59,18 @@ _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
 """Keys whose values the job gives; all others are computed, and another machine may round them differently."""
 REL_TOLERANCE = 1e-9
 """Of numbers that another machine may round in another way."""
+_JUMP_REL_TOLERANCE = 1e-3
+"""Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
+_RATIOS = ("hip_ratio", "knee_ratio")
+"""Variables that a design is built with as its gearboxes have them, which another version may choose differently."""
 
 
 def is_made(job: Job, *, any_pose: bool = False) -> bool:
-    """Return whether the job's folder holds this very export: same version, design, motor, calibration, source and
-    pose.
+    """Return whether the job's folder holds this very export, by version, design, motor, calibration, source and pose.
 
     Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
-    have the job's formats, and every file that it lists must be there and not empty.
-
-    With ``any_pose`` the assembly may stand in another pose than the job's.
+    have the job's formats, and every file that it lists must be there and not empty. With ``any_pose`` the assembly may
+    stand in another pose than the job's.
     """
     try:
         record = read_json(job.folder / RECORD)
@@ -100,9 +93,7 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
     needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
     if record["jumps"]["as_built"]["status"] == "cannot_stand":
         needed = [path for path in needed if path != "model/monoped.xml"]
-    listed = all(
-        any(name == path or (path.endswith("/") and name.startswith(path)) for name in names) for path in needed
-    )
+    listed = all(any(name == path or (path[-1] == "/" and name.startswith(path)) for name in names) for path in needed)
     return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
 
 
@@ -121,12 +112,6 @@ def expected_record(job: Job) -> dict[str, Any]:
         strength=job.strength,
     )
     return {key: value for key, value in record.items() if key not in _NOT_COMPARED}
-
-
-_JUMP_REL_TOLERANCE = 1e-3
-"""Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
-_RATIOS = ("hip_ratio", "knee_ratio")
-"""Variables that a design is built with as its gearboxes have them, which another version may choose differently."""
 
 
 def record_job(
@@ -218,7 +203,7 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
 
 
 def _short(value: Any) -> str:
-    """Return a value in a message of one line."""
+    """Return a value as it stands in a message of one line."""
     text = json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
@@ -240,8 +225,7 @@ def _parsed(path: Path) -> Mapping[str, Any]:
 
 def _design(searched: Mapping[str, Any]) -> Design:
     """Return the design of a record; optional variables that it does not name have their defaults."""
-    values = DEFAULTS | dict(searched)
-    return Design.from_array([_finite(values, name) for name in NAMES])
+    return Design.from_array([_finite(DEFAULTS | dict(searched), name) for name in NAMES])
 
 
 def _rules(name: Any) -> RuleSet:
@@ -260,7 +244,7 @@ def _object(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] | None]:
-    """Return values of the motor of a record, or of the hip's, and of the knee's where it has another one."""
+    """Return the values of a record's motor, or of the hip's and of the knee's where these differ."""
     found = _object(record, "motor_data")
     if set(found) != {"hip", "knee"}:
         return dict(found), None

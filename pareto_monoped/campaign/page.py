@@ -1,6 +1,6 @@
 """The report of a campaign: one self-contained page in the looks of the report of a study.
 
-The tables of a campaign's page; every text from a file or a database is escaped here.
+Every text from a file or a database is escaped here.
 """
 
 import json
@@ -47,10 +47,14 @@ _SINGULAR = {
 }
 """Axis -> what a value of it is called; others by their own name."""
 _STRIP_PX, _EDGE_PX = 130.0, 6.0
+SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
+"""Scripts of the report of a study that this page has, too; its own one follows."""
+MOST_CURVES = 8
+"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
 
 
 def section_tables(section: Section) -> str:
-    """Medians by group, by each axis where there are several, and by seed."""
+    """Return medians by group, by each axis where there are several, and by seed."""
     others = [axis for axis in section.axes if axis != SEEDS]
     words = " and ".join(_SINGULAR.get(axis, axis) for axis in others) or "studies"
     parts = [_table(section, section.groups, f"By {words}" if others else "All studies", spread=True)]
@@ -75,7 +79,7 @@ def studies_table(campaign: Campaign, results: Sequence[Result]) -> str:
 
 
 def failures(results: Sequence[Result]) -> str:
-    """Return a note for the studies that failed and one for those that are not finished; they are in no median."""
+    """Return a note per failed study and one for those that are not finished; they are in no median."""
     notes = [f"{one.place.name} failed: {one.stored.reason}" for one in results if one.stored.state == "failed"]
     open_ones = [one.place.name for one in results if one.stored.state in ("waiting", "running", "unfinished")]
     if open_ones:
@@ -185,12 +189,6 @@ def _html(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
-"""Scripts of the report of a study that this page has, too; its own one follows."""
-MOST_CURVES = 8
-"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
-
-
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
     """Return the whole HTML text."""
     sections = sections_of(results, campaign.axes)
@@ -200,7 +198,6 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         f"default-src 'none'; script-src {fingerprint(script)}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
-    parts = [_section(section, k, len(sections)) for k, section in enumerate(sections)]
     return Template(_own("campaign.html")).substitute(
         policy=policy,
         title=safe(campaign.name),
@@ -209,7 +206,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         summary=safe(_summary(results, sections)),
         notes=failures(results),
         links="".join(f'<a href="#section-{k}">{safe(_title(one))}</a>' for k, one in enumerate(sections)),
-        sections="\n".join(parts),
+        sections="\n".join(_section(section, k, len(sections)) for k, section in enumerate(sections)),
         studies=studies_table(campaign, results),
         version=safe(__version__),
         payload=embedded_json(_payload(sections)),
@@ -225,15 +222,16 @@ def _summary(results: Sequence[Result], sections: Sequence[Section]) -> str:
     finished = sum(result.finished for result in results)
     jumps = sum(result.stored.evaluations for result in results)
     seconds = sum(result.stored.seconds for result in results)
-    minutes, hours = seconds / 60.0, seconds / 3600.0
-    time = (
-        f"{seconds:.0f} seconds" if minutes < 2.0 else f"{minutes:.0f} minutes" if hours < 2.0 else f"{hours:.1f} hours"
-    )
+    if seconds < 120.0:
+        time = f"{seconds:.0f} seconds"
+    else:
+        time = f"{seconds / 60.0:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} hours"
     words = f"{finished} of {len(results)} studies are finished: {jumps:,} jumps in {time} of running time."
+    several = (
+        " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
+    )
     if len(sections) > 1:
-        words += (
-            " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
-        )
+        words += several
     return words
 
 
@@ -296,10 +294,9 @@ def _curves(section: Section) -> dict[str, Any]:
 
 
 def _first(groups: Sequence[Group]) -> list[int]:
-    """Positions of the groups that the charts show at first: those of most hypervolume, in their order."""
+    """Return positions of the groups that the charts show at first: those of most hypervolume, in their order."""
     volumes = [spread_of([result.stored.hypervolume for result in group.results]).middle for group in groups]
-    best = sorted(range(len(groups)), key=lambda k: -volumes[k])[:MOST_CURVES]
-    return sorted(best)
+    return sorted(sorted(range(len(groups)), key=lambda k: -volumes[k])[:MOST_CURVES])
 
 
 def _group(group: Group, levels: NDArray[np.float64]) -> dict[str, Any]:
@@ -315,5 +312,5 @@ def _group(group: Group, levels: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def _numbers(values: NDArray[np.float64]) -> list[float | None]:
-    """For JSON, with five digits; None for NaN."""
+    """Return values for JSON, with five digits; None for NaN."""
     return [json.loads(f"{value:.5g}") if math.isfinite(value) else None for value in values.tolist()]

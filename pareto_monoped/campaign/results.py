@@ -1,9 +1,4 @@
-"""What the studies of a campaign found: the part of each database that tables and charts compare.
-
-Medians and bands over studies: by motor, by seed, by whatever varies, where studies can be compared at all.
-
-A campaign as a table for other programs: one row per study.
-"""
+"""What the studies of a campaign found, with medians and bands over those that can be compared, and as CSV."""
 
 import csv
 import io
@@ -25,13 +20,19 @@ Floats = NDArray[np.float64]
 
 LEVELS_M = (0.7, 0.8, 0.9)
 """Heights at which tables say what they cost: those of the report of a study."""
+LOW, HIGH = 0.1, 0.9
+"""Ends of the bands: what a tenth of the studies and nine tenths of them reach."""
+POINTS = 120
+"""Of a curve: more than a chart can show apart."""
+SEEDS = "seeds"
+"""The axis that says nothing of the robot; its studies are repetitions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """A study of a campaign and what it found."""
 
-    place: Place  #: the study
+    place: Place
     stored: Stored  #: how far it is
     calibration: str  #: name and version; the name alone before the study began
     front: Floats  #: values of the objectives of the designs on the front, shape (n, m)
@@ -65,10 +66,7 @@ class Result:
         return float(values.max() if maximised else values.min())
 
     def least(self, levels: Floats) -> Floats:
-        """Return the best second objective of ``pair_of`` among designs that reach each level of the first, shape (k,).
-
-        NaN where none does.
-        """
+        """Return the best second objective of ``pair_of`` per level reached in the first, shape (k,); else NaN."""
         names = pair_of(self.objectives)
         columns = [self.objectives.names.index(name) for name in names]
         signs = self.objectives.signs[columns]
@@ -79,9 +77,7 @@ class Result:
 
 
 def pair_of(objectives: Objectives) -> tuple[str, str]:
-    """Return the two objectives that a curve shows: the height, where it is one, else the first, and the first other
-    one.
-    """
+    """Return the two objectives that a curve shows: the height, else the first, and the first other one."""
     heights = [name for name in objectives.names if is_height(name)]
     first = (heights or list(objectives.names))[0]
     return first, objectives.other_than(first).name
@@ -93,7 +89,7 @@ def is_height(name: str) -> bool:
 
 
 def levels_of(objectives: Objectives) -> tuple[float, ...]:
-    """Levels at which tables give the second objective of ``pair_of``; none where the first is no height."""
+    """Return levels at which tables give the second objective of ``pair_of``; none where the first is no height."""
     return LEVELS_M if is_height(pair_of(objectives)[0]) else ()
 
 
@@ -113,16 +109,9 @@ def _result(place: Place, reason: str | None) -> Result:
     if reason is not None:
         stored = replace(stored, state="failed", reason=reason)
     if stored.summary is None:
-        nothing = np.zeros((0, len(place.study.objectives.names)))
-        empty = np.zeros((0, 2))
-        return Result(
-            place=place,
-            stored=stored,
-            calibration=place.study.calibration,
-            front=nothing,
-            history=empty,
-            feasible=float("nan"),
-        )
+        nothing, name = np.zeros((0, len(place.study.objectives.names))), place.study.calibration
+        history = np.zeros((0, 2))
+        return Result(place=place, stored=stored, calibration=name, front=nothing, history=history, feasible=math.nan)
     # Read whole, because only then everything is checked against the running hash.
     data = read_study(place.db)
     states = data.trials["state"]
@@ -134,14 +123,6 @@ def _result(place: Place, reason: str | None) -> Result:
         history=data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64),
         feasible=float((states == "feasible").mean()) if len(states) else float("nan"),
     )
-
-
-LOW, HIGH = 0.1, 0.9
-"""Ends of the bands: what a tenth of the studies and nine tenths of them reach."""
-POINTS = 120
-"""Of a curve: more than a chart can show apart."""
-SEEDS = "seeds"
-"""The axis that says nothing of the robot; its studies are repetitions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,11 +137,10 @@ class Group:
 class Section:
     """Finished studies that can be compared: the same objectives under the same calibration."""
 
-    #: objectives, calibration: of all of them
     objectives: Objectives
     calibration: str
     axes: tuple[str, ...]  #: that vary among them
-    results: tuple[Result, ...]  #: the studies
+    results: tuple[Result, ...]
     groups: tuple[Group, ...]  #: those that differ in nothing but the seed
 
     def by(self, axis: str) -> tuple[Group, ...]:
@@ -186,15 +166,14 @@ def sections_of(results: Sequence[Result], axes: Sequence[str]) -> list[Section]
     sections = []
     for (names, calibration), members in found.items():
         varying = tuple(axis for axis in axes if _values(members, axis) > 1)
-        sections.append(
-            Section(
-                objectives=Objectives(names=names),
-                calibration=calibration,
-                axes=varying,
-                results=tuple(members),
-                groups=_grouped(members, [axis for axis in varying if axis != SEEDS]),
-            )
+        section = Section(
+            objectives=Objectives(names=names),
+            calibration=calibration,
+            axes=varying,
+            results=tuple(members),
+            groups=_grouped(members, [axis for axis in varying if axis != SEEDS]),
         )
+        sections.append(section)
     return sections
 
 
@@ -211,7 +190,7 @@ def _grouped(results: Sequence[Result], axes: Sequence[str]) -> tuple[Group, ...
 
 
 def spread_of(values: Sequence[float] | Floats) -> Spread:
-    """Median and band of some values: order statistics, no values between them.
+    """Return median and band of some values: order statistics, no values between them.
 
     Of an even number the median is the lower one of the middle two. Of fewer than ten values the band goes from the
     least to the greatest. NaN counts as greater than every number.
@@ -221,15 +200,14 @@ def spread_of(values: Sequence[float] | Floats) -> Spread:
 
 
 def quantiles(values: Floats) -> Floats:
-    """Median, low and high end of the bands of n runs at k places, shape (3, k) from shape (n, k)."""
+    """Return median, low and high end of the bands of n runs at k places, shape (3, k) from shape (n, k)."""
     ranked = np.sort(values, axis=0)  # NaN last
-    count = len(ranked)
-    ranks = [max(int(np.ceil(share * count - 1e-9)) - 1, 0) for share in (0.5, LOW, HIGH)]
+    ranks = [max(int(np.ceil(share * len(ranked) - 1e-9)) - 1, 0) for share in (0.5, LOW, HIGH)]
     return np.asarray(ranked[ranks])
 
 
 def levels_of_section(section: Section) -> Floats:
-    """Levels of the first objective of ``pair_of`` from the least to the most on any front, shape (k,)."""
+    """Return levels of the first objective of ``pair_of`` from the least to the most on any front, shape (k,)."""
     first = section.objectives.names.index(pair_of(section.objectives)[0])
     values = np.concatenate([result.front[:, first] for result in section.results])
     return np.linspace(values.min(), values.max(), POINTS)
@@ -241,14 +219,13 @@ def attainment(group: Group, levels: Floats) -> Floats:
     These are empirical attainment surfaces (Grunert da Fonseca et al. 2001): order statistics of the runs' best second
     objectives at each level of the first, such as their least energies at each height.
     """
-    sign = group.results[0].objectives.signs[
-        group.results[0].objectives.names.index(pair_of(group.results[0].objectives)[1])
-    ]
+    objectives = group.results[0].objectives
+    sign = objectives.signs[objectives.names.index(pair_of(objectives)[1])]
     return np.asarray(sign * quantiles(np.stack([sign * result.least(levels) for result in group.results])))
 
 
 def growth(group: Group) -> tuple[Floats, Floats]:
-    """Evaluations, shape (k,), and median and band of the hypervolume there, shape (3, k); the last value is held."""
+    """Return evaluations, shape (k,), and median and band of the hypervolume there, shape (3, k); the last is held."""
     histories = [result.history for result in group.results if len(result.history)]
     if not histories:
         return np.zeros(0), np.zeros((3, 0))
@@ -264,9 +241,7 @@ def _held(history: Floats, at: Floats) -> Floats:
 
 
 def relative(section: Section) -> dict[str, float]:
-    """Return name of each study -> its hypervolume as a share of the median of the studies that differ in the seed
-    only.
-    """
+    """Return each study's hypervolume as a share of the median of the studies that differ in the seed only."""
     shares = {}
     for group in section.groups:
         middle = spread_of([result.stored.hypervolume for result in group.results]).middle
@@ -295,7 +270,8 @@ def _row(campaign: Campaign, result: Result) -> dict[str, Any]:
     study, stored = result.place.study, result.stored
     counts = {} if stored.summary is None else stored.summary.counts
     first, second = pair_of(study.objectives)
-    at_levels = result.least(np.array(levels_of(study.objectives)))
+    at_levels = result.least(np.array(levels_of(study.objectives))).tolist()
+    knee_values = zip(study.objectives.names, result.knee.tolist(), strict=True)
     return {
         "study": result.place.name,
         "database": str(result.place.db),
@@ -314,13 +290,10 @@ def _row(campaign: Campaign, result: Result) -> dict[str, Any]:
         "hypervolume": _number(stored.hypervolume if stored.evaluations else math.nan),
         "hypervolume_unit": stored.hypervolume_unit,
         f"best_{first}": _number(result.most),
-        **{
-            f"knee_{name}": _number(value)
-            for name, value in zip(study.objectives.names, result.knee.tolist(), strict=True)
-        },
+        **{f"knee_{name}": _number(value) for name, value in knee_values},
         **{
             f"{second}_at_{str(level).replace('.', '_')}_m": _number(value)
-            for level, value in zip(LEVELS_M, at_levels.tolist(), strict=False)
+            for level, value in zip(LEVELS_M, at_levels, strict=False)
         },
         "reason": stored.reason,
     }

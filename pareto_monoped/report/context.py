@@ -19,6 +19,10 @@ from pareto_monoped.report.tables import safe
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Words = Annotated[str, Field(min_length=1)]
+_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
+_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
+Box = tuple[float, float, float, float]
+"""Left, right, top and bottom of a rectangle in the chart."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,23 +55,20 @@ def published_jumpers() -> tuple[Jumper, ...]:
 
 
 def own_jumpers(payload: Payload) -> list[Jumper]:
-    """Return the paper's Case C as simulated here, and of each front the most agile design, the knee and the highest
-    jump.
-    """
+    """Return the paper's Case C as simulated here, and the most agile, the knee and the highest of each front."""
     found = []
     for case in payload.studies[0].cases:
         agility = case.measures.get("agility_m_per_s")
         if case.name == "C" and case.height_m is not None and case.mass_kg is not None and agility is not None:
-            found.append(
-                Jumper(
-                    name="the paper's Case C, simulated here",
-                    drive=f"one leg; {payload.studies[0].case_motor}",
-                    source="this report",
-                    mass_kg=float(case.mass_kg),
-                    height_m=float(case.height_m) - BASE_START_HEIGHT_M,
-                    agility_m_per_s=float(agility),
-                )
+            case_c = Jumper(
+                name="the paper's Case C, simulated here",
+                drive=f"one leg; {payload.studies[0].case_motor}",
+                source="this report",
+                mass_kg=float(case.mass_kg),
+                height_m=float(case.height_m) - BASE_START_HEIGHT_M,
+                agility_m_per_s=float(agility),
             )
+            found.append(case_c)
     for card in payload.studies:
         named: dict[int, list[str]] = {}
         for what, place in _places(card).items():
@@ -79,7 +80,7 @@ def own_jumpers(payload: Payload) -> list[Jumper]:
 
 
 def _places(card: StudyCard) -> dict[str, int]:
-    """Places on the front of the designs that stand for it, by what they are."""
+    """Return the places on the front of the designs that stand for it, by what they are."""
     rows = list(card.front)
     if not rows:
         return {}
@@ -91,7 +92,7 @@ def _places(card: StudyCard) -> dict[str, int]:
 
 
 def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
-    """Of the designs on the front, in its order; NaN where it is not known."""
+    """Return agilities of the designs on the front, in its order; NaN where they are not known."""
     name, rows = "agility_m_per_s", list(card.front)
     if name in card.trials.packed:
         return unpacked_column(card.trials.packed[name])[rows]
@@ -124,17 +125,10 @@ def context_section(payload: Payload) -> str:
     everyone.sort(key=lambda entry: (-(entry[0].agility_m_per_s or 0.0), -(entry[0].height_m or 0.0)))
     most = max((jumper.agility_m_per_s or 0.0 for jumper, _ in everyone), default=1.0)
     sources = list(dict.fromkeys(jumper.source for jumper, ours in everyone if not ours))
-    head = "".join(
-        f'<th scope="col"{kind}>{safe(words)}</th>'
-        for words, kind in (
-            ("jumper", ""),
-            ("agility, m/s", ' class="agility"'),
-            ("height gained, m", ' class="n"'),
-            ("mass, kg", ' class="n"'),
-            ("drive", ""),
-            ("source", ' class="n"'),
-        )
-    )
+    bar, right = ' class="agility"', ' class="n"'
+    heads = [("jumper", ""), ("agility, m/s", bar), ("height gained, m", right)]
+    heads += [("mass, kg", right), ("drive", ""), ("source", right)]
+    head = "".join(f'<th scope="col"{style}>{safe(words)}</th>' for words, style in heads)
     body = "".join(_row(jumper, ours, most, sources) for jumper, ours in everyone)
     words = (
         "Vertical jumping agility is the height gained in a jump over the time from the start of the push to the apex "
@@ -157,19 +151,14 @@ def _row(jumper: Jumper, ours: bool, most: float, sources: Sequence[str]) -> str
     if jumper.agility_m_per_s is not None:
         width = 100.0 * jumper.agility_m_per_s / most
         agility = f'<i style="width: {width:.0f}%"></i><b>{jumper.agility_m_per_s:.2f}</b>'
-    cells = "".join(
-        f'<td class="n">{"" if value is None else f"{value:.3g}"}</td>' for value in (jumper.height_m, jumper.mass_kg)
-    )
+    values = ("" if value is None else f"{value:.3g}" for value in (jumper.height_m, jumper.mass_kg))
+    cells = "".join(f'<td class="n">{value}</td>' for value in values)
     row = '<tr class="ours">' if ours else "<tr>"
     source = jumper.source if ours else f"[{sources.index(jumper.source) + 1}]"
     return (
         f'{row}<th scope="row">{safe(jumper.name + year)}</th><td class="agility">{agility}</td>{cells}'
         f'<td>{safe(jumper.drive)}</td><td class="n">{safe(source)}</td></tr>'
     )
-
-
-_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
-_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
 
 
 def _chart(own: Sequence[Jumper]) -> str:
@@ -192,10 +181,6 @@ def _chart(own: Sequence[Jumper]) -> str:
     svg = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{label}">{"".join(parts)}</svg>'
     note = "Circles: published robots. Diamonds: designs of this report. Both axes are logarithmic."
     return f'<figure class="context-chart">{svg}<figcaption class="small">{note}</figcaption></figure>'
-
-
-Box = tuple[float, float, float, float]
-"""Left, right, top and bottom of a rectangle in the chart."""
 
 
 def _label_place(x: float, y: float, wide: float, taken: Sequence[Box]) -> tuple[Box, str, float, float]:
@@ -238,7 +223,6 @@ def _axes() -> str:
         parts.append(f'<text x="{left - 5}" y="{y + 4:.1f}" text-anchor="end">{height:g}</text>')
     middle = (top + bottom) / 2
     parts.append(f'<text x="{(left + right) / 2}" y="{_HEIGHT - 8}" text-anchor="middle">mass, kg</text>')
-    parts.append(
-        f'<text x="13" y="{middle}" text-anchor="middle" transform="rotate(-90 13 {middle})">height gained, m</text>'
-    )
+    turn = f"rotate(-90 13 {middle})"
+    parts.append(f'<text x="13" y="{middle}" text-anchor="middle" transform="{turn}">height gained, m</text>')
     return "".join(parts)

@@ -62,20 +62,17 @@ def front_figure(payload: Payload, figure: Any) -> bool:
 
 
 def _limits(axes: Any, payload: Payload, marks: Sequence[Mark], places: Axes2) -> None:
-    """Limits of both axes that show every mark; with height over energy they begin at the start, and show the floor."""
+    """Set limits that show every mark; with height over energy they begin at the start, and show the floor."""
     right, high = max((mark[0] for mark in marks), default=1.0), max((mark[1] for mark in marks), default=1.0)
     if places[1] == "height_m" and places[0] in ENERGIES:
         _floor(axes, payload, 1.1 * right)
         axes.set(xlim=(0.0, 1.06 * right), ylim=(BASE_START_HEIGHT_M, high + 0.06))
         return
-    for found, setter in (
-        ([mark[0] for mark in marks], axes.set_xlim),
-        ([mark[1] for mark in marks], axes.set_ylim),
-    ):
-        if not found:
-            continue
-        room = 0.06 * (max(found) - min(found)) or 0.1
-        setter(min(found) - room, max(found) + room)
+    sides = ([mark[0] for mark in marks], axes.set_xlim), ([mark[1] for mark in marks], axes.set_ylim)
+    for found, setter in sides:
+        if found:
+            room = 0.06 * (max(found) - min(found)) or 0.1
+            setter(min(found) - room, max(found) + room)
 
 
 def axis_title(name: str) -> str:
@@ -102,7 +99,7 @@ def _simulated(card: StudyCard, places: Axes2) -> list[Mark]:
 
 
 def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, third: Sequence[str]) -> None:
-    """A study's dominated designs as faint dots, and its front as a line of steps, or as dots if that is no line."""
+    """Draw a study's dominated designs as faint dots, and its front as steps, or as dots if that is no line."""
     tint, symbol = STYLES[number % len(STYLES)]
     on_front = set(card.front)
     others = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in on_front]
@@ -121,7 +118,7 @@ def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, thi
 
 
 def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: Sequence[str]) -> None:
-    """The designs on the front with a colour and a mark for each kit of motors, where the study has several."""
+    """Draw the designs on the front with a colour and a mark per kit of motors, where the study has several."""
     if "motor" not in card.trials.columns:
         return
     across, up = _places(card, card.front, places)
@@ -137,7 +134,7 @@ def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: 
 
 
 def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
-    """Designs of the paper, with their names on sides where they do not cover each other."""
+    """Draw designs of the paper, with their names on sides where they do not cover each other."""
     if not marks:
         return
     energy, height, _ = zip(*marks, strict=True)
@@ -148,7 +145,7 @@ def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
 
 
 def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
-    """The height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
+    """Draw the height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
     masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
     if not masses:
         return

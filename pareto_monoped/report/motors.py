@@ -34,10 +34,7 @@ class MotorTables:
 
 
 def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
-    """Return the stage 1 map of a motor.
-
-    ``first`` is the number of the map's first gearbox on the page.
-    """
+    """Return the stage 1 map of a motor, whose gearboxes are numbered from ``first``."""
     gearboxes: list[Gearbox] = []
     points = []
     for entry in actuator_map.entries:
@@ -48,38 +45,28 @@ def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
             gearbox = first + len(gearboxes)
             gearboxes.append(_gearbox(entry.actuator))
         lightest = {family: found.best.mass_kg for family, found in entry.families.items() if found.best is not None}
-        points.append(
-            MapPoint(
-                ratio_low=entry.ratio_low,
-                gearbox=gearbox,
-                reason="" if entry.actuator is not None else entry.why_not(),
-                family_mass_kg={family: round(mass_kg, 4) for family, mass_kg in lightest.items()},
-            )
+        point = MapPoint(
+            ratio_low=entry.ratio_low,
+            gearbox=gearbox,
+            reason="" if entry.actuator is not None else entry.why_not(),
+            family_mass_kg={family: round(mass_kg, 4) for family, mass_kg in lightest.items()},
         )
+        points.append(point)
     low, following = actuator_map.ratios_low[:2]
-    return MotorTables(
-        gearboxes=gearboxes,
-        map=MotorMap(
-            motor=actuator_map.motor.name,
-            points=points,
-            ratio_step=round(float(following - low), 6),
-            leg=leg_table(leg_dimensions(actuator_map)),
-        ),
-    )
+    step, leg = round(float(following - low), 6), leg_table(leg_dimensions(actuator_map))
+    found = MotorMap(motor=actuator_map.motor.name, points=points, ratio_step=step, leg=leg)
+    return MotorTables(gearboxes=gearboxes, map=found)
 
 
 def gearbox_numbers(actuator_map: "ActuatorMap", ratios: NDArray[np.float64], first: int) -> list[int]:
-    """Return numbers of the gearboxes that ratios get, shape (n,), counted as in ``motor_tables``; -1 where there is
-    none.
-    """
+    """Return the numbers of the gearboxes that ratios get, shape (n,), as in ``motor_tables``; -1 for none."""
     has_gearbox = np.array([entry.actuator is not None for entry in actuator_map.entries])
     interval = actuator_map.interval_index(ratios)
-    numbers: list[int] = np.where(interval >= 0, first + (np.cumsum(has_gearbox) - 1)[interval], -1).tolist()
-    return numbers
+    return list(np.where(interval >= 0, first + (np.cumsum(has_gearbox) - 1)[interval], -1).tolist())
 
 
 def leg_table(d: LegDimensions) -> LegTable:
-    """Link masses over link length, and the dimensions of the page's drawing."""
+    """Return link masses over link length, and the dimensions of the page's drawing."""
     top = _upper_end(d)
     return LegTable(
         length_m=column(_LENGTHS_M),

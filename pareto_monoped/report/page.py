@@ -1,7 +1,4 @@
-"""Payload -> one self-contained HTML file.
-
-Studies -> what the page shows: a pure function of study data and what was simulated again for it.
-"""
+"""Studies -> what the page shows, a pure function of their data and of what was simulated again -> one HTML file."""
 
 import base64
 import hashlib
@@ -57,6 +54,14 @@ if TYPE_CHECKING:
 PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M = 0.235, 0.828
 """Mass of a link over its length: straight line through the masses of links that the authors published, for lengths
 from 150 to 350 mm."""
+SCRIPTS = (
+    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
+    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
+    "shortlist", "compare", "print", "main",
+)  # fmt: skip
+"""The page's own scripts, in the order in which they run; together they are one closed scope."""
+STYLES = ("style", "choose", "print")
+"""The page's style sheets, in the order in which they apply."""
 
 
 def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
@@ -94,9 +99,8 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     variables = [variable for variable in VARIABLES if variable.name in used]
     goals = tuple(dict.fromkeys(name for source in sources for name in source.data.study.objectives.names))
     cards = []
-    for source, label, most_rows in zip(
-        sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
-    ):
+    shown = rows_per_study([len(source.data.trials) for source in sources])
+    for source, label, most_rows in zip(sources, labels, shown, strict=True):
         own = {name: mapped.index(_origin(one)) for name, one in source.data.actuator_maps.items()}
         ends = {kit.label: (own[kit.hip.motor.name], own[kit.knee.motor.name]) for kit in source.data.kits}
         numbers = {label: list(kits).index(pair) for label, pair in ends.items()}
@@ -165,7 +169,7 @@ def _labels(sources: Sequence[Source]) -> list[str]:
 
 
 def _title(cards: Sequence[StudyCard]) -> str:
-    """Return the study's name, where it is one study, or one by several objectives; else the first one's and a count."""
+    """Return the study's name, where it is one, or one by several objectives; else the first one's and a count."""
     by = {(card.name, tuple(card.objectives)) for card in cards}
     one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
     return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"
@@ -177,25 +181,10 @@ def _aim(source: Source) -> str:
     return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")
 
 
-SCRIPTS = (
-    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
-    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
-    "shortlist", "compare", "print", "main",
-)  # fmt: skip
-"""The page's own scripts, in the order in which they run; together they are one closed scope."""
-
-
-STYLES = ("style", "choose", "print")
-"""The page's style sheets, in the order in which they apply."""
-
-
 def write_report(dbs: Sequence[StudyPlace], out: Path, *, exports: Path | None = None) -> None:
-    """Write the report of one or several studies.
+    """Write the report of one or several studies, which are then drawn over each other and compared.
 
-    Args:
-        dbs: study databases; several are drawn over each other and compared.
-        out: the HTML file.
-        exports: folder that holds a folder ``trial_N`` per exported design, for the 3D view.
+    Designs of which ``exports`` holds a folder ``trial_N`` have a 3D view.
 
     Raises:
         DatabaseError: a database that is missing, damaged, or no study.
@@ -243,7 +232,7 @@ def payload_of(
 
 @lru_cache(maxsize=1)
 def literal_cases() -> tuple[dict[str, float | None], ...]:
-    """Medians and spread of the paper's cases with the paper's motor under the ``paper`` calibration."""
+    """Return medians and spread of the paper's cases with the paper's motor under the ``paper`` calibration."""
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.table1 import paper_spreads
@@ -275,18 +264,13 @@ def page(payload: Payload) -> str:
         context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
-        payload=embedded(payload),
+        payload=embedded_json(payload),
         script=script,
     )
 
 
-def embedded(payload: Payload) -> str:
-    """Return the payload as JSON for a script element."""
-    return embedded_json(payload)
-
-
 def embedded_json(values: Any) -> str:
-    """JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
+    """Return JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
     text = json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 

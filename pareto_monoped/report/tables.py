@@ -1,8 +1,7 @@
 """The page's text and tables, which are painted before any script runs. Every text from a study is escaped here.
 
-The plain table of the fronts' designs, which is on the page without scripts and in print.
-
-The page's words that depend on the objectives: what it is about, and the questions that the front answers.
+The plain table of the fronts' designs is on the page without scripts and in print. Some words depend on the objectives:
+what the page is about, and the questions that the front answers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,6 +16,13 @@ from pareto_monoped.report.packing import unpacked_column
 from pareto_monoped.report.quantities import label_of
 from pareto_monoped.report.schema import Comparison, Number, Payload, Quantity, StudyCard
 
+ENERGIES = ("energy_j", "electrical_energy_j")
+"""Measures that are never less than the work against gravity, m g (H - start height): the floor of the front chart."""
+ASKED = (*ENERGIES, "mass_kg")
+"""Measures that the page asks for beside the first two objectives, if a study has them."""
+MOST_ROWS = 60
+"""Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
+
 
 def safe(value: object) -> str:
     """Return text for HTML, inside an element or a quoted attribute."""
@@ -24,7 +30,7 @@ def safe(value: object) -> str:
 
 
 def head(payload: Payload) -> str:
-    """Summary and key facts of each study."""
+    """Return summary and key facts of each study."""
     if len(payload.studies) == 1:
         (card,) = payload.studies
         about = f'<p class="small">{safe(card.description)}</p>' if card.description else ""
@@ -60,10 +66,7 @@ def _facts(card: StudyCard) -> list[tuple[str, str]]:
         ("evaluations", done),
         ("of these", states),
         ("run time", _duration(card.seconds)),
-        (
-            "hypervolume",
-            f"{card.hypervolume:.3f} {card.hypervolume_unit} from {card.reference}",
-        ),
+        ("hypervolume", f"{card.hypervolume:.3f} {card.hypervolume_unit} from {card.reference}"),
     ]
 
 
@@ -83,12 +86,10 @@ def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption
     """Return an HTML table; the first cell of each row is its heading."""
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
-    body = "".join(
-        f'<tr><th scope="row">{safe(cells[0])}</th>'
-        + "".join(f'<td class="n">{safe(c)}</td>' for c in cells[1:])
-        + "</tr>"
-        for cells in rows
-    )
+    body = ""
+    for heading, *cells in rows:
+        values = "".join(f'<td class="n">{safe(cell)}</td>' for cell in cells)
+        body += f'<tr><th scope="row">{safe(heading)}</th>{values}</tr>'
     words = f"<caption>{safe(caption)}</caption>" if caption else ""
     table = f"<table>{words}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
     return f'<div class="scroll" tabindex="0">{table}</div>' if scroll else table
@@ -96,14 +97,9 @@ def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption
 
 def cases_table(payload: Payload) -> str:
     """Return the paper's designs, and their heights and energies as published and as simulated here."""
-    columns = [
-        "design",
-        *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables),
-    ]
-    designs = [
-        [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
-    ]
-    parts = [html_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
+    heads = (f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables)
+    designs = [[_case_name(c["name"]), *(f"{value:g}" for value in c["design"].values())] for c in payload.published]
+    parts = [html_table(["design", *heads], designs, caption="The paper's designs (Table I)."), "<p></p>"]
     # Studies with the same motor and calibration share a column: their cases are the same.
     cards = list({(card.case_motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
@@ -145,13 +141,13 @@ def _case_name(name: str) -> str:
 
 
 def published_link(payload: Payload) -> str:
-    """Mass of the published link over its length in mm."""
+    """Return the mass of the published link over its length in mm."""
     line = payload.constants
     return f"{line.published_link_kg:g} kg + {line.published_link_kg_per_m:g} g/mm"
 
 
 def comparison_tables(payload: Payload) -> str:
-    """Several studies side by side; an empty text for a single one."""
+    """Return several studies side by side; an empty text for a single one."""
     comparison = payload.comparison
     if comparison is None:
         return ""
@@ -159,17 +155,11 @@ def comparison_tables(payload: Payload) -> str:
     other = measure(comparison.other)
     columns += [f"hypervolume, {comparison.hypervolume_unit}"]
     columns += [f"{other.unit} at {height:g} m" for height in comparison.heights_m]
-    rows = [
-        [
-            *(
-                f"{row[name]}"
-                for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
-            ),
-            _number(row["hypervolume"], 3),
-            *(_number(value, 2) for value in row["at_height"]),
-        ]
-        for row in comparison.rows
-    ]
+    names = ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
+    rows = []
+    for row in comparison.rows:
+        at_height = (_number(value, 2) for value in row["at_height"])
+        rows.append([*(f"{row[name]}" for name in names), _number(row["hypervolume"], 3), *at_height])
     caption = (
         f"All hypervolumes are measured from {comparison.reference}, the first study's reference point. "
         f"{other.unit} at a height: {other.label}, the best on the front for at least that height."
@@ -179,9 +169,7 @@ def comparison_tables(payload: Payload) -> str:
 
 
 def _choices_table(comparison: Comparison) -> str:
-    """Return what choosing by mechanical energy costs at the battery; an empty text if the studies are not two such
-    fronts.
-    """
+    """Return what choosing by mechanical energy costs at the battery; '' if the studies are not two such fronts."""
     if not comparison.choices:
         return ""
     found = [side for row in comparison.choices for side in (row["mechanical"], row["battery"]) if side is not None]
@@ -194,10 +182,8 @@ def _choices_table(comparison: Comparison) -> str:
     body = ""
     for row in comparison.choices:
         cost = "-" if row["cost"] is None else f"{100.0 * row['cost']:+.1f} %"
-        cells = "".join(
-            f'<td class="n">{safe(c)}</td>'
-            for c in (*_choice(row["mechanical"], names), *_choice(row["battery"], names), cost)
-        )
+        values = (*_choice(row["mechanical"], names), *_choice(row["battery"], names), cost)
+        cells = "".join(f'<td class="n">{safe(value)}</td>' for value in values)
         body += f'<tr><th scope="row">{row["height_m"]:.1f} m</th>{cells}</tr>'
     caption = (
         "For each height, the designs of least energy on either front with the ratios of their gearboxes, and what "
@@ -210,12 +196,12 @@ def _choices_table(comparison: Comparison) -> str:
 def _choice(chosen: Mapping[str, Any] | None, names: Sequence[str]) -> list[str]:
     if chosen is None:
         return ["-"] * len(names)
-    numbers = [_number(chosen[name], 2) for name in ("energy_j", "electrical_energy_j", "hip_ratio", "knee_ratio")]
+    numbers = [_number(chosen[name], 2) for name in (*ENERGIES, "hip_ratio", "knee_ratio")]
     return [*numbers, *([chosen["motor"]] if "motor" in names else [])]
 
 
 def provenance_tables(payload: Payload) -> str:
-    """Versions and settings of each study, and the command that runs it again."""
+    """Return versions and settings of each study, and the command that runs it again."""
     parts = []
     for card in payload.studies:
         rows = "".join(
@@ -228,10 +214,6 @@ def provenance_tables(payload: Payload) -> str:
             f"<details><summary>Settings, versions, hash</summary>{table}</details>"
         )
     return "\n".join(parts)
-
-
-ENERGIES = ("energy_j", "electrical_energy_j")
-"""Measures that are never less than the work against gravity, m g (H - start height): the floor of the front chart."""
 
 
 def kind(payload: Payload) -> str:
@@ -248,10 +230,6 @@ def order(payload: Payload) -> str:
     if first == "height_m":
         return "Designs on the front, from the lowest jump to the highest"
     return f"Designs on the front, from the least {measure(first).label} to the most"
-
-
-ASKED = ("energy_j", "electrical_energy_j", "mass_kg")
-"""Measures that the page asks for beside the first two objectives, if a study has them."""
 
 
 def ask_fields(payload: Payload) -> str:
@@ -272,10 +250,6 @@ def _field(name: str, entry: Measure) -> str:
     )
 
 
-MOST_ROWS = 60
-"""Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
-
-
 def designs_table(payload: Payload) -> str:
     """Return one table per study with a front: its designs, or some evenly along it."""
     names = dict.fromkeys((*payload.goals, *ASKED, *(str(variable["name"]) for variable in payload.variables)))
@@ -288,8 +262,7 @@ def designs_table(payload: Payload) -> str:
         columns = {name: _values(card, name) for name in there}
         rows = evenly(card.front, MOST_ROWS)
         cells = [
-            [f"{card.trials.trial[row]}", *(_text(columns[name][row], quantities[name]) for name in there)]
-            for row in rows
+            [f"{card.trials.trial[k]}", *(_text(columns[name][k], quantities[name]) for name in there)] for k in rows
         ]
         heads = ["trial", *(_title(quantities[name]) for name in there)]
         whole = len(rows) == len(card.front)
@@ -304,7 +277,7 @@ def _title(quantity: Quantity) -> str:
 
 
 def evenly(front: Sequence[int], most: int) -> list[int]:
-    """At most ``most`` of the rows, with both ends, evenly along their order."""
+    """Return at most ``most`` of the rows, with both ends, evenly along their order."""
     if len(front) <= most:
         return list(front)
     return [front[i] for i in np.linspace(0, len(front) - 1, most).round().astype(int)]

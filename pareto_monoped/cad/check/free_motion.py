@@ -1,12 +1,8 @@
-"""The leg moves freely through the working ranges of hip and knee, and meets its end stops at their ends.
-
-Beyond either end of its range a joint turns on by the travel of its stop, where only a bumper may be met: it is soft,
-and drawn as it was before.
+"""The leg moves freely through its working ranges, its end stops meet at their ends, and its gears mesh.
 
 Joints turn about parallel axes. Two parts can therefore only meet if their extents along the axis overlap and so do
-their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range.
-
-Sun, planets and ring mesh without overlap while the sun turns by one tooth; then all repeats.
+their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range. Beyond
+either end a joint turns on by the travel of its stop, where only a bumper may be met: it is soft, and drawn unsqueezed.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -38,7 +34,10 @@ _EXACT_RAD = np.radians(0.01)
 _NEVER_DEG = 180.0
 _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
-Bodies = dict[str, list[tuple[Instance, m3.Manifold]]]
+_Solid = tuple[Instance, m3.Manifold]
+Bodies = dict[str, list[_Solid]]
+STEPS = 8
+"""Positions of the gears within one tooth of the sun, after which all repeats."""
 
 
 def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
@@ -56,12 +55,11 @@ def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Turn:
-    """A joint as it is looked at: the parts on both sides of it, in a frame with its origin on the axis, which is y."""
+    """A joint between two bodies, in a frame whose y axis is the joint's."""
 
     name: str  #: of the joint
-    stop: JointStop  #: its end stops
-    #: A part of the body that stands still and one of the body that turns, at angle zero; those that turning can bring
-    #: together
+    stop: JointStop
+    #: The parts of the still and of the turning body, at angle zero, that turning can bring together
     pairs: tuple[tuple[PlacedMesh, PlacedMesh], ...]
     soft: frozenset[str]  #: names of the bumpers
     strikers: frozenset[str]  #: names of the strikers
@@ -79,12 +77,11 @@ def in_working_range(product: Product) -> tuple[list[Overlap], float]:
 
 
 def _in_working_range(product: Product, by_body: Bodies, turns: Sequence[_Turn]) -> tuple[list[Overlap], float]:
-    overlaps = [overlap for turn in turns for overlap in _while_turning(turn)]
-    return overlaps, _shank_clearance_mm(product, by_body)
+    return [overlap for turn in turns for overlap in _while_turning(turn)], _shank_clearance_mm(product, by_body)
 
 
 def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
-    """Both joints."""
+    """Return both joints."""
     leg = product.robot.leg
     to_knee = np.linalg.inv(body_frames(product.robot, _ZERO)["shank"]).astype(np.float64)
     return (
@@ -93,27 +90,16 @@ def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
     )
 
 
-def _turn(
-    name: str,
-    stop: JointStop,
-    fixed: list[tuple[Instance, m3.Manifold]],
-    moving: list[tuple[Instance, m3.Manifold]],
-    frame: Matrix,
-) -> _Turn:
-    """Return a joint between two bodies; ``frame`` leads from the assembly's frame to one with its origin on the axis."""
+def _turn(name: str, stop: JointStop, fixed: list[_Solid], moving: list[_Solid], frame: Matrix) -> _Turn:
+    """Return a joint between two bodies; ``frame`` leads from the assembly to an origin on the axis."""
 
     def named(role: Role) -> frozenset[str]:
         return frozenset(instance.name for instance, _ in (*fixed, *moving) if instance.part.role is role)
 
     still, turning = ([PlacedMesh.of(i.name, body, frame @ i.world) for i, body in side] for side in (fixed, moving))
     reach = {mesh.name: radii_mm(mesh) for mesh in (*still, *turning)}
-    return _Turn(
-        name=name,
-        stop=stop,
-        pairs=tuple((a, b) for a in still for b in turning if _may_meet(a, b, reach)),
-        soft=named(Role.BUMPER),
-        strikers=named(Role.STRIKER),
-    )
+    pairs = tuple((a, b) for a in still for b in turning if _may_meet(a, b, reach))
+    return _Turn(name=name, stop=stop, pairs=pairs, soft=named(Role.BUMPER), strikers=named(Role.STRIKER))
 
 
 def _by_body(product: Product) -> Bodies:
@@ -127,7 +113,7 @@ def _by_body(product: Product) -> Bodies:
 
 
 def _while_turning(turn: _Turn) -> Iterator[Overlap]:
-    """Overlaps of the parts of two bodies while one turns about the joint between them."""
+    """Yield the overlaps of the parts of two bodies while one turns about the joint between them."""
     stop = turn.stop
     for angle in _angles(stop):
         squeezed = not stop.lower_rad <= angle <= stop.upper_rad
@@ -138,22 +124,20 @@ def _while_turning(turn: _Turn) -> Iterator[Overlap]:
             if other.name not in turned:
                 turned[other.name] = PlacedMesh.of(other.name, other.body, turn_y(float(angle)))
             if boxes_meet(one, turned[other.name]):
-                where = f"with the {turn.name} at {np.degrees(angle):.0f} deg"
-                yield from overlap_of(one, turned[other.name], where)
+                yield from overlap_of(one, turned[other.name], f"with the {turn.name} at {np.degrees(angle):.0f} deg")
 
 
 def _angles(stop: JointStop) -> NDArray[np.float64]:
-    """Angles from one end of a joint's range to the other, both included, and the ends of its stops' travel."""
+    """Return angles from one end of a joint's range to the other, and the ends of its stops' travel."""
     count = int(np.ceil((stop.upper_rad - stop.lower_rad) / _STEP_RAD)) + 1
     inside = np.linspace(stop.lower_rad, stop.upper_rad, count)
     return np.array([stop.lower_rad - stop.travel_rad, *inside, stop.upper_rad + stop.travel_rad])
 
 
 def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
-    """By how much each end stop meets at another angle than the joint's range ends at, in degrees."""
+    """Yield by how much each end stop meets at another angle than the joint's range ends at, in degrees."""
     for turn in turns:
-        pairs = [pair for pair in turn.pairs if turn.meet_in_stop(*pair)]
-        stop = turn.stop
+        pairs, stop = [pair for pair in turn.pairs if turn.meet_in_stop(*pair)], turn.stop
         for end_rad, sign in ((stop.lower_rad, -1.0), (stop.upper_rad, 1.0)):
             middle_rad = 0.5 * (stop.lower_rad + stop.upper_rad)
             met_rad = _first_contact_rad(pairs, middle_rad, end_rad + sign * stop.travel_rad)
@@ -161,9 +145,8 @@ def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
             if met_rad is None:
                 yield Finding(value=_NEVER_DEG, text=f"{end}: no bumper meets a striker")
                 continue
-            error_deg = abs(float(np.degrees(met_rad - end_rad)))
             text = f"{end}: bumper and striker meet at {np.degrees(met_rad):.2f} deg"
-            yield Finding(value=error_deg, text=text)
+            yield Finding(value=abs(float(np.degrees(met_rad - end_rad))), text=text)
 
 
 def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: float, to_rad: float) -> float | None:
@@ -176,13 +159,10 @@ def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: flo
                 return True
         return False
 
-    count = int(np.ceil(abs(to_rad - from_rad) / _SEARCH_RAD)) + 1
-    way = np.linspace(from_rad, to_rad, count)
+    way = np.linspace(from_rad, to_rad, int(np.ceil(abs(to_rad - from_rad) / _SEARCH_RAD)) + 1)
     first = next((k for k, angle in enumerate(way) if meets(float(angle))), None)
-    if first is None:
-        return None
-    if first == 0:
-        return from_rad
+    if not first:
+        return None if first is None else from_rad
     apart, met = float(way[first - 1]), float(way[first])
     while abs(met - apart) > _EXACT_RAD:
         half = 0.5 * (apart + met)
@@ -213,12 +193,12 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
 
 
 def _from_axis_mm(mesh: PlacedMesh) -> float:
-    """Least distance of a mesh's box from the y axis."""
+    """Return the least distance of a mesh's box from the y axis."""
     return float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
 
 
 def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:
-    """Least and greatest distance of a mesh from the y axis."""
+    """Return the least and the greatest distance of a mesh from the y axis."""
     raw = mesh.body.to_mesh64()
     points = np.asarray(raw.vert_properties)[:, [0, 2]]
     corner = points[np.asarray(raw.tri_verts)]
@@ -241,17 +221,13 @@ def _may_meet(one: PlacedMesh, other: PlacedMesh, reach: Mapping[str, tuple[floa
     return least < other_greatest - DEPTH_MM and other_least < greatest - DEPTH_MM
 
 
-STEPS = 8
-"""Positions within one tooth."""
-
-
 def check_gear_mesh(product: Product) -> Check:
     """Look at the gears of both actuators."""
     return deepest(GEAR_MESH, f"sun, planets and ring in {STEPS} steps of one tooth", in_gear_cycle(product))
 
 
 def in_gear_cycle(product: Product) -> list[Overlap]:
-    """Overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
+    """Return overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
     found: list[Overlap] = []
     for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
         if name == "knee_actuator" and actuator is product.robot.hip:

@@ -1,11 +1,4 @@
-"""Parts and bodies weigh what was simulated.
-
-Every body has its centre of mass where the simulated one has it.
-
-Every body has the inertia tensor of the simulated one.
-
-What parts and bodies weigh by their solids, for the checks of mass, centre of mass and inertia.
-"""
+"""Parts and bodies weigh what was simulated; every body has the simulated centre of mass and inertia tensor."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -22,8 +15,7 @@ from pareto_monoped.robot.units import BODIES
 def check_parts(product: Product, parts: Sequence[MassProperties]) -> Check:
     """Compare every part's solid with its record.
 
-    A bought part weighs what its catalogue says, whatever its envelope; its envelope must still have the record's
-    volume.
+    A bought part weighs what its catalogue says; its envelope must still have the record's volume.
     """
     return worst_of(PART_MASS, f"{len(product.unique)} parts", _part_findings(product, parts))
 
@@ -75,12 +67,12 @@ def check_inertia(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> 
 
 
 def weigh_parts(product: Product) -> list[MassProperties]:
-    """Mass properties of every unique part's solid in its own frame; bought parts weigh what their catalogue says."""
+    """Return the mass properties of every unique part's solid in its own frame; bought parts have catalogue masses."""
     return [_weigh(kind, facts) for kind, facts in zip(product.unique, product.solids.result(), strict=True)]
 
 
 def weigh_bodies(product: Product, parts: Sequence[MassProperties]) -> Mapping[str, MassProperties]:
-    """Mass properties of every body, in its body frame."""
+    """Return the mass properties of every body, in its body frame."""
     return {
         body: total(
             parts[kind].placed(instance.in_body[:3, :3], 1e-3 * instance.in_body[:3, 3])

@@ -1,7 +1,4 @@
-"""What a check found, compared with its limit.
-
-The limits of all checks in one table, with their reasons.
-"""
+"""What a check found, compared with its limit, and the limits of all checks with their reasons."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -120,10 +117,11 @@ def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check
 
 def count_of(limit: Limit, looked_at: str, failures: Sequence[str]) -> Check:
     """Return a check of things that are right or wrong: the measured value is the number of the wrong ones."""
+    wrong = float(len(failures))
     return Check(
         name=limit.name,
         looked_at=looked_at,
-        measured=float(len(failures)),
+        measured=wrong,
         limit=limit.value,
         unit=limit.unit,
         failures=tuple(failures),

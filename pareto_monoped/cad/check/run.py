@@ -1,9 +1,4 @@
-"""All checks that an export must pass, in the order in which it reports them.
-
-Every joint has its required safety factor under the loads of the jump; rows that only inform are left out.
-
-Every part's solid passes the CAD kernel's own check of topology and geometry.
-"""
+"""All checks that an export must pass, in the order in which it reports them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,9 +11,9 @@ from pareto_monoped.strength.factors import JointFactor
 
 
 def check_strength(factors: Sequence[JointFactor]) -> Check:
-    """Compare every factor with the one required.
+    """Compare every factor with the one required under the jump's loads (none if the design does not jump).
 
-    ``factors`` is empty if the design does not jump, so that there are no loads.
+    Rows that only inform are left out.
     """
     factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
@@ -31,12 +26,9 @@ def _sentence(one: JointFactor) -> str:
 
 
 def check_validity(product: Product) -> Check:
-    """Look at the solid of every unique part."""
-    bad = [
-        f"{kind.name}: its solid is not valid"
-        for kind, solid in zip(product.unique, product.solids.result(), strict=True)
-        if not solid.valid
-    ]
+    """Have the CAD kernel check topology and geometry of every unique part's solid."""
+    solids = zip(product.unique, product.solids.result(), strict=True)
+    bad = [f"{kind.name}: its solid is not valid" for kind, solid in solids if not solid.valid]
     return count_of(VALID, f"{len(product.unique)} parts", bad)
 
 

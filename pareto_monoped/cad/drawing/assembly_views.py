@@ -1,9 +1,8 @@
-"""The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes.
+"""The assembly from its side, or cut along the leg with straight joints, from the parts' meshes; balloons of items.
 
-Balloons of items beside a view, in a column on either side, each with a leader to its part (ISO 6433).
-
-On exploded views a leader crosses no other part: where it begins on its part, and on which side its balloon stands, are
-chosen by exchanges that lower the number of crossings until none does.
+Balloons stand in a column on either side of a view, each with a leader to its part (ISO 6433). On exploded views a
+leader crosses no other part: where it begins on its part, and on which side its balloon stands, are chosen by exchanges
+that lower the number of crossings until none does.
 """
 
 import math
@@ -38,6 +37,20 @@ FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
 _CAPTION_MM = 3.5  # height of the names of views
+BALLOON_MM = 4.0
+"""Radius of an item's balloon."""
+_PITCH_MM = 9.5
+_TEXT_MM = 2.5
+_COLUMN_MM = 14.0
+_RIM_MM = 3.0
+"""How far within a part's edge a leader may end (our own choice)."""
+_PLACES = 2
+"""Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
+_CROSSING_MM = 1000.0
+"""Length of leader that one crossing less is worth (our own choice: more than any leader has)."""
+_ROUNDS = 4
+
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +63,7 @@ class Seen:
 
 
 def side_view(product: Product) -> list[Seen]:
-    """Visible regions of the robot in its pose, seen from the right, the nearest first."""
+    """Return the visible regions of the robot in its pose, seen from the right, the nearest first."""
     shown = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
         if instance.part.visibility is Visibility.INSIDE:
@@ -69,7 +82,7 @@ def side_view(product: Product) -> list[Seen]:
 
 
 def leg_section(product: Product) -> list[Seen]:
-    """Regions of the robot with straight joints on the plane through all joint axes, seen from the front."""
+    """Return regions of the robot with straight joints on the plane through all joint axes, seen from the front."""
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     found = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
@@ -115,7 +128,7 @@ def areas(seen: Sequence[Seen]) -> dict[int, float]:
 
 
 def to_view(axes: Floats) -> Floats:
-    """From the assembly's frame to a view's."""
+    """Return the matrix from the assembly's frame to a view's."""
     matrix = np.eye(4)
     matrix[:3, :3] = axes
     return matrix
@@ -140,22 +153,6 @@ def captioned(paper: Paper, name: str, scale: float) -> Paper:
     return centred
 
 
-BALLOON_MM = 4.0
-"""Radius of an item's balloon."""
-_PITCH_MM = 9.5
-_TEXT_MM = 2.5
-_COLUMN_MM = 14.0
-_RIM_MM = 3.0
-"""How far within a part's edge a leader may end (our own choice)."""
-_PLACES = 2
-"""Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
-_CROSSING_MM = 1000.0
-"""Length of leader that one crossing less is worth (our own choice: more than any leader has)."""
-_ROUNDS = 4
-
-Point = tuple[float, float]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _End:
     """Where a leader ends on its part, and whether its balloon stands in the right column."""
@@ -165,7 +162,7 @@ class _End:
 
 
 def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
-    """Balloons of a dense view: leaders into the largest visible region of their parts, none crosses another."""
+    """Draw balloons of a dense view: leaders into the largest visible region of their parts, none crosses another."""
     points = {}
     for item in items:
         region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
@@ -178,7 +175,7 @@ def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[i
 
 
 def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
-    """Balloons of an exploded view, one for each region, with leaders that cross no other part if there is a way."""
+    """Draw balloons of an exploded view, one per region, with leaders that cross no other part if there is a way."""
     regions = {one.item: shapely.affinity.scale(one.region, scale, scale, origin=(0.0, 0.0)) for one in seen}
     choices = {item: list(_ends(region)) for item, region in regions.items()}
     columns = _columns(paper)
@@ -188,7 +185,8 @@ def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
     cost = _cost(ends, columns, tree, order)
     for _ in range(_ROUNDS):
         before = cost
-        for item in sorted(_crossing(ends, columns, tree, order), key=lambda item: abs(ends[item].tip[0] - middle)):
+        crossing = set(_hits(ends, columns, tree, order)[0])
+        for item in sorted(crossing, key=lambda item: abs(ends[item].tip[0] - middle)):
             for end in choices[item]:
                 changed = ends | {item: end}
                 lower = _cost(changed, columns, tree, order)
@@ -210,7 +208,7 @@ def _from_column(end: _End, columns: tuple[float, float]) -> float:
 
 
 def _ends(region: BaseGeometry) -> Iterator[_End]:
-    """Places within a part at its left and its right end, in the middle, above and below."""
+    """Yield places within a part at its left and its right end, in the middle, above and below."""
     left, low, right, high = region.bounds
     rim = min(_RIM_MM, 0.5 * (right - left))
     for start in np.linspace(left, right - rim, _PLACES):
@@ -227,7 +225,7 @@ def _ends(region: BaseGeometry) -> Iterator[_End]:
 
 
 def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int, Point]:
-    """Return the middle of every balloon: near the height of its leader's end, in an order in which no leaders cross."""
+    """Return the middle of every balloon, near the height of its leader's end; no leaders cross."""
     found: dict[int, Point] = {}
     for to_right, x in zip((False, True), columns, strict=True):
         tips = {item: end.tip for item, end in ends.items() if end.to_right is to_right}
@@ -241,17 +239,11 @@ def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int,
 def _hits(
     ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
 ) -> tuple[list[int], float]:
-    """Return the items whose leaders cross other parts, once for each crossing, and the length of all leaders."""
+    """Return the items whose leaders cross other parts, once per crossing, and the length of all leaders."""
     placed = _placed(ends, columns)
     lines = shapely.linestrings([[placed[item], ends[item].tip] for item in order])
     own, other = tree.query(lines, predicate="intersects")
     return [order[k] for k in own[own != other].tolist()], float(shapely.length(lines).sum())
-
-
-def _crossing(
-    ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
-) -> set[int]:
-    return set(_hits(ends, columns, tree, order)[0])
 
 
 def _cost(ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]) -> float:
@@ -265,7 +257,7 @@ def _draw(paper: Paper, placed: Mapping[int, Point], ends: Mapping[int, _End]) -
 
 
 def _uncrossed(order: Sequence[int], heights: Sequence[float], x: float, points: Mapping[int, Point]) -> list[int]:
-    """Items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
+    """Return items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
     items = list(order)
 
     def long(k: int, item: int) -> float:
@@ -284,7 +276,7 @@ def _uncrossed(order: Sequence[int], heights: Sequence[float], x: float, points:
 
 
 def _balloon(paper: Paper, item: int, at: Point, tip: Point) -> None:
-    """An item's number in a circle, with a leader that ends in a dot within the part."""
+    """Draw an item's number in a circle, with a leader that ends in a dot within the part."""
     way = np.array(tip) - np.array(at)
     start = np.array(at) + way / np.hypot(*way) * BALLOON_MM
     paper.circle(*at, BALLOON_MM, width_mm=0.35)

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from pareto_monoped.cad.drawing.paper import TIMES
-from pareto_monoped.cad.shape.outlines import contours, polygon
+from pareto_monoped.cad.shape.outlines import centres_mm, contours, polygon
 from pareto_monoped.geometry.features import Cone, Hole, Mouth
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
@@ -29,8 +29,7 @@ class Bore:
     """Holes of one circle or pattern, from one height to another."""
 
     shape: Circle | Pattern  #: where they are
-    #: low, high: heights of their ends
-    low: float
+    low: float  #: height of their lower end
     high: float
     through: bool  #: whether they go through all of the part's material there
     feature: Hole | None  #: what is cut into them, if the part says so
@@ -49,9 +48,7 @@ class Bore:
     @property
     def centres(self) -> list[tuple[float, float]]:
         """Where their axes are."""
-        if isinstance(self.shape, Pattern):
-            return self.shape.centres_mm()
-        return [(float(self.shape.x_mm), float(self.shape.y_mm))]
+        return centres_mm(self.shape)
 
     @property
     def place_mm(self) -> float | None:
@@ -129,18 +126,12 @@ def _bore(part: Part, shape: Circle | Pattern, low: float, high: float) -> Bore:
     # A tapping drill may have the diameter of a fitted hole.
     threaded = feature is not None and feature.thread is not None
     fits = () if threaded else (fit for fit in part.fits if fit.holds(2.0 * float(shape.radius_mm)))
-    return Bore(
-        shape=shape,
-        low=low,
-        high=high,
-        through=_through(part, shape, low, high),
-        feature=feature,
-        fit=next(iter(fits), None),
-    )
+    through, fit = _through(part, shape, low, high), next(iter(fits), None)
+    return Bore(shape=shape, low=low, high=high, through=through, feature=feature, fit=fit)
 
 
 def chamfer_text(along: float, across_mm: float) -> str:
-    """Such as ``0.5 x 45°``; the angle is measured from the axis."""
+    """Return a text such as ``0.5 x 45°``; the angle is measured from the axis."""
     return f"{number(along)} {TIMES} {number(round(float(np.degrees(np.arctan2(across_mm, along))), 1))}°"
 
 
@@ -166,7 +157,7 @@ def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Ho
 
 def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bool:
     """Return whether no material stands before either end of a hole."""
-    (x, y), *_ = shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
+    x, y = centres_mm(shape)[0]
     reach = 0.98 * float(shape.radius_mm)  # a narrower hole beyond leaves a step
     points = [(x, y), (x + reach, y), (x - reach, y), (x, y + reach), (x, y - reach)]
     return not any(

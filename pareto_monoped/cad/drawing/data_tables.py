@@ -1,4 +1,4 @@
-"""The data table of a gear: what its teeth are cut and measured by. Millimetres, radians.
+"""Tables on a drawing: what a gear's teeth are cut and measured by, and the toleranced faces. Millimetres, radians.
 
 Base tangent length and dimension between pins after ISO 21771-2; x = 0 unless the gear is shifted:
 
@@ -6,8 +6,6 @@ Base tangent length and dimension between pins after ISO 21771-2; x = 0 unless t
     inv a_M = inv a - d / (z m cos a) + (pi / 2 + 2 x tan a + A / m) / z,   M = z m cos a / cos a_M - d  (even z, ring)
 
 with the allowance A of the tooth's thickness (external) or of the space's width (internal) along the pitch circle.
-
-The table of fits on a drawing: limits, finish and place of each toleranced face.
 """
 
 from collections.abc import Sequence
@@ -33,6 +31,15 @@ from pareto_monoped.geometry.making import (
 
 _PIN_MODULES = 1.68
 """Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
+DATUM = "A"
+_SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
+"""Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
+_COAXIAL = "Ø0.02"
+"""Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
+_SQUARE = "0.02"
+"""Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
+13 to 19 micrometres at 50 to 80 mm."""
+_SHOULDERS = "shoulders"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,13 +48,12 @@ class Span:
 
     count: int  #: teeth that it spans; 0 for a measure between pins
     pin_mm: float  #: diameter of the pins; 0 for a base tangent
-    #: least_mm, greatest_mm: limits
     least_mm: float
     greatest_mm: float
 
 
 def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> int:
-    """Teeth over which the base tangent touches x modules off the pitch circle.
+    """Return over how many teeth the base tangent touches x modules off the pitch circle.
 
     z (tan a_v - inv a - 2 x tan a / z) / pi + 1/2, rounded, with cos(a_v) = z cos(a) / (z + 2 x) (ISO 21771).
     """
@@ -58,14 +64,14 @@ def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> 
 
 
 def base_tangent_mm(gear: ExternalGear, count: int, *, allowance_mm: float) -> float:
-    """Return length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
+    """Return the length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     along = m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + 2.0 * float(gear.shift) * m * np.sin(a)
     return float(along + allowance_mm * np.cos(a))
 
 
 def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -> float:
-    """Return distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
+    """Return the distance of two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     width = 0.5 * np.pi + 2.0 * float(gear.shift) * np.tan(a) + allowance_mm / m
     angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + width / z)
@@ -76,8 +82,7 @@ def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -
 def measure(
     gear: ExternalGear | InternalGear, *, series: int = GENERAL_SERIES, hole: bool = False, play_mm: float = 0.0
 ) -> Span:
-    """Return what to measure, with its limits: the drawn teeth have the most material, so backlash is at least as
-    drawn.
+    """Return what to measure; the drawn teeth have the most material, so backlash is at least as drawn.
 
     ``series`` is that of the tooth thickness tolerance (DIN 3967). With ``hole`` the outline of an external gear is
     that of a hole which a plug of these measures fits; its spaces are at least ``play_mm`` wider than drawn.
@@ -120,11 +125,8 @@ def gear_rows(
     span = measure(gear, series=series, hole=spline, play_mm=play)
     kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
     limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
-    measured = (
-        (f"Between pins of Ø{number(span.pin_mm)}", limits)
-        if span.pin_mm
-        else (f"Base tangent length W over {span.count} teeth{' of a plug' if spline else ''}", limits)
-    )
+    over = f"Base tangent length W over {span.count} teeth{' of a plug' if spline else ''}"
+    measured = (f"Between pins of Ø{number(span.pin_mm)}" if span.pin_mm else over, limits)
     return [
         (f"Teeth, {kind}", f"{int(gear.teeth)}"),
         ("Module", number(float(gear.module_mm))),
@@ -145,7 +147,7 @@ def gear_rows(
 
 
 def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking, series: int) -> float:
-    """By how much a pair's backlash grows where both thicknesses are at the end of their tolerance; the worst mate."""
+    """Return by how much a pair's backlash grows at most, where all thicknesses are at the end of their tolerance."""
     mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
     return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
 
@@ -178,17 +180,6 @@ def _inverse_involute(value: float) -> float:
     return angle
 
 
-DATUM = "A"
-_SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
-"""Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
-_COAXIAL = "Ø0.02"
-"""Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
-_SQUARE = "0.02"
-"""Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
-13 to 19 micrometres at 50 to 80 mm."""
-_SHOULDERS = "shoulders"
-
-
 def datum_fit(fits: Sequence[Fit]) -> Fit | None:
     """Return the fit whose axis positions refer to: the largest seat, or the largest of all."""
     seats = [fit for fit in fits if fit.seat] or list(fits)
@@ -196,11 +187,10 @@ def datum_fit(fits: Sequence[Fit]) -> Fit | None:
 
 
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
-    """Return a row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without
-    fits.
+    """Return a row per fit, and one for the faces square to the datum's axis if it carries a bearing.
 
-    ``alone`` tells for each fit whether its face stands around the part's axis; patterns have their place in their
-    callouts.
+    ``alone`` tells of each fit whether its face stands around the part's axis; patterns have their place in their
+    callouts. Without fits there is no table.
     """
     if not fits:
         return None
@@ -241,6 +231,6 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
 
 
 def _limits(fit: Fit) -> str:
-    """Upper and lower deviation in millimetres."""
+    """Return upper and lower deviation in millimetres."""
     found = limits(float(fit.diameter_mm), fit.zone)
     return " / ".join(f"{deviation:+.3f}" if deviation else "0" for deviation in (found.upper_mm, found.lower_mm))

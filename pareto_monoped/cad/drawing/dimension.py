@@ -1,10 +1,7 @@
-"""Dimensions after ISO 129-1, placed by rule so that none stands on another: ladders, stacks, leaders, frames.
+"""Dimensions after ISO 129-1 and names of features, placed by rule so that none stands on another.
 
-All lengths are millimetres of paper.
-
-Names beside what they name, placed by a rule: where their boxes meet no line, no arrow and no other text.
-
-Places are tried outwards; a name that stands far off has a leader, which meets no text and no other leader.
+All lengths are millimetres of paper. Names stand where their boxes meet no line, no arrow and no other text. Places are
+tried outwards; a name that stands far off has a leader, which meets no text and no other leader.
 """
 
 from collections.abc import Sequence
@@ -17,6 +14,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.paper import ARROW_MM, LETTER_MM, Align, Label, Paper, width_mm
 
+Floats = NDArray[np.float64]
 Side = Literal["below", "above", "left", "right"]
 
 GAP_MM = 1.0
@@ -32,6 +30,18 @@ _BESIDE_MM = 1.2
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
+FRAME_MM = 5.0
+"""Height of a tolerance frame: twice the lettering's (ISO 1101)."""
+_NEAR_MM = 4.0
+"""Names that stand off farther have a leader."""
+_REACHES_MM = np.array([1.0, 2.0, 3.5, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 60, 80, 110, 150])
+_ANGLES = np.radians([45.0, 135, 225, 315, 0, 90, 180, 270, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5])
+_WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
+_ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
+"""Directions in which a name may stand, and how it is then aligned."""
+_CLEAR_MM, _APART_MM = 0.2, 0.4
+"""Least distance of a name from lines and from other texts."""
+_LEADER_GAP_MM = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,10 +55,9 @@ class Mark:
 
 
 def spread(at: Sequence[float], pitch: float) -> list[float]:
-    """Places near the wanted ones, which ascend, at least ``pitch`` apart; the sum of squared moves is least.
+    """Return places near the wanted ones, which ascend, at least ``pitch`` apart; the sum of squared moves is least.
 
-    With the multiples of the pitch taken off, the places need only ascend, which pooling neighbours achieves (isotonic
-    regression).
+    With the multiples of the pitch taken off, the places need only ascend: pooling neighbours (isotonic regression).
     """
     pools: list[tuple[float, int]] = []
     for k, wanted in enumerate(at):
@@ -61,7 +70,7 @@ def spread(at: Sequence[float], pitch: float) -> list[float]:
 
 
 def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, origin: float | None = None) -> None:
-    """Running dimensions: each feature has an extension line to a row of texts that keep their distance.
+    """Draw running dimensions: each feature has an extension line to a row of texts that keep their distance.
 
     ``level`` is where, across the ladder, the extension lines may begin to bend. ``origin`` is where, along it, the
     lengths begin; a dimension line runs from there through all marks.
@@ -83,22 +92,15 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
         elif origin is not None:
             tick = 0.5 * _TICK_MM
             paper.line([point(mark.at - tick, level - tick), point(mark.at + tick, level + tick)], width_mm=0.35)
-        text_at = tail + outwards * 0.8
+        text_at, far = tail + outwards * 0.8, "left" if outwards > 0.0 else "right"
         if flat:
-            paper.text(
-                mark.text,
-                place + 0.5 * LETTER_MM,
-                text_at,
-                align="left" if side == "above" else "right",
-                upward=True,
-            )
+            paper.text(mark.text, place + 0.5 * LETTER_MM, text_at, align=far, upward=True)
         else:
-            paper.text(mark.text, text_at, place - 0.5 * LETTER_MM, align="left" if side == "right" else "right")
+            paper.text(mark.text, text_at, place - 0.5 * LETTER_MM, align=far)
     for mark in marks:
         if not mark.text:
-            paper.line(
-                [point(mark.at, mark.start + outwards * GAP_MM), point(mark.at, level + outwards * OVERSHOOT_MM)]
-            )
+            begin, end = mark.start + outwards * GAP_MM, level + outwards * OVERSHOOT_MM
+            paper.line([point(mark.at, begin), point(mark.at, end)])
     measured = [mark.at for mark in ordered if not mark.leader]
     if origin is not None and measured:
         paper.line([point(min(origin, *measured), level), point(max(origin, *measured), level)])
@@ -111,10 +113,7 @@ def fits_between(text: str, span: float) -> bool:
 
 
 def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> None:
-    """An upright dimension of a diameter around the axis y = 0.
-
-    ``edge`` is x where the diameter's edge is.
-    """
+    """Draw an upright dimension of a diameter around the axis y = 0; its edge is at x = ``edge``."""
     outwards = 1.0 if x > edge else -1.0
     for y in (half, -half):
         paper.line([(edge + outwards * GAP_MM, y), (x + outwards * OVERSHOOT_MM, y)])
@@ -130,7 +129,7 @@ def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> No
 def callout(
     paper: Paper, lines: Sequence[str], x: float, y: float, tip: tuple[float, float], *, place: str | None = None
 ) -> None:
-    """Text beside a shelf, with a leader to a feature.
+    """Write text beside a shelf, with a leader to a feature.
 
     The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
     of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
@@ -146,16 +145,12 @@ def callout(
 
 
 def callout_height(lines: Sequence[str], place: str | None) -> float:
-    """From the top of a callout to the top of the next one."""
+    """Return the distance from the top of a callout to the top of the next one."""
     return 4.0 * len(lines) + (6.0 if place else 0.0) + 3.0
 
 
-FRAME_MM = 5.0
-"""Height of a tolerance frame: twice the lettering's (ISO 1101)."""
-
-
 def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
-    """Return a tolerance frame (ISO 1101) with its lower left corner at (x, y); returns its width.
+    """Draw a tolerance frame (ISO 1101) with its lower left corner at (x, y), and return its width.
 
     ``cells`` are the symbol's name (``position``, ``coaxial``, ``square``, ``round``), the value and the datum.
     """
@@ -172,7 +167,7 @@ def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
 
 
 def _symbol(paper: Paper, name: str, x: float, y: float) -> None:
-    """A symbol of ISO 1101 around (x, y)."""
+    """Draw a symbol of ISO 1101 around (x, y)."""
     if name == "position":
         paper.circle(x, y, 1.1)
         paper.line([(x - 1.8, y), (x + 1.8, y)])
@@ -188,38 +183,20 @@ def _symbol(paper: Paper, name: str, x: float, y: float) -> None:
 
 
 def datum(paper: Paper, letter: str, x: float, y: float) -> None:
-    """A datum's letter in its box (ISO 5459), with the lower left corner at (x, y)."""
+    """Draw a datum's letter in its box (ISO 5459), with the lower left corner at (x, y)."""
     paper.line(np.array([(x, y), (x + FRAME_MM, y), (x + FRAME_MM, y + FRAME_MM), (x, y + FRAME_MM)]), closed=True)
     paper.text(letter, x + 0.5 * FRAME_MM, y + 0.5 * (FRAME_MM - LETTER_MM), align="centre")
-
-
-Floats = NDArray[np.float64]
-
-_NEAR_MM = 4.0
-"""Names that stand off farther have a leader."""
-_REACHES_MM = np.array(
-    [1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0, 15.0, 19.0, 24.0, 30.0, 38.0, 48.0, 60.0, 80.0, 110.0, 150.0]
-)
-_ANGLES = np.radians(
-    [45.0, 135.0, 225.0, 315.0, 0.0, 90.0, 180.0, 270.0, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5]
-)
-_WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
-_ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
-"""Directions in which a name may stand, and how it is then aligned."""
-_CLEAR_MM, _APART_MM = 0.2, 0.4
-"""Least distance of a name from lines and from other texts."""
-_LEADER_GAP_MM = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tag:
     """A name to place."""
 
-    text: str  #: what it says
-    #: x, y: of what it names, on the part
+    text: str
+    #: x, y, radius: where what it names stands on the part; radius 0 for a point
     x: float
     y: float
-    radius: float  #: of that; 0 for a point
+    radius: float
     height_mm: float  #: of the text on paper
 
 
@@ -258,7 +235,7 @@ def _pieces(paper: Paper) -> NDArray[np.object_]:
 
 
 def _free(tag: Tag, scale: float, lines: shapely.STRtree, texts: Floats, leaders: Sequence[Floats]) -> _Place:
-    """Return the nearest free place of a name, at best one whose leader crosses nothing that can be read or followed."""
+    """Return the nearest free place of a name, at best one whose leader crosses nothing readable."""
     at, radius = scale * np.array([tag.x, tag.y]), scale * tag.radius
     around = np.array([_label(tag, 0.0, 0.0, align).box() for align in _ALIGNS])
     lowered = tag.height_mm * (0.5 - 0.5 * _WAYS[:, 1])
@@ -291,7 +268,7 @@ def _label(tag: Tag, x: float, y: float, align: Align) -> Label:
 
 
 def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Return which boxes, shape (n, 4), meet a line, another text or a leader; all of them at once, as there are many."""
+    """Return which boxes, shape (n, 4), meet a line, another text or a leader; all at once, as there are many."""
     high, low = boxes[:, None, 2:] + _APART_MM, boxes[:, None, :2] - _APART_MM
     covered = np.any(np.all((texts[:, :2] < high) & (texts[:, 2:] > low), axis=2), axis=1)
     areas = _grown(boxes, _CLEAR_MM)
@@ -314,5 +291,5 @@ def _crossing(leaders: Floats, texts: Floats, others: NDArray[np.object_]) -> ND
 
 
 def _grown(boxes: Floats, by_mm: float) -> Any:
-    """Boxes of shape (..., 4) as areas, wider on all sides."""
+    """Return boxes of shape (..., 4) as areas, wider on all sides."""
     return shapely.box(*np.moveaxis(boxes + by_mm * np.array([-1.0, -1.0, 1.0, 1.0]), -1, 0))

@@ -1,17 +1,17 @@
-"""All drawings of a robot as PDF files: one of each part that is made, one of the assembly.
+"""All drawings of a robot as PDF files (ISO 32000-1): one of each part that is made, one of the assembly.
 
-Sheets as PDF (ISO 32000-1): vector lines and searchable text, the same bytes for the same drawing.
-
-The font is one of the fourteen that every reader has, so nothing is embedded; there is no time stamp.
+Sheets are vector lines and searchable text, the same bytes for the same drawing. The font is one of the fourteen that
+every reader has, so nothing is embedded; there is no time stamp.
 """
 
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any
 
 from pareto_monoped.cad.drawing.assembly_sheets import assembly_sheet, cable_sheet, exploded_sheets
+from pareto_monoped.cad.drawing.bores import number as _number
 from pareto_monoped.cad.drawing.paper import CAPITAL, Fill, Label, Paper, Stroke
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.sheet import Title, titled
@@ -20,6 +20,14 @@ from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part
 
 _POINTS_PER_MM = 72.0 / 25.4
+_TOLERANCES: Mapping[str, tuple[str, str]] = {
+    "machined": ("ISO 2768-mK", "3.2"),
+    "laser cut": ("ISO 2768-mK", "12.5"),
+    "3D printed": ("ISO 2768-cL", ""),
+    "moulded": ("ISO 3302-1 M3", ""),
+}
+"""General tolerances and roughness Ra in micrometres by process: what milling and turning, cutting by laser, printing
+with layers of 0.2 mm and casting rubber reach without effort (our own choice of classes)."""
 
 
 def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
@@ -46,7 +54,7 @@ def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
 
 
 def _pdf_file(bodies: Sequence[bytes]) -> bytes:
-    """Objects with their numbers, the table of where they begin, the trailer."""
+    """Join objects with their numbers, the table of where they begin, the trailer."""
     out = bytearray(b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n")
     starts = []
     for number, body in enumerate(bodies, 1):
@@ -72,7 +80,7 @@ def _content(paper: Paper) -> Iterator[str]:
     for fill in paper.fills:
         yield _path(fill) + " f"
     for label in paper.labels:
-        yield _pdf_words(label)
+        yield _words(label)
 
 
 def _path(shape: Stroke | Fill) -> str:
@@ -80,7 +88,7 @@ def _path(shape: Stroke | Fill) -> str:
     return f"{points[0]} m " + " ".join(f"{point} l" for point in points[1:])
 
 
-def _pdf_words(label: Label) -> str:
+def _words(label: Label) -> str:
     x, y = label.start()
     turn = "0 1 -1 0" if label.upward else "1 0 0 1"
     size = _number(label.height_mm / CAPITAL)
@@ -89,21 +97,6 @@ def _pdf_words(label: Label) -> str:
 
 def _escaped(text: str) -> str:
     return text.replace("\\", r"\\").replace("(", r"\(").replace(")", r"\)")
-
-
-def _number(value: float) -> str:
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-_TOLERANCES: Mapping[str, tuple[str, str]] = {
-    "machined": ("ISO 2768-mK", "3.2"),
-    "laser cut": ("ISO 2768-mK", "12.5"),
-    "3D printed": ("ISO 2768-cL", ""),
-    "moulded": ("ISO 3302-1 M3", ""),
-}
-"""General tolerances and roughness Ra in micrometres by process: what milling and turning, cutting by laser, printing
-with layers of 0.2 mm and casting rubber reach without effort (our own choice of classes)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +110,7 @@ class Origin:
 
 
 def origin_of(record: Mapping[str, Any]) -> Origin:
-    """Return the same from the record of an export, which may still lack what is computed last."""
+    """Return what title blocks take from the record of an export, which may still lack what is computed last."""
     source = record["source"]
     name = (
         f"case {source['case']}"
@@ -140,22 +133,19 @@ def part_drawings(parts: Sequence[ListedPart], origin: Origin, first: int = 1) -
 
 def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
     """Return the drawing of one part."""
-    part = unique.part
+    part, grade = unique.part, unique.part.grade
     tolerances, finish = _TOLERANCES[part.process]
     title = Title(
-        name=_words(unique.name),
+        name=unique.name.replace("_", " "),
         number=f"{origin.digest}-{number:02d}",
-        material=part.grade.name if part.grade is not None else part.material.name,
-        hardness=part.grade.hardness if part.grade is not None else "",
+        material=grade.name if grade is not None else part.material.name,
+        hardness=grade.hardness if grade is not None else "",
         mass=_mass(float(part.unit_mass_kg())),
         count=unique.count,
         process=next((one.making for one in part.teeth if one.quality), part.process),
         tolerances=tolerances,
         finish=finish,
-        design=origin.design,
-        digest=origin.digest,
-        date=origin.date,
-        maker=origin.maker,
+        **asdict(origin),
     )
     return _file([_drawn(part, part.fits, part.teeth, part.accuracy_class, part.note)], title)
 
@@ -172,10 +162,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
         process="assembled",
         tolerances="",
         finish="",
-        design=origin.design,
-        digest=origin.digest,
-        date=origin.date,
-        maker=origin.maker,
+        **asdict(origin),
     )
     return _file([assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)], title)
 
@@ -197,10 +184,6 @@ def _file(sheets: Sequence[Sheet], title: Title) -> bytes:
         titled(paper, size, scale, title, f"{number}/{len(sheets)}")
         pages.append((paper, size.width_mm, size.height_mm))
     return pdf(pages, f"{title.name}, {title.number}")
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _mass(mass_kg: float) -> str:

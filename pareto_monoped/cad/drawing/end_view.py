@@ -26,10 +26,7 @@ def sees_more_from_above(part: RoundPart) -> bool:
 
 
 def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
-    """Return the view with its callouts; the axis stands at the origin.
-
-    ``datum`` is the letter of the axis that positions refer to, if there is one.
-    """
+    """Return the view with its callouts, the axis at the origin; ``datum`` is the axis that positions refer to."""
     paper = Paper()
     outer = part.body.bounds[3] * scale
     for radius in visible_circles(part.body, from_above=part.from_above):
@@ -44,7 +41,7 @@ def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
 
 
 def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_above: bool) -> None:
-    """Holes as circles with their cones and threads, centre lines and pitch circle."""
+    """Draw holes as circles with their cones and threads, centre lines and pitch circle."""
     mirrored = 1.0 if from_above else -1.0
     centres = [(mirrored * x * scale, y * scale) for x, y in bore.centres]
     mouth = bore.mouths[1 if from_above else 0]
@@ -65,17 +62,12 @@ def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_abo
 
 
 def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
-    """Return a callout: number and size, circle, countersink.
-
-    With ``far_side`` the holes open on the other side only.
-    """
+    """Return a callout: number and size, circle, countersink; ``far_side`` holes open on the other side only."""
     times = f"{bore.count} {TIMES} " if bore.count > 1 else ""
     lines = [f"{times}{bore.size()}{', far side' if far_side else ''}"]
     if isinstance(bore.shape, Pattern):
-        turn = 360.0 / bore.count
-        phase = (
-            float(np.degrees(bore.shape.phase_rad)) if from_above else 180.0 - float(np.degrees(bore.shape.phase_rad))
-        )
+        turn, degrees = 360.0 / bore.count, float(np.degrees(bore.shape.phase_rad))
+        phase = degrees if from_above else 180.0 - degrees
         first = round(phase % turn, 3) % round(turn, 3)
         beginning = f", first at {number(first)}°" if first > 0.0 else ""
         lines.append(f"on Ø{number(2.0 * float(bore.shape.pitch_radius_mm))}, evenly spaced{beginning}")
@@ -91,19 +83,13 @@ def _open(part: RoundPart, bore: Bore, *, from_above: bool) -> bool:
 
 def _visible(part: RoundPart, bore: Bore) -> bool:
     """Return whether a hole is seen: at its mouth, or through a wider one before it."""
-    return any(
-        _open(part, other, from_above=part.from_above) and other.radius >= bore.radius
-        for other in part.bores
-        if other.centres == bore.centres
-    )
+    wide = [other for other in part.bores if other.centres == bore.centres and other.radius >= bore.radius]
+    return any(_open(part, other, from_above=part.from_above) for other in wide)
 
 
 def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDArray[np.float64]]:
-    """Return the hole of each pattern that its leader ends at: of the rightmost two, in turn the upper and the lower
-    one.
-    """
-    found = []
-    side = 1.0
+    """Return the hole that each pattern's leader ends at: of the rightmost two, in turn the upper and the lower."""
+    found, side = [], 1.0
     for bore in bores:
         mirrored = 1.0 if from_above else -1.0
         centres = np.array([(mirrored * cx * scale, cy * scale) for cx, cy in bore.centres])
@@ -114,7 +100,7 @@ def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDAr
 
 
 def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, outer: float) -> None:
-    """Callouts in a column at the right, each with a leader to one of its holes."""
+    """Draw callouts in a column at the right, each with a leader to one of its holes."""
     entries = [
         (
             bore,

@@ -78,18 +78,16 @@ def is_round(part: Part) -> bool:
     if part.balls or not part.prisms:
         return False
     shapes = [shape for prism in part.prisms for shape in (prism.outline, *prism.holes)]
-    outlines = [prism.outline for prism in part.prisms]
-    return all(_on_axis(outline) for outline in outlines) and not any(
-        not isinstance(shape, Circle | Pattern | ExternalGear | InternalGear) for shape in shapes
-    )
+    known = all(isinstance(shape, Circle | Pattern | ExternalGear | InternalGear) for shape in shapes)
+    return all(_on_axis(prism.outline) for prism in part.prisms) and known
 
 
 def half_section(part: Part) -> BaseGeometry:
-    """Return the material of a round part in the half plane, without holes beside the axis; teeth reach to their tips."""
-    rings = [ring for prism in part.prisms for ring in _rings(prism)]
-    body = shapely.union_all(rings)
-    cut = [_triangle(bevel) for bevel in part.bevels if _on_axis(bevel.at) and _takes(bevel)]
-    added = [_triangle(bevel) for bevel in part.bevels if _on_axis(bevel.at) and not _takes(bevel)]
+    """Return the material of a round part in the half plane, without holes off the axis; teeth reach to their tips."""
+    body = shapely.union_all([ring for prism in part.prisms for ring in _rings(prism)])
+    cones = [bevel for bevel in part.bevels if _on_axis(bevel.at)]
+    cut = [_triangle(bevel) for bevel in cones if _takes(bevel)]
+    added = [_triangle(bevel) for bevel in cones if not _takes(bevel)]
     if cut:
         body = body.difference(shapely.union_all(cut))
     if added:
@@ -105,12 +103,7 @@ def teeth_of(part: Part) -> tuple[Teeth, ...]:
             if isinstance(shape, ExternalGear | InternalGear):
                 found.setdefault((shape, hole), []).append(prism)
     return tuple(
-        Teeth(
-            gear=gear,
-            low=min(float(p.z0_mm) for p in prisms),
-            high=max(float(p.z1_mm) for p in prisms),
-            hole=hole,
-        )
+        Teeth(gear=gear, low=min(float(p.z0_mm) for p in prisms), high=max(float(p.z1_mm) for p in prisms), hole=hole)
         for (gear, hole), prisms in found.items()
     )
 
@@ -118,12 +111,7 @@ def teeth_of(part: Part) -> tuple[Teeth, ...]:
 def cylinders(body: BaseGeometry) -> tuple[Cylinder, ...]:
     """Return the cylindrical faces, from below; faces of one radius that a gap divides stay apart."""
     found = [
-        Cylinder(
-            radius=r0,
-            low=min(z0, z1),
-            high=max(z0, z1),
-            shaft=_inside(body, 0.5 * (z0 + z1), r0 - _ASIDE_MM),
-        )
+        Cylinder(radius=r0, low=min(z0, z1), high=max(z0, z1), shaft=_inside(body, 0.5 * (z0 + z1), r0 - _ASIDE_MM))
         for z0, r0, z1, r1 in edges(body)
         if abs(r0 - r1) < _SAME_MM and r0 > _SAME_MM
     ]
@@ -153,8 +141,7 @@ def edges(body: BaseGeometry) -> Iterator[tuple[float, float, float, float]]:
     """Yield the straight edges of a profile: z and r of both ends."""
     for polygon in polygons(body):
         for ring in (polygon.exterior, *polygon.interiors):
-            points = list(ring.coords)
-            for (z0, r0), (z1, r1) in pairwise(points):
+            for (z0, r0), (z1, r1) in pairwise(ring.coords):
                 yield z0, r0, z1, r1
 
 
@@ -166,9 +153,7 @@ def polygons(body: BaseGeometry) -> tuple[Polygon, ...]:
 
 
 def free(body: BaseGeometry, z0: float, z1: float, r: float) -> bool:
-    """Return whether a line along the axis from ``z0`` to ``z1`` at radius ``r`` meets no material but along its
-    surface.
-    """
+    """Return whether a line along the axis from ``z0`` to ``z1`` at radius ``r`` meets material at most at its skin."""
     low, high = min(z0, z1) + _ASIDE_MM, max(z0, z1) - _ASIDE_MM
     if high <= low:
         return True
@@ -181,16 +166,13 @@ def seen(body: BaseGeometry, r: float, *, from_above: bool) -> float | None:
     """Return height of the first material that a viewer along the axis meets at a radius; None for an opening."""
     low, _, high, _ = body.bounds
     hit = shapely.intersection(body, shapely.linestrings([(low - 1.0, r), (high + 1.0, r)]))
-    if hit.is_empty:
-        return None
-    return float(hit.bounds[2 if from_above else 0])
+    return None if hit.is_empty else float(hit.bounds[2 if from_above else 0])
 
 
 def visible_circles(body: BaseGeometry, *, from_above: bool) -> tuple[float, ...]:
     """Return radii of the edges that a viewer along the axis sees."""
-    radii = sorted({round(r, 6) for _, r, _, _ in edges(body) if r > _SAME_MM})
     found = []
-    for r in radii:
+    for r in sorted({round(r, 6) for _, r, _, _ in edges(body) if r > _SAME_MM}):
         inner = [seen(body, r - k * _ASIDE_MM, from_above=from_above) for k in (1, 2)]
         outer = [seen(body, r + k * _ASIDE_MM, from_above=from_above) for k in (1, 2)]
         if not _continues(inner, outer):

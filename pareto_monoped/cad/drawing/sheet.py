@@ -34,6 +34,9 @@ SIZES = (A4, A3, A2, A1, A0)
 """The upright A4 and the others lying, as ISO 5457 has them."""
 SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
 """ISO 5455."""
+Box = tuple[float, float, float, float]
+Placing = tuple[list[tuple[float, float]], float]
+"""Lower left corners of tables, and how much room they take."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,8 +45,7 @@ class Title:
 
     name: str  #: of the part, in words
     number: str  #: of the drawing
-    #: material, hardness: with condition
-    material: str
+    material: str  #: with condition
     hardness: str
     mass: str  #: of one, with its unit
     count: int  #: how many the robot has
@@ -57,7 +59,7 @@ class Title:
 
 
 def scale_text(scale: float) -> str:
-    """Such as ``2:1``."""
+    """Return a text such as ``2:1``."""
     return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
 
 
@@ -67,12 +69,9 @@ def inner_mm(size: Size) -> tuple[float, float]:
 
 
 def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: Sequence[str]) -> Paper | None:
-    """Return a sheet with its views in a row, tables at the right or below, and notes, but without frame and title
-    block.
+    """Return a sheet without frame and title block, with its views in a row, tables at the right or below, and notes.
 
-    None if they do not fit.
-
-    Views stand side by side, their middles at their y = 0; tables stand below each other.
+    The views' middles stand at their y = 0. There is no sheet if all that does not fit.
     """
     left, bottom = BINDING_MM, MARGIN_MM
     right, top = size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
@@ -106,13 +105,8 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
     return paper
 
 
-Box = tuple[float, float, float, float]
-Placing = tuple[list[tuple[float, float]], float]
-"""Lower left corners of tables, and how much room they take."""
-
-
 def _columned(boxes: Sequence[Box], height: float) -> Placing | None:
-    """Places of tables in columns, from the upper right corner leftwards; None if one is too high."""
+    """Return places of tables in columns, from the upper right corner leftwards; None if one is too high."""
     places: list[tuple[float, float]] = []
     x = y = column = 0.0
     for box in boxes:
@@ -128,7 +122,7 @@ def _columned(boxes: Sequence[Box], height: float) -> Placing | None:
 
 
 def _shelved(boxes: Sequence[Box], width: float) -> Placing | None:
-    """Places of tables in rows, from the lower left corner upwards; None if one is too wide."""
+    """Return places of tables in rows, from the lower left corner upwards; None if one is too wide."""
     places: list[tuple[float, float]] = []
     x = y = row = 0.0
     for box in boxes:
@@ -143,7 +137,7 @@ def _shelved(boxes: Sequence[Box], width: float) -> Placing | None:
 
 
 def _written(notes: Sequence[str], width: float) -> Paper:
-    """Notes as text, broken to a width, the last line at y = 0."""
+    """Return notes as text, broken to a width, the last line at y = 0."""
     paper = Paper()
     lines = [line for note in notes for line in broken(note, width)]
     for k, line in enumerate(lines):
@@ -164,16 +158,13 @@ def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
 
 
 def titled(paper: Paper, size: Size, scale: float, title: Title, number: str = "1/1") -> None:
-    """Add frame and title block to a sheet.
-
-    ``number`` is the sheet's number over how many sheets there are.
-    """
+    """Add frame and title block to a sheet; ``number`` is the sheet's number over how many sheets there are."""
     _border(paper, size)
     _title_block(paper, size, scale, title, number)
 
 
 def _border(paper: Paper, size: Size) -> None:
-    """Frame and centring marks."""
+    """Draw frame and centring marks."""
     left, right, top = BINDING_MM, size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
     paper.line([(left, MARGIN_MM), (right, MARGIN_MM), (right, top), (left, top)], width_mm=_FRAME_MM, closed=True)
     x, y = 0.5 * size.width_mm, 0.5 * size.height_mm
@@ -188,7 +179,7 @@ def _border(paper: Paper, size: Size) -> None:
 
 
 def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: str) -> None:
-    """The block at the lower right: rows of cells, each with a small caption over its value."""
+    """Draw the block at the lower right: rows of cells, each with a small caption over its value."""
     x0, y0 = size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM
     rows: tuple[tuple[tuple[float, str, str], ...], ...] = (
         ((80.0, "Name", title.name), (70.0, "Drawing", title.number), (30.0, "Sheet", f"{size.name}   {number}")),
@@ -209,11 +200,8 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
             height = _fitting(value, wide - 2.4, 3.5 if caption in ("Name", "Drawing", "Scale") else LETTER_MM)
             paper.text(value, x + 1.2, y + 2.2, height_mm=height)
             x += wide
-    paper.line(
-        [(x0, y0), (x0 + TITLE_MM[0], y0), (x0 + TITLE_MM[0], y0 + TITLE_MM[1]), (x0, y0 + TITLE_MM[1])],
-        width_mm=WIDE_MM,
-        closed=True,
-    )
+    x1, y1 = x0 + TITLE_MM[0], y0 + TITLE_MM[1]
+    paper.line([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], width_mm=WIDE_MM, closed=True)
     y = y0 + 3.0 * high
     if title.finish:
         surface(paper, title.finish, x0 + 40.0, y + 1.6)
@@ -227,14 +215,14 @@ def _fitting(value: str, width: float, height: float) -> float:
 
 
 def surface(paper: Paper, roughness: str, x: float, y: float) -> None:
-    """The symbol of a machined surface (ISO 21920-1) with its value; its tip is at (x, y)."""
+    """Draw the symbol of a machined surface (ISO 21920-1) with its value; its tip is at (x, y)."""
     paper.line([(x - 1.5, y + 2.6), (x, y), (x + 3.0, y + 5.2), (x + 5.0 + width_mm(roughness, LETTER_MM), y + 5.2)])
     paper.line([(x - 1.5, y + 2.6), (x + 1.5, y + 2.6)])
     paper.text(roughness, x + 3.6, y + 2.0)
 
 
 def _first_angle(paper: Paper, x: float, y: float) -> None:
-    """The symbol of first-angle projection (ISO 5456-2) around (x, y): the cone, then its view from the left."""
+    """Draw the symbol of first-angle projection (ISO 5456-2) around (x, y): the cone, then its view from the left."""
     paper.line([(x - 8.0, y - 1.25), (x - 2.0, y - 2.5), (x - 2.0, y + 2.5), (x - 8.0, y + 1.25)], closed=True)
     paper.line([(x - 9.0, y), (x - 1.0, y)], dashes=CHAIN)
     paper.circle(x + 4.0, y, 2.5)
@@ -243,20 +231,15 @@ def _first_angle(paper: Paper, x: float, y: float) -> None:
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Paper:
-    """Return a table with a title, its lower left corner at the origin; columns are as wide as they must be.
-
-    A table whose columns have no names has no head.
-    """
+    """Return a table with a title, its lower left corner at the origin; without names of columns it has no head."""
     high = 5.0
     shown = (*([head] if any(head) else []), *rows)
     wide = [max(width_mm(row[k], LETTER_MM) for row in shown) + 3.0 for k in range(len(head))]
-    whole = sum(wide)
+    whole, top = sum(wide), high * len(shown)
     paper = Paper()
-    top = high * len(shown)
     paper.text(title, 0.0, top + 1.6)
     for k, row in enumerate(shown):
-        y = top - (k + 1) * high
-        x = 0.0
+        y, x = top - (k + 1) * high, 0.0
         for cell, width in zip(row, wide, strict=True):
             paper.text(cell, x + 1.5, y + 0.5 * (high - LETTER_MM) + 0.2)
             x += width

@@ -1,10 +1,7 @@
 """Part -> solid: one extruded face with holes per prism, one fusion of all prisms that touch, then cones. Millimetres.
 
-Open CASCADE is called directly, as importing it takes a fifth of the time that a library above it takes.
-
-Bevels on solids: the kernel chamfers the edges of cylinders, and fuses countersunk heads. Millimetres.
-
-Chamfering costs 1 ms per edge, a seventh of what cutting with cones does.
+Open CASCADE is called directly, as importing it takes a fifth of the time that a library above it takes. Cones are
+chamfers of the edges of cylinders, 1 ms each, a seventh of what cutting with cones takes.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,6 +32,8 @@ from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line
 
 _ON_EDGE_MM = 1e-5  # from where an edge should be to where fused solids have it
+_UP = gp_Dir(0.0, 0.0, 1.0)
+_FIT_MM = 1e-6  # distance of splines from their points
 
 
 def beveled(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
@@ -43,11 +42,11 @@ def beveled(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
     Raises:
         ValueError: a bevel stands on no edge of the solid, or does not fit there.
     """
-    wider = [bevel for bevel in bevels if _adds(bevel)]
     cuts = [bevel for bevel in bevels if not _adds(bevel) and float(bevel.edge_mm) != float(bevel.at.radius_mm)]
     shape = _chamfered(solid, cuts) if cuts else solid
-    for bevel in wider:
-        shape = BRepAlgoAPI_Fuse(shape, _head(bevel)).Shape()
+    for bevel in bevels:
+        if _adds(bevel):
+            shape = BRepAlgoAPI_Fuse(shape, _head(bevel)).Shape()
     return shape
 
 
@@ -100,10 +99,6 @@ def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Fa
     return edges, faces, np.array(rows, dtype=np.float64).reshape(-1, 4)
 
 
-_UP = gp_Dir(0.0, 0.0, 1.0)
-_FIT_MM = 1e-6  # distance of splines from their points
-
-
 def solid_of(part: Part) -> TopoDS_Shape:
     """Return one instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
 
@@ -114,9 +109,7 @@ def solid_of(part: Part) -> TopoDS_Shape:
 
 @lru_cache(maxsize=256)
 def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...] = ()) -> TopoDS_Shape:
-    """Return the same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so
-    parts.
-    """
+    """Return the same from a part's geometry, kept since designs of one study share most of their 70 or so parts."""
     pieces, left = [], list(bevels)
     # Before the fusion, pieces have few faces, which makes their cones cheap.
     layers = [layer for prism in regrouped(prisms) for layer in without_teeth(prism, bevels)]
@@ -199,7 +192,7 @@ def _ball(ball: Ball) -> TopoDS_Shape:
 
 
 def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
-    """Everything that touches as one solid; the pieces share faces but no volume, so glueing suffices."""
+    """Return everything that touches as one solid; the pieces share faces but no volume, so glueing suffices."""
     arguments, tools = List_TopoDS_Shape(), List_TopoDS_Shape()
     arguments.Append(pieces[0])
     for piece in pieces[1:]:

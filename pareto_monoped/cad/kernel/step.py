@@ -1,9 +1,7 @@
 """STEP files (ISO 10303-21) with names and colours; the time stamp is fixed, so the same robot gives the same bytes.
 
 The kernel writes geometry and names. It would write colours in an order that changes from run to run, so the styles
-(ISO 10303-46) are added here.
-
-The STEP file of an assembly from the files of its parts, so that each solid is written once.
+(ISO 10303-46) are added here. Each solid is written once, and the file of the assembly is made from those of its parts:
 
 The kernel writes the assembly with stand-ins, one small solid per part. In a STEP file, a part's shape is a run of
 consecutive entities: its representation, its solids and their context. Each stand-in's run is replaced by the run of
@@ -53,6 +51,15 @@ _AFTER = 4
 """Entities of a context after its first: the units of length, plane and solid angle, and the uncertainty."""
 _AXES = 4
 """Entities of the axes at the origin, which all representations of a file share: placement, point, two directions."""
+Colour = tuple[float, float, float]
+TIMESTAMP = datetime(2025, 1, 1)
+"""The time in every STEP file: the real time would make each export differ."""
+_METRES = 1e-3  # the documents' unit: millimetres
+_USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
+_NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
+_TAIL = 2000
+"""The last entity of a file, which is a short one, begins within so many characters from its end."""
+_END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,9 +71,8 @@ class Shape:
     axes: int  #: of the axes at the origin; in a part's file these follow the representation
     solid: int  #: of its last solid
     context: int  #: of its context
-    #: start, stop: where the text of its entities begins and ends
-    start: int
-    stop: int
+    start: int  #: where the text of its entities begins
+    stop: int  #: where it ends
 
     @property
     def last(self) -> int:
@@ -103,10 +109,7 @@ def shapes_in(text: bytes) -> list[Shape]:
 
 
 def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape]]:
-    """Return the file of an assembly, and the shapes of its parts there.
-
-    ``frame`` is the file of the assembly with a stand-in for each part.
-    """
+    """Return the file of an assembly from ``frame``, the one with a stand-in per part, and the parts' shapes there."""
     stand_ins = shapes_in(frame)
     own = [_own_shape(stand_in, parts[stand_in.name]) for stand_in in stand_ins]
     lasts = [stand_in.last for stand_in in stand_ins]
@@ -120,8 +123,7 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
     pieces, shapes, done = [], [], 0
     for stand_in, shape, shift in zip(stand_ins, own, shifts, strict=False):
         pieces.append(_REFERENCE.sub(in_frame, frame[done : stand_in.start]))
-        moved = _moved(parts[shape.name], shape, stand_in.number + shift, stand_in.axes)
-        pieces.append(moved)
+        pieces.append(_moved(parts[shape.name], shape, stand_in.number + shift, stand_in.axes))
         ahead = stand_in.number + shift - shape.number - _AXES
         shapes.append(
             replace(shape, number=stand_in.number + shift, solid=shape.solid + ahead, context=shape.context + ahead)
@@ -159,20 +161,6 @@ def _moved(text: bytes, shape: Shape, number: int, axes: int) -> bytes:
         return b"#%d" % {shape.number: number, shape.axes: axes}.get(own, own + ahead)
 
     return _REFERENCE.sub(in_first, first) + _REFERENCE.sub(renumbered, text[body : shape.stop])
-
-
-Colour = tuple[float, float, float]
-
-TIMESTAMP = datetime(2025, 1, 1)
-"""The time in every STEP file: the real time would make each export differ."""
-_METRES = 1e-3  # the documents' unit: millimetres
-_USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
-
-
-_NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
-_TAIL = 2000
-"""The last entity of a file, which is a short one, begins within so many characters from its end."""
-_END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
 class _Document:
@@ -265,7 +253,7 @@ def _location(matrix: NDArray[np.float64]) -> TopLoc_Location:
 
 
 def _renumbered(text: bytes) -> bytes:
-    """Return number the usages of parts from 1, as the kernel's own count continues from file to file."""
+    """Number the usages of parts from 1, as the kernel's own count continues from file to file."""
     count = 0
 
     def usage(found: re.Match[bytes]) -> bytes:

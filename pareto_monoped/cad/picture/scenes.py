@@ -1,6 +1,6 @@
-"""The pictures of an export: the robot, sections of actuators and knee with numbers and legend, an exploded view.
+"""The pictures of an export: the robot, sections with numbers and legend, exploded views, and the steps of assembly.
 
-Exploded views of the steps of assembly: what is together is grey, what comes to it is coloured and pulled away.
+In the steps, what is together is grey; what comes to it is coloured and pulled away.
 """
 
 from collections import Counter
@@ -27,33 +27,38 @@ _FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
 _KNEE_AROUND_MM = 62.0
 """Half of the box around the knee joint that its section shows: the bearings with a part of either link."""
+_TOLERANCE_MM = 0.2
+_GREY = (0.80, 0.81, 0.83)
+_APART_MM = 12.0
+_WIDTH, _HEIGHT = 640, 480
+_AXES = "xyz"
+_VIEWS = {True: View(towards=(-0.75, -0.55, -0.35)), False: View(towards=(-0.75, 0.55, -0.35))}
+"""From the left of the robot, and from its right."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
     """All that a picture is drawn from; it refers to nothing of the product, so another thread can draw it."""
 
-    bodies: tuple[Body, ...]  #: what to draw
-    view: View  #: the direction of view
-    #: width, height: of the picture, in pixels, without the legend and the strips for its numbers
-    width: int
-    height: int
+    bodies: tuple[Body, ...]
+    view: View
+    width: int  #: in pixels, without the legend
+    height: int  #: in pixels, without the strips for numbers
     legend: tuple[Row, ...] = ()  #: one row per part
 
     def picture(self) -> Image:
         """Draw it."""
-        drawn = draw(self.bodies, self.view, width=self.width, height=self.height)
-        return labelled(drawn, self.legend)
+        return labelled(draw(self.bodies, self.view, width=self.width, height=self.height), self.legend)
 
 
 def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
     """Return the robot in its pose."""
-    bodies = []
-    for instance, unique in product.placed():
-        if instance.part.visibility is Visibility.INSIDE:
-            continue
-        bodies.append(_body(unique.mesh, instance.world, unique.part.material.colour))
-    return Scene(bodies=tuple(bodies), view=_FROM_THE_RIGHT, width=width, height=height)
+    bodies = tuple(
+        _body(unique.mesh, instance.world, unique.part.material.colour)
+        for instance, unique in product.placed()
+        if instance.part.visibility is not Visibility.INSIDE
+    )
+    return Scene(bodies=bodies, view=_FROM_THE_RIGHT, width=width, height=height)
 
 
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
@@ -99,13 +104,12 @@ def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -
         at = instance.world.copy()
         at[1, 3] += move
         bodies.append(_body(unique.mesh, at, colours[instance.unit], number[instance.unit]))
-    view = View(towards=(-1.0, 0.62, -0.42))
-    rows = tuple(numbered(names, colours))
+    view, rows = View(towards=(-1.0, 0.62, -0.42)), tuple(numbered(names, colours))
     return Scene(bodies=tuple(bodies), view=view, width=width, height=height, legend=rows)
 
 
 def _section(members: Sequence[tuple[Instance, m3.Manifold]], *, width: int, height: int) -> Scene:
-    """Placed instances with a quarter cut away, one colour and number per kind of part."""
+    """Return placed instances with a quarter cut away, one colour and number per kind of part."""
     names = Counter(instance.part.name for instance, _ in members)
     colours = {name: colour(k) for k, name in enumerate(names)}
     number = {name: k for k, name in enumerate(names, 1)}
@@ -142,20 +146,11 @@ def _without_quarter(body: m3.Manifold) -> m3.Manifold:
     return m3.Manifold.compose([far, near_low])
 
 
-_TOLERANCE_MM = 0.2
-_GREY = (0.80, 0.81, 0.83)
-_APART_MM = 12.0
-_WIDTH, _HEIGHT = 640, 480
-_AXES = "xyz"
-_VIEWS = {True: View(towards=(-0.75, -0.55, -0.35)), False: View(towards=(-0.75, 0.55, -0.35))}
-"""From the left of the robot, and from its right."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stage:
     """All bodies of an assembly in their places, from which the pictures of its steps are made."""
 
-    blocking: Blocking  #: the bodies, and the sides from which fasteners are driven
+    blocking: Blocking
     corners_mm: tuple[Floats, ...]  #: per instance the points of its triangles, shape (n, 3)
     triangles: tuple[NDArray[np.int64], ...]  #: per instance the indices of its points, shape (m, 3)
     boxes: tuple[Floats, ...]  #: low and high corner of each body, shape (2, 3)
@@ -185,7 +180,7 @@ def stage_of(blocking: Blocking, placed: Sequence[Instance]) -> Stage:
     return Stage(blocking=blocking, corners_mm=tuple(corners), triangles=tuple(triangles), boxes=tuple(boxes))
 
 
-def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
+def step_picture(step: Step, stage: Stage) -> Image:
     """Return the picture of a step, seen from the side from which most comes."""
     blocking, boxes = stage.blocking, stage.boxes
     moves: dict[int, Floats] = {}
@@ -215,20 +210,18 @@ def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
 
 
 def _legend(fresh: Sequence[int], blocking: Blocking) -> tuple[dict[int, int], tuple[Row, ...]]:
-    """Return the number of each new body, and a row per kind of part."""
-    names: dict[tuple[str, str], int] = {}
+    """Return the number of each new body, and a row per kind of part of a unit."""
+    numbers: dict[tuple[str, str], int] = {}
     counts: list[int] = []
     number = {}
     for k in fresh:
         body = blocking.bodies[k]
-        key = (body.unit, body.instance.part.name)
-        if key not in names:
-            names[key] = len(names) + 1
-            counts.append(0)
-        number[k] = names[key]
-        counts[names[key] - 1] += len(body.instances)
+        row = numbers.setdefault((body.unit, body.instance.part.name), len(numbers) + 1)
+        counts += [0] * (row - len(counts))
+        number[k] = row
+        counts[row - 1] += len(body.instances)
     rows = []
-    for (_, name), row in names.items():
+    for (_, name), row in numbers.items():
         count = f" ({counts[row - 1]})" if counts[row - 1] > 1 else ""
         rows.append(Row(number=row, text=name.replace("_", " ") + count, colour=colour(row - 1)))
     return number, tuple(rows)

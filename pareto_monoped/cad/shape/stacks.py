@@ -11,7 +11,6 @@ from pareto_monoped.geometry.parts import Prism
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 _TOUCH_MM = 1e-9
-
 _LEAST_WALL_MM = 1.0
 """Of a ring that fills a hole. Our own choice: three times the chamfers of 0.3 mm on the edges of bores."""
 
@@ -85,7 +84,7 @@ def without_teeth(prism: Prism, bevels: Sequence[Bevel]) -> tuple[Prism, ...]:
 
 
 def _reach(shape: Shape) -> tuple[float, float]:
-    """Least and greatest distance of a shape's boundary from the origin; 0 and infinity for a kind not known here."""
+    """Return the least and the greatest distance of a boundary from the origin; 0 and infinity for unknown kinds."""
     if isinstance(shape, ExternalGear | InternalGear):
         radii = float(shape.root_radius_mm), float(shape.tip_radius_mm)
         return min(radii), max(radii)
@@ -98,7 +97,7 @@ def _reach(shape: Shape) -> tuple[float, float]:
 
 
 def _stacks(prisms: Sequence[Prism]) -> list[list[Prism]]:
-    """Prisms of one outline that stand on each other without a gap, from below; all others alone."""
+    """Return prisms of one outline that stand on each other without a gap, from below; all others alone."""
     stacks: list[list[Prism]] = []
     for prism in sorted(prisms, key=lambda p: float(p.z0_mm)):
         for stack in stacks:

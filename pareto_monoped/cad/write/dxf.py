@@ -1,10 +1,8 @@
 """DXF drawings of laser-cut plates: the true outline and holes, without kerf, on one layer, in millimetres.
 
-A second layer says in words what is done after cutting: countersinks, threads, reamed holes.
-
-A DXF file is a list of pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12).
-
-The folder ``test_stand/`` of an export: the arms that hang the base on two vertical rails.
+A second layer says in words what is done after cutting: countersinks, threads, reamed holes. A DXF file is a list of
+pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12). The folder
+``test_stand/`` of an export has the arms that hang the base on two vertical rails.
 """
 
 from collections.abc import Iterator
@@ -152,11 +150,8 @@ def _number(value: float) -> str:
 
 
 def stand_files(d: LegDimensions) -> dict[str, str]:
-    """Content by path in the export's folder: the arm for the laser, and how it is used."""
-    return {
-        "test_stand/arm.dxf": dxf(arm(d)),
-        "test_stand/README.md": _readme(d),
-    }
+    """Return content by path in the export's folder: the arm for the laser, and how it is used."""
+    return {"test_stand/arm.dxf": dxf(arm(d)), "test_stand/README.md": _readme(d)}
 
 
 def _readme(d: LegDimensions) -> str:

@@ -30,10 +30,7 @@ def part_meshes(product: Product) -> dict[str, bytes]:
 
 
 def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
-    """Return all other files with triangles: content by path in the export's folder.
-
-    ``shown`` are the visual meshes of the robot models, if there are to be any.
-    """
+    """Return content by path of all other files with triangles; ``shown`` are the models' visual meshes."""
     made: dict[str, bytes] = {}
     if "3mf" in formats:
         printed = [unique for unique in product.unique if unique.part.process == "3D printed"]
@@ -97,7 +94,7 @@ def write_models(
 
 
 def pictures(product: Product) -> dict[str, Future[bytes]]:
-    """PNG files by name, which the kernel's process draws from now on."""
+    """Return PNG files by name, which the kernel's process draws from now on."""
     shown = {
         "assembly.png": scenes.assembly_scene(product),
         "exploded.png": scenes.exploded_scene(product),

@@ -1,6 +1,6 @@
-"""STL, 3MF and GLB from the meshes, as bytes: an export checks them (``check.watertight``) before it writes them.
+"""STL, 3MF and GLB from the meshes, as bytes, and what MJCF and URDF show of a robot and what collides.
 
-What MJCF and URDF show of a robot, and what collides: meshes per body and material, and primitives.
+An export checks the files (``check.watertight``) before it writes them.
 """
 
 import io
@@ -29,6 +29,12 @@ _RELATIONS = (
     '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
     'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
 )
+_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
+Floats = NDArray[np.float64]
+VISUAL_TOLERANCE_MM = 0.1
+METRES = 1e-3
+"""From the meshes' millimetres to the models' unit."""
+_MARGIN_M = 1e-3
 
 
 def stl(mesh: Mesh, *, scale: float = 1.0) -> bytes:
@@ -36,7 +42,7 @@ def stl(mesh: Mesh, *, scale: float = 1.0) -> bytes:
     corners = (mesh.points_mm * scale)[mesh.triangles].astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
-    rows = np.zeros(len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
+    rows = np.zeros(len(corners), dtype=_STL)
     rows["normal"] = normal / np.where(length > 0.0, length, 1.0)
     rows["corners"] = corners
     return b"\0" * 80 + np.uint32(len(rows)).tobytes() + rows.tobytes()
@@ -54,13 +60,10 @@ def threemf(mesh: Mesh, name: str) -> bytes:
         f"<triangles>{triangles}</triangles></mesh></object></resources>"
         '<build><item objectid="1"/></build></model>'
     )
+    files = {"[Content_Types].xml": _CONTENT_TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model}
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path, text in (
-            ("[Content_Types].xml", _CONTENT_TYPES),
-            ("_rels/.rels", _RELATIONS),
-            ("3D/3dmodel.model", model),
-        ):
+        for path, text in files.items():
             entry = zipfile.ZipInfo(path, _EARLIEST)
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, text)
@@ -68,9 +71,7 @@ def threemf(mesh: Mesh, name: str) -> bytes:
 
 
 def glb(product: Product) -> bytes:
-    """Return the assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored
-    once.
-    """
+    """Return the assembly as binary glTF 2.0: metres, y up, front towards +z, each part's triangles stored once."""
     import trimesh  # here, because it takes longer to import than all other files to write
 
     scene = trimesh.Scene(base_frame="world")
@@ -87,23 +88,11 @@ def glb(product: Product) -> bytes:
         mesh.visual = trimesh.visual.TextureVisuals(material=material)
         scene.geometry[kind.name] = mesh
     for instance, kind in product.placed():
-        scene.graph.update(
-            frame_from="world",
-            frame_to=instance.name,
-            matrix=upright @ metres @ instance.world,
-            geometry=kind.name,
-        )
+        matrix = upright @ metres @ instance.world
+        scene.graph.update(frame_from="world", frame_to=instance.name, matrix=matrix, geometry=kind.name)
     data = scene.export(file_type="glb")
     assert isinstance(data, bytes)
     return data
-
-
-Floats = NDArray[np.float64]
-
-VISUAL_TOLERANCE_MM = 0.1
-METRES = 1e-3
-"""From the meshes' millimetres to the models' unit."""
-_MARGIN_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,7 +117,7 @@ class Collider:
 
 
 def visuals(product: Product) -> tuple[Visual, ...]:
-    """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
+    """Return coarse meshes of what can be seen, one per body and material, at zero joint angles."""
     shown: dict[tuple[str, str], list[tuple[Mesh, Floats]]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
     for instance, unique in product.placed():
@@ -138,18 +127,13 @@ def visuals(product: Product) -> tuple[Visual, ...]:
         shown.setdefault(key, []).append((mesh_of(unique.part, VISUAL_TOLERANCE_MM), instance.in_body))
         colours.setdefault(key, unique.part.material.colour)
     return tuple(
-        Visual(
-            name=f"{body}_{material}",
-            body=body,
-            mesh=joined(members, METRES),
-            colour=colours[body, material],
-        )
+        Visual(name=f"{body}_{material}", body=body, mesh=joined(members, METRES), colour=colours[body, material])
         for (body, material), members in shown.items()
     )
 
 
 def colliders(product: Product) -> tuple[Collider, ...]:
-    """Boxes and cylinders around frame, actuators and links; the foot's sphere is the simulation's own."""
+    """Return boxes and cylinders around frame, actuators and links; the foot's sphere is the simulation's own."""
     robot = product.robot
     # Rods, with the screws that stand out of the cheeks, bound the frame; cores bound the links.
     return (
@@ -185,14 +169,8 @@ def _around_parts(product: Product, name: str, *, unit: str, roles: tuple[Role, 
             box = np.asarray(placed(unique.mesh.body, instance.in_body).bounding_box())
             low, high = np.minimum(low, box[:3]), np.maximum(high, box[3:])
     (body,) = bodies
-    half, centre = 0.5e-3 * (high - low) + _MARGIN_M, 0.5e-3 * (high + low)
-    return Collider(
-        name=name,
-        body=body,
-        shape="box",
-        size=tuple(float(v) for v in half),
-        position=(float(centre[0]), float(centre[1]), float(centre[2])),
-    )
+    half, centre = (tuple(float(v) for v in row) for row in (0.5e-3 * (high - low) + _MARGIN_M, 0.5e-3 * (high + low)))
+    return Collider(name=name, body=body, shape="box", size=half, position=(centre[0], centre[1], centre[2]))
 
 
 def numbers(*values: float) -> str:

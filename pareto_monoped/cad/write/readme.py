@@ -26,23 +26,14 @@ def readme(
     factors: Sequence[JointFactor] = (),
     life: GearLife | None = None,
 ) -> str:
-    """Return the page as Markdown.
-
-    ``factors`` is empty if the design does not jump.
-    """
-    lines = [
-        *_design(record),
-        *_actuators(record),
-        *_files(formats),
-        *_making(product),
-        *_strength(record, factors, life),
-        *_checks(checks),
-    ]
+    """Return the page as Markdown; ``factors`` is empty if the design does not jump."""
+    blocks = (_design(record), _actuators(record), _files(formats), _making(product))
+    lines = [line for block in (*blocks, _strength(record, factors, life), _checks(checks)) for line in block]
     return "\n".join(lines) + "\n"
 
 
 def _design(record: Mapping[str, Any]) -> Iterator[str]:
-    """Variables and jumps, as searched and as built."""
+    """Yield variables and jumps, as searched and as built."""
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
     yield from ("| variable | searched | as built |", "|---|---|---|")
@@ -103,7 +94,7 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
 
 
 def _making(product: Product) -> Iterator[str]:
-    """Per process: how it is done, and the parts that it makes; then what the cables lack room for."""
+    """Yield per process how it is done and the parts that it makes, then what the cables lack room for."""
     yield from ("## Making the parts", "")
     for process, how in _HOW.items():
         names = [_counted(unique) for unique in product.unique if unique.part.process == process]

@@ -15,14 +15,11 @@ _NO_TURN = "0 0 0"
 
 
 def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """Return the URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``, frame
-    ``foot``.
+    """Return the URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip``, ``knee``, frame ``foot``.
 
     URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
-    comment with them.
-
-    Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres; the foot's sphere joins
-    ``solid``.
+    comment with them. Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres; the
+    foot's sphere joins ``solid``.
     """
     root = ET.Element("robot", name="monoped")
     # Only MuJoCo reads this: keep the visual meshes and their folder.
@@ -48,7 +45,7 @@ def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Se
 
 
 def _add_inertial(link: ET.Element, arrays: RobotArrays, body: int) -> None:
-    """Mass and inertia about the centre of mass, along the axes of the body frame."""
+    """Add mass and inertia about the centre of mass, along the axes of the body frame."""
     inertial = ET.SubElement(link, "inertial")
     ET.SubElement(inertial, "origin", xyz=numbers(*arrays.body_com_m[0, body]), rpy=_NO_TURN)
     ET.SubElement(inertial, "mass", value=numbers(arrays.body_mass_kg[0, body]))
@@ -66,15 +63,11 @@ def _add_visual(link: ET.Element, visual: Visual) -> None:
 
 
 def _add_collision(link: ET.Element, collider: Collider) -> None:
-    """A primitive; URDF's cylinders stand along z and have full lengths, boxes have full sizes."""
+    """Add a primitive; URDF's cylinders stand along z and have full lengths, boxes have full sizes."""
     element = ET.SubElement(link, "collision", name=collider.name)
     cylinder = collider.shape == "cylinder"
-    ET.SubElement(
-        element,
-        "origin",
-        xyz=numbers(*collider.position),
-        rpy=numbers(np.pi / 2, 0.0, 0.0) if cylinder else _NO_TURN,
-    )
+    turn = numbers(np.pi / 2, 0.0, 0.0) if cylinder else _NO_TURN
+    ET.SubElement(element, "origin", xyz=numbers(*collider.position), rpy=turn)
     geometry = ET.SubElement(element, "geometry")
     if cylinder:
         radius, half_length = collider.size
@@ -84,14 +77,14 @@ def _add_collision(link: ET.Element, collider: Collider) -> None:
 
 
 def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
-    """The sphere that touches the ground in the simulation."""
+    """Add the sphere that touches the ground in the simulation."""
     element = ET.SubElement(link, "collision", name="foot")
     ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
     ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
 
 
 def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
-    """A frame without mass at the centre of the foot's sphere, for planners and controllers."""
+    """Add a frame without mass at the centre of the foot's sphere, for planners and controllers."""
     ET.SubElement(root, "link", name="foot")
     element = ET.SubElement(root, "joint", name="foot", type="fixed")
     ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
@@ -112,7 +105,7 @@ def _rotor_comment(arrays: RobotArrays, joints: Joints, joint: int) -> str:
 
 
 def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int, *, z_m: float) -> None:
-    """The joint between a body and the next one, with its axis along +y of the body frame."""
+    """Add the joint between a body and the next one, with its axis along +y of the body frame."""
     name = JOINTS[joint]
     stop = (arrays.stops.hip, arrays.stops.knee)[joint]
     root.append(ET.Comment(_rotor_comment(arrays, joints, joint)))
