@@ -181,7 +181,8 @@ class _Slabs:
         way = np.array([sign, 0.0] if direction[1] == "x" else [0.0, sign]) * _FAR_MM
         met: set[int] = set()
         for a in np.flatnonzero(self.owner == body).tolist():
-            swept = _swept(self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter), way)
+            slim = self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter)
+            swept = m3.CrossSection.batch_boolean([slim, *_strips(slim, way)], m3.OpType.Add)
             if not swept.is_empty():
                 self._meet(swept, self._beside(a, swept, _SLIDE_MM) & (self.owner != body), met)
         found = np.zeros(len(self.bodies), dtype=bool)
@@ -298,11 +299,6 @@ class _Slabs:
         mine = bounds[:, None]
         meets = (mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2])
         return np.asarray(np.all(meets, axis=2))
-
-
-def _swept(section: m3.CrossSection, way: NDArray[np.float64]) -> m3.CrossSection:
-    """Return all that a section covers on a straight way."""
-    return m3.CrossSection.batch_boolean([section, *_strips(section, way)], m3.OpType.Add)
 
 
 def _strips(section: m3.CrossSection, way: NDArray[np.float64]) -> Iterator[m3.CrossSection]:

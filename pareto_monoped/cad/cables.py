@@ -137,7 +137,8 @@ def cables(robot: Robot) -> tuple[Cable, ...]:
 def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
     """Return cables over the back, along the outside of the casing below the board, and up behind it."""
     wire, wire_mm = _wire(actuator, robot.leg.of("hip").driver)
-    back, rim = _back_mm(actuator, unit), _rim_mm(actuator)
+    back = float(_in_base(unit, np.array([0.0, 0.0, -actuator.length_mm]))[2])
+    rim = _width_mm(_backplate(actuator))
     found: list[_Run] = []
     for diameter, side, start in (
         (wire_mm, 1.0, _hole(actuator, unit, np.array([1.0, 0.0]))),
@@ -257,16 +258,6 @@ def _width_mm(part: Part) -> float:
 def _in_base(unit: Unit, point: Points) -> Points:
     """Return a point of a unit in the base's frame, with the leg hanging down."""
     return np.asarray(unit.turn @ point + np.array([0.0, 0.0, unit.z_mm]))
-
-
-def _back_mm(actuator: Actuator, unit: Unit) -> float:
-    """Return the height z of the back's outer face in the base's frame."""
-    return float(_in_base(unit, np.array([0.0, 0.0, -actuator.length_mm]))[2])
-
-
-def _rim_mm(actuator: Actuator) -> float:
-    """Return the radius of the casing."""
-    return _width_mm(_backplate(actuator))
 
 
 def _hole(actuator: Actuator, unit: Unit, way: Points) -> Points:

@@ -88,6 +88,7 @@ def study_card(
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
     picks = _picks(data, front, row_of)
+    failed = data.trials.loc[state == "failed", "status"].value_counts()
     chosen: dict[str, Sequence[int]] = dict(_gearboxes(trials, data.kit_rows(trials), places.maps))
     if several:
         chosen["motor"] = [places.kits[name] for name in trials["motor"]]
@@ -110,7 +111,7 @@ def study_card(
         budget=data.meta.budget,
         seconds=data.wall_time_s,
         counts={name: int((state == name).sum()) for name in LETTERS} | {"total": len(data.trials)},
-        reasons=_failures(data.trials),
+        reasons={str(status): int(count) for status, count in failed.items()},
         hypervolume=float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
         hypervolume_unit=study.objectives.volume_unit,
         reference=data.reference_point.text(),
@@ -200,12 +201,6 @@ def _foot(data: StudyData) -> tuple[float, float]:
     mass_kg = float(foot_part(0.0, leg).mass_kg()) if given.foot_mass_kg is None else given.foot_mass_kg
     radius_m = 1e-3 * leg.foot_radius_mm if given.foot_radius_m is None else given.foot_radius_m
     return mass_kg, radius_m
-
-
-def _failures(trials: pd.DataFrame) -> dict[str, int]:
-    """Return why trials failed, and how many of each."""
-    counts = trials.loc[trials["state"] == "failed", "status"].value_counts()
-    return {str(status): int(count) for status, count in counts.items()}
 
 
 def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:

@@ -109,15 +109,11 @@ def _shortest(counts: Ints, frame: _Frames, by: str | None, rise: Ints | None) -
         guesses[by] = frame.last(counts) + rise
     found = []
     for predictor, guess in guesses.items():
-        codes = _zigzag(counts - guess)
+        off = counts - guess  # 0, -1, 1, -2, 2 ... become 0, 1, 2, 3, 4 ...
+        codes = np.where(off < 0, -2 * off - 1, 2 * off)
         found += [(int(_bits(codes, rice).sum()), predictor, rice, codes) for rice in range(_MOST_RICE + 1)]
     _, predictor, rice, codes = min(found, key=lambda entry: entry[0])
     return predictor, rice, codes
-
-
-def _zigzag(values: Ints) -> Ints:
-    """Return 0, 1, 2, 3, 4 ... for 0, -1, 1, -2, 2 ..."""
-    return np.where(values < 0, -2 * values - 1, 2 * values)
 
 
 def _bits(codes: Ints, rice: int | Ints) -> Ints:
@@ -229,9 +225,8 @@ def packed_column(values: Any) -> str:
     """Return numbers, shape (n,), as four letters each: base64 of the upper three bytes of single precision.
 
     The low byte comes first. Three bytes keep 16 significant bits, so a value is off by at most 2^-16 of itself
-    (1.5e-5), less than the rounding
-    of columns written as text. Three bytes are exactly four letters, so the value of a row can be read alone. What is
-    not finite, or beyond single precision, becomes not a number.
+    (1.5e-5), less than the rounding of columns written as text. They are exactly four letters, so the value of a row
+    can be read alone. What is not finite, or beyond single precision, becomes not a number.
     """
     with np.errstate(over="ignore"):
         single = np.asarray(values, dtype=np.float64).astype("<f4")

@@ -182,7 +182,7 @@ def _as_rings(one: _Stack, other: _Stack) -> bool:
 
 
 def _in_holes(one: _Stack, other: _Stack) -> bool:
-    """Return whether every layer of one, such as a screw, stands in a round hole of each layer of the other beside it."""
+    """Return whether each layer of one, such as a screw, stands in a round hole of each layer of the other beside."""
     beside = _common(one, other)
     room = other.bores[:, 3] - np.hypot(*(other.bores[:, 1:3] - one.axis).T)
     widest = np.zeros(len(other.rows))

@@ -82,7 +82,8 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     ground = np.array([instance.part.role is _GROUND for instance in placed])
     free: list[list[str]] = [[] for _ in placed]
     # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
-    weak = np.array([_weak(instance.part) for instance in placed])
+    limp = (Role.CHAIN, Role.TURNBUCKLE)
+    weak = np.array([one.part.group is Group.ROTOR or one.part.role in limp for one in placed])
     for (axis, sign), blocked in runs_into.items():
         edges = blocked | tied
         if axis == "y":
@@ -92,10 +93,6 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
             free[k].append(f"{sign}{axis}")
     loose = [Loose(name=one.name, directions=tuple(ways)) for one, ways in zip(placed, free, strict=True) if ways]
     return loose, len(placed)
-
-
-def _weak(part: Part) -> bool:
-    return part.group is Group.ROTOR or part.role in (Role.CHAIN, Role.TURNBUCKLE)
 
 
 def _reaches(edges: Bools, ground: Bools) -> Bools:

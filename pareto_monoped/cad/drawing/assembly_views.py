@@ -180,7 +180,11 @@ def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
     choices = {item: list(_ends(region)) for item, region in regions.items()}
     columns = _columns(paper)
     middle = 0.5 * sum(columns)
-    ends = {item: min(found, key=lambda end: _from_column(end, columns)) for item, found in choices.items()}
+
+    def away(end: _End) -> float:
+        return abs(columns[end.to_right] - end.tip[0])
+
+    ends = {item: min(found, key=away) for item, found in choices.items()}
     tree, order = shapely.STRtree(list(regions.values())), list(regions)
     cost = _cost(ends, columns, tree, order)
     for _ in range(_ROUNDS):
@@ -201,10 +205,6 @@ def _columns(paper: Paper) -> tuple[float, float]:
     """Return where the columns of balloons stand."""
     left, _, right, _ = paper.box()
     return left - _COLUMN_MM, right + _COLUMN_MM
-
-
-def _from_column(end: _End, columns: tuple[float, float]) -> float:
-    return abs(columns[end.to_right] - end.tip[0])
 
 
 def _ends(region: BaseGeometry) -> Iterator[_End]:

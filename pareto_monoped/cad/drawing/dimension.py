@@ -92,7 +92,8 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
         elif origin is not None:
             tick = 0.5 * _TICK_MM
             paper.line([point(mark.at - tick, level - tick), point(mark.at + tick, level + tick)], width_mm=0.35)
-        text_at, far = tail + outwards * 0.8, "left" if outwards > 0.0 else "right"
+        text_at = tail + outwards * 0.8
+        far: Align = "left" if outwards > 0.0 else "right"
         if flat:
             paper.text(mark.text, place + 0.5 * LETTER_MM, text_at, align=far, upward=True)
         else:

@@ -98,7 +98,6 @@ class Label:
     text: str
     x: float  #: of the end that ``align`` names
     y: float  #: of the base line
-    y: float
     height_mm: float = LETTER_MM  #: of its capitals
     align: Align = "left"
     upward: bool = False  #: whether it runs upward, to be read from the right

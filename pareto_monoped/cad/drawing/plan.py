@@ -41,7 +41,6 @@ class Plan:
     bores: tuple[Bore, ...]  #: round holes, on the axis too
     low: float  #: end along z
     high: float
-    high: float
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -62,7 +61,7 @@ def plan_of(part: Part) -> Plan:
     outlines = [contour for contour, _, _, _ in shapes]
     found = bores(part, on_axis=True)
     turn = _turn(outlines)
-    if any(_centre(bore) == (0.0, 0.0) for bore in found):
+    if any(round(float(bore.shape.x_mm), 6) == round(float(bore.shape.y_mm), 6) == 0.0 for bore in found):
         shift = np.zeros(2)
     else:
         turned = [_moved(outline, turn, np.zeros(2)) for outline in outlines]
@@ -207,10 +206,6 @@ def _moved_shape(shape: Circle | Pattern, turn: float, shift: Points) -> Circle 
     if isinstance(shape, Pattern):
         return replace(shape, x_mm=float(x), y_mm=float(y), phase_rad=float(shape.phase_rad) + turn)
     return replace(shape, x_mm=float(x), y_mm=float(y))
-
-
-def _centre(bore: Bore) -> tuple[float, float]:
-    return (round(float(bore.shape.x_mm), 6), round(float(bore.shape.y_mm), 6))
 
 
 def _along(line: Line) -> bool:

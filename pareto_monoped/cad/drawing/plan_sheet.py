@@ -249,12 +249,9 @@ def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], li
             zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
             place = f"{zone} {datum}" if zone and datum else zone
             rows.append((name, kind, number(x), number(y), place))
-            tags.append(_tag(name, *bore.centres[_rightmost(bore)], bore.radius))
+            rightmost = int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
+            tags.append(_tag(name, *bore.centres[rightmost], bore.radius))
     return rows, tags
-
-
-def _rightmost(bore: Bore) -> int:
-    return int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
 
 
 def _kind(bore: Bore) -> str:

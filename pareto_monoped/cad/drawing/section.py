@@ -89,7 +89,8 @@ def section_view(part: RoundPart, scale: float) -> Paper:
     leaders = _diameters(paper, part, x_of, scale, (left, right))
     inner, outer = _lengths(part, x_of, scale)
     if inner:
-        inner.append(Mark(at=x_of(part.datum), start=_reach_at(part.body, part.datum) * scale, text=""))
+        reach = max(r for height, r, _, _ in edges(part.body) if abs(height - part.datum) < _SAME_MM)
+        inner.append(Mark(at=x_of(part.datum), start=reach * scale, text=""))
     leaders += _chamfers(part, x_of, scale)
     level = top * scale + _LADDER_MM
     ladder(paper, outer, "below", -level, origin=x_of(part.datum))
@@ -289,11 +290,6 @@ def _lengths(part: RoundPart, x_of: _Along, scale: float) -> tuple[list[Mark], l
         else:
             inner.append(Mark(at=x_of(z), start=max(f.outer for f in members) * scale - 1.0, text=text))
     return inner, outer
-
-
-def _reach_at(body: BaseGeometry, z: float) -> float:
-    """Return the outermost radius at a height."""
-    return max(r for height, r, _, _ in edges(body) if abs(height - z) < _SAME_MM)
 
 
 def _open_outwards(body: BaseGeometry, face: Face, top: float) -> bool:

@@ -120,7 +120,9 @@ def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple
         left = [bevel for bevel in left if bevel not in own]
         pieces += [beveled(body, own) for body in bodies]
     pieces += [_ball(ball) for ball in balls]
-    return _only(beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left))
+    shape = beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left)
+    solids = solids_in(shape)
+    return solids[0] if len(solids) == 1 else shape
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
@@ -203,9 +205,3 @@ def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
     fuse.SetGlue(BOPAlgo_GlueShift)
     fuse.Build()
     return fuse.Shape()
-
-
-def _only(shape: TopoDS_Shape) -> TopoDS_Shape:
-    """Return the one solid of a shape, or the shape if there are several."""
-    solids = solids_in(shape)
-    return solids[0] if len(solids) == 1 else shape

@@ -162,7 +162,7 @@ def _lit(normal: Floats) -> Floats:
     for direction, strength in _LIGHTS:
         unit = np.asarray(direction) / np.linalg.norm(direction)
         light += strength * np.clip(normal @ unit, 0.0, None)
-    return np.minimum(light, 1.15)
+    return np.asarray(np.minimum(light, 1.15))
 
 
 @compiled

@@ -1,4 +1,4 @@
-"""What is written on a picture: a scale bar, numbers with leaders, and a legend, in colours that all readers tell apart."""
+"""What is written on a picture: a scale bar, numbers with leaders, and a legend in colours that all can tell apart."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -4,7 +4,7 @@ In the steps, what is together is grey; what comes to it is coloured and pulled 
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import manifold3d as m3
@@ -86,7 +86,8 @@ def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Sce
         if instance.unit in ACTUATOR_UNITS:
             continue
         near = placed(unique.mesh.body, turned @ in_joint @ instance.world)
-        if _boxes_meet(near.bounding_box(), half):
+        box = near.bounding_box()
+        if max(box[:3]) < half and min(box[3:]) > -half:
             members.append((instance, near ^ around))
     return _section([(i, body) for i, body in members if not body.is_empty()], width=width, height=height)
 
@@ -132,11 +133,6 @@ def _axis_to_the_left() -> Floats:
     matrix = np.zeros((4, 4))
     matrix[0, 2], matrix[1, 1], matrix[2, 0], matrix[3, 3] = -1.0, 1.0, 1.0, 1.0
     return matrix
-
-
-def _boxes_meet(box: Iterable[float], half: float) -> bool:
-    x0, y0, z0, x1, y1, z1 = box
-    return max(x0, y0, z0) < half and min(x1, y1, z1) > -half
 
 
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:

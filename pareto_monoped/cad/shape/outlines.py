@@ -192,7 +192,7 @@ def _half_tooth(t: Teeth) -> _Half:
     if centre_angle > np.pi / t.count:
         raise ValueError(f"a fillet of {rho} mm does not fit between {t.count} teeth of module {t.module_mm}")
     fillet = _arc(_polar(centre_radius, centre_angle), _polar(t.root_radius_mm, centre_angle), touch)
-    outward = (fillet, *foot, _flank(t, start, t.tip_radius_mm))
+    outward: tuple[Piece, ...] = (fillet, *foot, _flank(t, start, t.tip_radius_mm))
     return _Half(outward=outward, far_angle=t.half_angle(t.tip_radius_mm), near_angle=centre_angle)
 
 

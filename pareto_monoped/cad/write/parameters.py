@@ -41,7 +41,9 @@ _LEG = {
     "shank_window_half_width": _SHANK,
     "shank_core_half_width": (_SHANK_CORE := "the shank's printed core."),
     "shank_core_window_half_width": _SHANK_CORE,
-    "fork": "free depth of the shank's fork below the knee axis, enough for the thigh at the end of ``stops.knee_stop``.",
+    "fork": (
+        "free depth of the shank's fork below the knee axis, enough for the thigh at the end of ``stops.knee_stop``."
+    ),
     "foot_radius": "of the rubber ball.",
     "rod_radius": "of the base's rods: a common tube, with 3.35 mm of wall around its M4 thread.",
     "cheek": "thickness of the base's near cheek.",
@@ -73,7 +75,8 @@ def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
     Raises:
         ValueError: two dimensions have one name.
     """
-    found = (*_of_design(product), *_of_leg(leg), *(p for unique in product.unique for p in _of_part(unique)))
+    of_leg = (_length("", f"leg_{name}", getattr(leg, f"{name}_mm"), meaning) for name, meaning in _LEG.items())
+    found = (*_of_design(product), *of_leg, *(p for unique in product.unique for p in _of_part(unique)))
     names = [parameter.name for parameter in found]
     if len(set(names)) < len(names):
         twice = next(name for k, name in enumerate(names) if name in names[:k])
@@ -104,11 +107,6 @@ def _of_design(product: Product) -> Iterator[Parameter]:
         actuator = {"hip": robot.hip, "knee": robot.knee}[joint]
         yield _number(unit, f"{joint}_ratio", actuator.ratio, f"gear ratio of the {joint}")
         yield _length(unit, f"{joint}_face_width", actuator.face_width_mm, f"face width of the {joint}'s gears")
-
-
-def _of_leg(leg: LegDimensions) -> Iterator[Parameter]:
-    for name, meaning in _LEG.items():
-        yield _length("", f"leg_{name}", getattr(leg, f"{name}_mm"), meaning)
 
 
 def _of_part(unique: UniquePart) -> Iterator[Parameter]:

@@ -15,7 +15,7 @@ _NO_TURN = "0 0 0"
 
 
 def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """Return the URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip``, ``knee``, frame ``foot``.
+    """Return the URDF of the first robot: links base, thigh and shank, joints hip and knee, frame foot.
 
     URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
     comment with them. Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres; the
