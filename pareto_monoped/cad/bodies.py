@@ -37,8 +37,7 @@ _LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING})
 """Joints that are never taken apart: what is cast onto a part, and a rotor in its supplier's bearings."""
 _FLEXIBLE = frozenset({JointKind.ENGAGED, JointKind.THREADED})
 """Joints of parts that do not come straight: a chain is laid around its sprocket, a turnbuckle is turned."""
-_LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})
-"""Parts of a chain drive, which are put together link by link."""
+_LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})  # parts of a chain drive, which are put together link by link
 _SPRUNG = frozenset({Role.RETAINING_RING})
 """Parts that are spread with pliers: they leave their groove, and then go straight."""
 

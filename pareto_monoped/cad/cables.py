@@ -191,7 +191,6 @@ def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: 
 
 
 def _up(board: BoardPlace, x: float, z: float) -> list[list[float]]:
-    """Return the last corners: the tie, and the board's upper edge."""
     return [[x, board.tie_y_mm, z], [x, board.high_mm, z]]
 
 
@@ -246,7 +245,6 @@ def _around(board: BoardPlace, rim: float, diameter: float) -> tuple[float, floa
 
 
 def _backplate(actuator: Actuator) -> Part:
-    """Return the part of the housing that the actuator ends with."""
     parts = [part for part in actuator.parts if part.role is Role.HOUSING and part.group is Group.HOUSING]
     return min(parts, key=lambda part: (min(float(p.z0_mm) for p in part.prisms), -_width_mm(part)))
 

@@ -39,8 +39,7 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.factors import GearLife, JointFactor, gear_life, joint_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
-_AT_ONCE = 6
-"""Drawings in a question: few, so that both processes end at about the same time."""
+_AT_ONCE = 6  # drawings in a question: few, so that both processes end at about the same time
 _NAMED_FAILURES = 3  # more would not fit on a line
 
 
@@ -72,10 +71,7 @@ class Ordered:
 
 
 def order(product: Product, record: Mapping[str, Any], formats: Collection[str]) -> Ordered:
-    """Ask for all files of the formats that the kernel's process makes.
-
-    ``record`` is for the title blocks and may still lack what is computed last.
-    """
+    """Ask for the files of the kernel's process; ``record`` is for title blocks and may lack what is computed last."""
     listed = product.listed
     # The longest first, as the last ones may be done in either process.
     pack = kernel.do(assembly_pack, listed) if "assembly" in formats else None

@@ -66,10 +66,7 @@ class Moment:
 
 
 def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Moment]:
-    """Return the moments of a trace that the film shows, the apex last.
-
-    The columns of ``trace`` are ``jump.single.TRACE_COLUMNS``, each of shape (steps,).
-    """
+    """Return the moments of a trace (columns of ``jump.single.TRACE_COLUMNS``) that the film shows, the apex last."""
     time = np.asarray(trace["time_s"], dtype=np.float64)
     shown = np.arange(time[0], time[-1], 1.0 / (FRAMES_PER_S * slower))
     rows = [*np.searchsorted(time, shown).tolist(), len(time) - 1]
@@ -197,11 +194,7 @@ def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> 
 
 
 def encoder() -> str:
-    """Return the program ffmpeg: that of the system, else that of the extra ``video``.
-
-    Raises:
-        InputError: there is none.
-    """
+    """Return the program ffmpeg of the system, else of the extra ``video``; ``InputError`` if there is none."""
     found = shutil.which("ffmpeg")
     if found is not None:
         return found
@@ -212,11 +205,7 @@ def encoder() -> str:
 
 
 def require_gif(path: Path) -> None:
-    """Refuse a name that is not one of a GIF, before anything is drawn.
-
-    Raises:
-        InputError: the suffix is another one.
-    """
+    """Refuse a name that is not one of a GIF, with ``InputError``, before anything is drawn."""
     if path.suffix.lower() != ".gif":
         raise InputError(complaint("--gif", str(path), "a file ending in .gif", "correct the name, or use --video"))
 

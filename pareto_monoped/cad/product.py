@@ -257,10 +257,7 @@ def extent_mm(mesh: Mesh) -> NDArray[np.float64]:
 
 
 def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
-    """Return how far each box moves along an axis so that boxes that lie behind each other come apart.
-
-    ``boxes_mm`` has the low and high corners, shape (n, 6).
-    """
+    """Return how far boxes, corners of shape (n, 6), move along an axis so that those behind each other come apart."""
     low, high = boxes_mm[:, axis], boxes_mm[:, axis + 3]
     order = np.argsort(0.5 * (low + high), kind="stable")
     moved = np.zeros(len(boxes_mm))

@@ -203,13 +203,11 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
 
 
 def _short(value: Any) -> str:
-    """Return a value as it stands in a message of one line."""
     text = json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _parsed(path: Path) -> Mapping[str, Any]:
-    """Return the content of a record."""
     try:
         found = read_json(path)
     except json.JSONDecodeError as problem:

@@ -17,14 +17,11 @@ from pareto_monoped.cad.product import ACTUATOR_UNITS
 
 Members = frozenset[int]
 
-_PIECE = 3
-"""Cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice."""
-_CUT_ACTUATOR = 10
-"""Cost of a cut through an actuator, over that through a link: more than there are links."""
+_PIECE = 3  # cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice
+_CUT_ACTUATOR = 10  # cost of a cut through an actuator, over that through a link: more than there are links
 MOST_ADDED = 4
 """Additions in a step; more would not be told apart in its picture."""
-_BY_HAND = 3
-"""Bodies that need no step of their own to be put together, if they need no screws."""
+_BY_HAND = 3  # bodies that need no step of their own to be put together, if they need no screws
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,7 +168,6 @@ def _masks(rows: Bools) -> list[int]:
 
 
 def _bits(mask: int) -> Iterator[int]:
-    """Yield numbers of the bits that are set, from the lowest."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
@@ -179,7 +175,6 @@ def _bits(mask: int) -> Iterator[int]:
 
 
 def _united(masks: Sequence[int], members: Iterable[int]) -> int:
-    """Return all that some of the masks hold."""
     found = 0
     for k in members:
         found |= masks[k]

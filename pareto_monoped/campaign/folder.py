@@ -161,7 +161,6 @@ def _databases(folder: Path) -> list[Path]:
 
 
 def _others(folder: Path, own: Iterable[Path]) -> dict[str, Path]:
-    """Return databases that no name of the campaign leads to, by the settings of their study."""
     known = set(own)
     found = {}
     for db in _databases(folder):

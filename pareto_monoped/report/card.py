@@ -70,10 +70,7 @@ class Source:
 def study_card(
     source: Source, label: str, most_rows: int, places: Places, variables: Sequence[Variable], goals: Sequence[str] = ()
 ) -> StudyCard:
-    """Return what the page says of one study.
-
-    ``most_rows`` limits the trials that the page holds; ``goals`` are the objectives of all studies on the page.
-    """
+    """Return what the page says of a study with at most ``most_rows`` trials; ``goals`` are all studies' objectives."""
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
     weights = best_of_weights(data)

@@ -227,7 +227,6 @@ def _states(payload: Payload, figure: Any) -> bool:
 
 
 def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:
-    """Return study, row of its trials, and title of the first picked design that jumps."""
     for card in payload.studies:
         for picked in card.picks:
             trial = card.trials.trial[picked.row]

@@ -82,7 +82,6 @@ def axis_title(name: str) -> str:
 
 
 def _designs(card: StudyCard, places: Axes2) -> list[Mark]:
-    """Return the designs on the front, unnamed."""
     across, up = _places(card, card.front, places)
     return [(x, y, "") for x, y in zip(across.tolist(), up.tolist(), strict=True) if np.isfinite(x + y)]
 

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator
     from pareto_monoped.actuator.ratiomap import ActuatorMap
 
-_HIGHEST_RATIO = 9.0
-"""Intervals above this ratio are shown only if they have a gearbox: stage 2 does not search there."""
+_HIGHEST_RATIO = 9.0  # intervals above this ratio are shown only if they have a gearbox: stage 2 does not search there
 _LENGTHS_M = np.linspace(0.15, 0.55, 81)  # of the chart of link masses: from short links to beyond the paper's bounds
 
 

@@ -67,7 +67,6 @@ def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
 
 
 def _joined(columns: Sequence[NDArray[np.float64]], size: float) -> Ints:
-    """Return one column of all jumps in a row, in counts."""
     row = np.concatenate(columns) if columns else np.zeros(0)
     return np.asarray(np.floor(row / size + 0.5), dtype=np.int64)
 
@@ -117,7 +116,6 @@ def _shortest(counts: Ints, frame: _Frames, by: str | None, rise: Ints | None) -
 
 
 def _bits(codes: Ints, rice: int | Ints) -> Ints:
-    """Return the length of each code in bits."""
     ones = codes >> rice
     return np.where(ones < _LONG, ones + 1 + rice, _LONG + _LONG_BITS)
 

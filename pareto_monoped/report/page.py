@@ -65,16 +65,11 @@ STYLES = ("style", "choose", "print")
 
 
 def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
-    """Return what decides a map: the motor and the rules."""
     return actuator_map.motor, actuator_map.settings.rules
 
 
 def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
-    """Return the page's content.
-
-    ``sources`` has one per database, in the order of the command line; ``literal`` are the paper's cases under the
-    ``paper`` calibration, as in ``jump.table1.Spread``.
-    """
+    """Return the page's content; ``literal`` are the paper's cases under its calibration (``jump.table1.Spread``)."""
     mapped: list[Any] = []
     places: list[MapPlace] = []
     gearboxes: list[Gearbox] = []
@@ -153,10 +148,7 @@ def _axes(cards: Sequence[StudyCard]) -> list[str]:
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:
-    """Return names of the studies; where several have the same, with what they are for, seed, database or number.
-
-    Each is as long as it must be, so that no two are alike.
-    """
+    """Return the studies' names; equal ones get what they are for, seed, database or number, as far as needed."""
     names = [source.data.study.name for source in sources]
     if len({source.data.study.objectives for source in sources}) > 1:
         names = [f"{name} by {_aim(source)}" for source, name in zip(sources, names, strict=True)]
@@ -176,7 +168,6 @@ def _title(cards: Sequence[StudyCard]) -> str:
 
 
 def _aim(source: Source) -> str:
-    """Return the objectives of a study but the height, in words."""
     measures = source.data.study.objectives.measures
     return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")
 

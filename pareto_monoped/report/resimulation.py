@@ -48,10 +48,7 @@ class Resimulation:
 def resimulate(
     data: StudyData, *, most_jumps: int | None = None, frames: int = MOST_FRAMES, workers: int = 1
 ) -> Resimulation:
-    """Simulate what the page shows of a study beyond its database: of the front's jumps all, or at most some.
-
-    At most ``most_jumps`` are spread evenly over the front, and the knee besides.
-    """
+    """Simulate the front's jumps, or at most ``most_jumps`` spread evenly and the knee, and the paper's designs."""
     front = data.front()
     rows = front if most_jumps is None else front.iloc[_chosen(front, data, most_jumps)]
     jumps: dict[int, Recording] = {}

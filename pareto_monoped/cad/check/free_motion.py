@@ -81,7 +81,6 @@ def _in_working_range(product: Product, by_body: Bodies, turns: Sequence[_Turn])
 
 
 def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
-    """Return both joints."""
     leg = product.robot.leg
     to_knee = np.linalg.inv(body_frames(product.robot, _ZERO)["shank"]).astype(np.float64)
     return (
@@ -193,7 +192,6 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
 
 
 def _from_axis_mm(mesh: PlacedMesh) -> float:
-    """Return the least distance of a mesh's box from the y axis."""
     return float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
 
 

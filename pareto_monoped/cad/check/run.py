@@ -11,10 +11,7 @@ from pareto_monoped.strength.factors import JointFactor
 
 
 def check_strength(factors: Sequence[JointFactor]) -> Check:
-    """Compare every factor with the one required under the jump's loads (none if the design does not jump).
-
-    Rows that only inform are left out.
-    """
+    """Compare every factor with the one required; no factors if the design does not jump, and none that only inform."""
     factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
     return worst_of(STRENGTH, looked_at, [Finding(value=one.share, text=_sentence(one)) for one in factors])

@@ -20,14 +20,12 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
-_SAME_MM = 0.05
-"""Heights and sizes that differ by less are one."""
+_SAME_MM = 0.05  # heights and sizes that differ by less are one
 _ENGAGED_MM = 0.3  # a screw's core stands in a hole by at least this
 _PLAY_MM = 0.1  # of a screw's core in its tapped hole, radial
 _SEARCH_MM = 1.0
 """A hole whose axis is nearer than this is meant for the screw: a third of the smallest one's diameter, M3."""
-_STANDS_MM = 0.1
-"""Least common length of a screw and its hole: thinner than any sheet."""
+_STANDS_MM = 0.1  # least common length of a screw and its hole: thinner than any sheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +69,6 @@ def _on_axis(one: _Round, other: _Round) -> bool:
 
 
 def _same(one: _Round, other: _Round) -> bool:
-    """Return whether a head and a countersink begin and end at the same heights, as wide as each other."""
     return max(abs(one.low - other.low), abs(one.high - other.high), abs(one.size - other.size)) < _SAME_MM
 
 
@@ -120,7 +117,6 @@ def _threads(part: Part) -> Iterator[_Local]:
 
 
 def _holes(part: Part) -> Iterator[_Local]:
-    """Yield all round holes with their radii."""
     for prism in part.prisms:
         for hole in prism.holes:
             if isinstance(hole, Circle | Pattern):

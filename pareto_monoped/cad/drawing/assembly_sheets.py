@@ -37,18 +37,15 @@ from pareto_monoped.cad.product import Instance, Pose, Product, UniquePart, body
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import Role, Visibility
 
-_ITEMS = 99
-"""Rows of the list of items in one column."""
-_CLEAR_MM2 = 12.0
-"""Area on paper of a region that a balloon's leader is sure to find (our own choice)."""
+_ITEMS = 99  # rows of the list of items in one column
+_CLEAR_MM2 = 12.0  # area on paper of a region that a balloon's leader is sure to find (our own choice)
 _SECTION_SCALE = 1.0
 _ABOVE_MM, _BELOW_MM = 130.0, 110.0
 """How far the hip's section reaches above and below its axis; the knee's reaches as far as 70 mm either way."""
 _KNEE_MM = 70.0
 _CAPTION_MM = 3.5
 _NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show every item.")
-_EXPLODED_SCALE = 0.5
-"""At most: heads of M3 are then 2.8 mm wide."""
+_EXPLODED_SCALE = 0.5  # at most: heads of M3 are then 2.8 mm wide
 _NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
 _CABLE_MM, _CORNER_MM = 0.7, 2.5
 _CABLE_SCALE = 1.0
@@ -62,11 +59,7 @@ Sheet = tuple[Paper, Size, float]
 
 
 def assembly_sheet(product: Product) -> Sheet:
-    """Return the sheet of the assembly.
-
-    Raises:
-        ValueError: the robot fits no sheet.
-    """
+    """Return the sheet of the assembly; ``ValueError`` if the robot fits no sheet."""
     side, section = side_view(product), leg_section(product)
     knee = -1000.0 * product.robot.design.thigh_length_m
     cuts = (
@@ -117,7 +110,6 @@ def _centred(papers: Sequence[Paper]) -> Paper:
 
 
 def _lists(product: Product) -> list[Paper]:
-    """Return the list of items, in the order of ``bom.csv``."""
     rows = []
     for k, unique in enumerate(product.unique, 1):
         material = unique.part.grade or unique.part.material
@@ -136,11 +128,7 @@ class _Group:
 
 
 def exploded_sheets(product: Product) -> list[Sheet]:
-    """Return as few sheets as hold all units; each item is shown and numbered once.
-
-    Raises:
-        ValueError: a unit fits no sheet.
-    """
+    """Return as few sheets as hold all units, each item once; ``ValueError`` if a unit fits no sheet."""
     views = list(_unit_views(product))
     sheets: list[Sheet] = []
     while views:
@@ -205,11 +193,7 @@ def _groups(product: Product, unit: str, shown: set[int]) -> Iterator[_Group]:
 
 
 def cable_sheet(product: Product) -> Sheet:
-    """Return the sheet.
-
-    Raises:
-        ValueError: the robot fits no sheet.
-    """
+    """Return the sheet of the cables; ``ValueError`` if the robot fits no sheet."""
     made = cables(product.robot)
     regions = {name: list(_near_cables(product, axes)) for name, axes in _CABLE_VIEWS}
     tables = _tables(made)
@@ -252,7 +236,6 @@ def _cable_view(
 
 
 def _tables(made: Sequence[Cable]) -> list[Paper]:
-    """Return the tables of what is cut, and of the corners."""
     cut, corners = [], []
     for letter, cable in zip(ascii_uppercase, made, strict=False):
         what = (f"{cable.start} to {cable.end}", f"{cable.wires} x {cable.designation}")

@@ -42,12 +42,10 @@ BALLOON_MM = 4.0
 _PITCH_MM = 9.5
 _TEXT_MM = 2.5
 _COLUMN_MM = 14.0
-_RIM_MM = 3.0
-"""How far within a part's edge a leader may end (our own choice)."""
+_RIM_MM = 3.0  # how far within a part's edge a leader may end (our own choice)
 _PLACES = 2
 """Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
-_CROSSING_MM = 1000.0
-"""Length of leader that one crossing less is worth (our own choice: more than any leader has)."""
+_CROSSING_MM = 1000.0  # length of leader that one crossing less is worth (our own choice: more than any leader has)
 _ROUNDS = 4
 
 Point = tuple[float, float]
@@ -202,7 +200,6 @@ def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
 
 
 def _columns(paper: Paper) -> tuple[float, float]:
-    """Return where the columns of balloons stand."""
     left, _, right, _ = paper.box()
     return left - _COLUMN_MM, right + _COLUMN_MM
 

@@ -146,7 +146,6 @@ def _central(shape: Circle | Pattern) -> bool:
 
 
 def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Hole | None:
-    """Return the part's feature that these holes belong to."""
     for feature in part.features:
         if not isinstance(feature, Hole) or shape not in feature.shapes:
             continue
@@ -169,8 +168,6 @@ def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bo
 
 
 def _covers(prism: Prism, x: float, y: float) -> bool:
-    """Return whether a prism has material at a point."""
-
     def within(shape: Shape) -> bool:
         return any(shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y) for contour in contours(shape))
 

@@ -29,8 +29,7 @@ from pareto_monoped.geometry.making import (
     thickness_tolerance_mm,
 )
 
-_PIN_MODULES = 1.68
-"""Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
+_PIN_MODULES = 1.68  # diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)
 DATUM = "A"
 _SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
 """Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
@@ -113,10 +112,7 @@ def gear_rows(
     making: ToothMaking | None = None,
     hardness: str = "",
 ) -> list[tuple[str, str]]:
-    """Return the rows of the table: what, and its value.
-
-    ``accuracy_class`` (ISO 1328-1) counts where ``making`` says nothing; ``hole`` is as for ``measure``.
-    """
+    """Return the rows of the table; ``accuracy_class`` (ISO 1328-1) counts where ``making`` says nothing."""
     spline = hole and isinstance(gear, ExternalGear)
     play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
     grade = accuracy_class if making is None else making.accuracy_class
@@ -231,6 +227,5 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
 
 
 def _limits(fit: Fit) -> str:
-    """Return upper and lower deviation in millimetres."""
     found = limits(float(fit.diameter_mm), fit.zone)
     return " / ".join(f"{deviation:+.3f}" if deviation else "0" for deviation in (found.upper_mm, found.lower_mm))

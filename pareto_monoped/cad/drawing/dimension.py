@@ -25,22 +25,19 @@ FIRST_MM, PITCH_MM = 9.0, 7.0
 """From the outline to the first dimension line, and from line to line (ISO 129-1: not less than about 10 and 7)."""
 SLOT_MM = 4.2
 """Least distance of parallel texts of 2.5 mm."""
-_BESIDE_MM = 1.2
-"""From an upright dimension line to its text, which stands clear of the arrows."""
+_BESIDE_MM = 1.2  # from an upright dimension line to its text, which stands clear of the arrows
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
 FRAME_MM = 5.0
 """Height of a tolerance frame: twice the lettering's (ISO 1101)."""
-_NEAR_MM = 4.0
-"""Names that stand off farther have a leader."""
+_NEAR_MM = 4.0  # names that stand off farther have a leader
 _REACHES_MM = np.array([1.0, 2.0, 3.5, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 60, 80, 110, 150])
 _ANGLES = np.radians([45.0, 135, 225, 315, 0, 90, 180, 270, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5])
 _WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
 _ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
 """Directions in which a name may stand, and how it is then aligned."""
-_CLEAR_MM, _APART_MM = 0.2, 0.4
-"""Least distance of a name from lines and from other texts."""
+_CLEAR_MM, _APART_MM = 0.2, 0.4  # least distance of a name from lines and from other texts
 _LEADER_GAP_MM = 0.3
 
 
@@ -168,7 +165,6 @@ def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
 
 
 def _symbol(paper: Paper, name: str, x: float, y: float) -> None:
-    """Draw a symbol of ISO 1101 around (x, y)."""
     if name == "position":
         paper.circle(x, y, 1.1)
         paper.line([(x - 1.8, y), (x + 1.8, y)])
@@ -210,11 +206,7 @@ class _Place:
 
 
 def place_tags(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
-    """Write names on a view.
-
-    Raises:
-        ValueError: a name has no free place.
-    """
+    """Write names on a view; ``ValueError`` if one has no free place."""
     lines = shapely.STRtree(_pieces(paper))
     texts = [label.box() for label in paper.labels]
     leaders: list[Floats] = []

@@ -12,8 +12,7 @@ from pareto_monoped.cad.drawing.profile import seen, visible_circles
 from pareto_monoped.cad.drawing.section import RoundPart
 from pareto_monoped.geometry.shapes import Pattern
 
-_COLUMN_MM = 12.0
-"""From the outline to the callouts."""
+_COLUMN_MM = 12.0  # from the outline to the callouts
 _SAME_MM = 1e-3
 
 
@@ -100,7 +99,6 @@ def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDAr
 
 
 def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, outer: float) -> None:
-    """Draw callouts in a column at the right, each with a leader to one of its holes."""
     entries = [
         (
             bore,

@@ -25,11 +25,7 @@ _OTHERS = {"Ø": "Oslash", "°": "degree", "±": "plusminus", TIMES: "multiply",
 
 
 def width_mm(text: str, height_mm: float) -> float:
-    """Return the width of a line of text.
-
-    Raises:
-        ValueError: a letter that the drawings do not use.
-    """
+    """Return the width of a line of text; ``ValueError`` for a letter that the drawings do not use."""
     widths = _widths()
     unknown = [letter for letter in text if letter not in widths]
     if unknown:

@@ -57,7 +57,6 @@ def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
 
 
 def _making(part: Part, teeth: Teeth) -> ToothMaking | None:
-    """Return how these teeth are made, if the part says so."""
     gear = (int(teeth.gear.teeth), float(teeth.gear.module_mm))
     return next((one for one in part.teeth if (one.teeth, one.module_mm) == gear), None)
 
@@ -79,11 +78,7 @@ def round_notes(drawn: RoundPart) -> Iterator[str]:
 
 
 def part_sheet(part: Part) -> Sheet:
-    """Return the sheet of a part without its title block.
-
-    Raises:
-        ValueError: no sheet is large enough.
-    """
+    """Return the sheet of a part without its title block; ``ValueError`` if no sheet is large enough."""
     said = [part.note, part.joint.text if part.joint else ""]
     notes = [f"{note[0].upper()}{note[1:]}." for note in said if note]
     if is_round(part):
@@ -142,7 +137,6 @@ def placed(
 
 
 def _blank(bare_mm: tuple[float, float], scale: float) -> Paper:
-    """Return the room that views need without dimensions."""
     paper = Paper()
     paper.line([(0.0, 0.0), (scale * bare_mm[0], scale * bare_mm[1])])
     return paper

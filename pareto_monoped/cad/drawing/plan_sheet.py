@@ -26,17 +26,13 @@ from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Pattern
 
-_NODE_MM = 1.8
-"""Height of the numbers of nodes (ISO 3098-1, the smallest size)."""
+_NODE_MM = 1.8  # height of the numbers of nodes (ISO 3098-1, the smallest size)
 _LADDER_MM = 6.0
-_DEPTH_MM = 18.0
-"""How far a ladder of lengths may reach below where it begins: ten digits."""
+_DEPTH_MM = 18.0  # how far a ladder of lengths may reach below where it begins: ten digits
 _LETTER = "A"
-_AXIS_MM = 9.0
-"""Length of the arrows of the origin's axes."""
+_AXIS_MM = 9.0  # length of the arrows of the origin's axes
 _SAME_MM = 1e-6
-_ROWS = 34
-"""Rows of a table before it goes on beside itself."""
+_ROWS = 34  # rows of a table before it goes on beside itself
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
@@ -177,7 +173,6 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
 
 
 def _has_section(plan: Plan) -> bool:
-    """Return whether there is more to see across the sheet than one thickness."""
     flush = all(abs(bore.low - plan.low) < 1e-6 and abs(bore.high - plan.high) < 1e-6 for bore in plan.bores)
     return not (plan.is_flat and flush)
 
@@ -280,7 +275,6 @@ def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[t
 
 
 def _end_chamfers(contour: Contour, layer: Layer, plan: Plan, part: Part) -> Iterator[str]:
-    """Yield the chamfers at the ends of a boss."""
     if contour.circle is None:
         return
     for end in part.features:
@@ -301,7 +295,6 @@ def _add_contour(
     shapes: list[tuple[str, ...]],
     tags: list[Tag],
 ) -> None:
-    """Add the rows of one contour."""
     outline = contour is layer.outline
     rectangle = rounded_rectangle(contour) if not outline else None
     if contour.circle is not None:

@@ -202,7 +202,6 @@ def _rings(prism: Prism) -> Iterator[Polygon]:
 
 
 def _reach(shape: Shape) -> float:
-    """Return radius of a circle, or of the tips of teeth."""
     if isinstance(shape, ExternalGear | InternalGear):
         return float(shape.tip_radius_mm)
     assert isinstance(shape, Circle)
@@ -210,14 +209,12 @@ def _reach(shape: Shape) -> float:
 
 
 def _triangle(bevel: Bevel) -> Polygon:
-    """Return the ring of a cone on the axis."""
     radius, edge = float(bevel.at.radius_mm), float(bevel.edge_mm)
     face, end = float(bevel.face_mm), float(bevel.end_mm)
     return Polygon([(face, radius), (face, edge), (end, radius)])
 
 
 def _takes(bevel: Bevel) -> bool:
-    """Return whether a cone takes material away."""
     return bevel.hole or float(bevel.edge_mm) < float(bevel.at.radius_mm)
 
 

@@ -29,12 +29,10 @@ from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.making import Fit
 
 _HATCH_MM = 2.0
-_LADDER_MM = 5.0
-"""From the outline to where a ladder's lines may bend."""
+_LADDER_MM = 5.0  # from the outline to where a ladder's lines may bend
 _SAME_MM = 1e-6
 
-_Along = Callable[[float], float]
-"""From a height along the axis to x on paper."""
+_Along = Callable[[float], float]  # from a height along the axis to x on paper
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +134,6 @@ def _pitch(bore: Bore) -> float:
 
 
 def _bore_profile(bore: Bore) -> BaseGeometry:
-    """Return a hole with its cones in the section's plane."""
     at, r = _pitch(bore), bore.radius
     pieces: list[BaseGeometry] = [box(bore.low, at - r, bore.high, at + r)]
     for mouth, face, inwards in zip(bore.mouths, (bore.low, bore.high), (1.0, -1.0), strict=True):
@@ -159,7 +156,6 @@ def _hatched(part: RoundPart, half: BaseGeometry, x_of: _Along, scale: float, si
 
 
 def _outline(paper: Paper, area: BaseGeometry) -> None:
-    """Draw the edges of an area."""
     for polygon in polygons(area.simplify(_SAME_MM)):
         for ring in (polygon.exterior, *polygon.interiors):
             paper.line(list(ring.coords)[:-1], width_mm=WIDE_MM, closed=True)

@@ -12,8 +12,7 @@ _FRAME_MM = 0.7  # width of the frame's line (ISO 5457)
 TITLE_MM = (180.0, 44.0)
 """Width (ISO 7200: 180 mm at most) and height of the title block."""
 _CAPTION_MM = 1.8
-_SPACE_MM = 6.0
-"""Between things on a sheet."""
+_SPACE_MM = 6.0  # between things on a sheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,7 +163,6 @@ def titled(paper: Paper, size: Size, scale: float, title: Title, number: str = "
 
 
 def _border(paper: Paper, size: Size) -> None:
-    """Draw frame and centring marks."""
     left, right, top = BINDING_MM, size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
     paper.line([(left, MARGIN_MM), (right, MARGIN_MM), (right, top), (left, top)], width_mm=_FRAME_MM, closed=True)
     x, y = 0.5 * size.width_mm, 0.5 * size.height_mm

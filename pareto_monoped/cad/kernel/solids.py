@@ -55,7 +55,6 @@ def _adds(bevel: Bevel) -> bool:
 
 
 def _head(bevel: Bevel) -> TopoDS_Shape:
-    """Return the cone of a countersunk head, around its shank."""
     ((x, y),) = bevel.centres_mm()
     along = float(bevel.end_mm) - float(bevel.face_mm)
     axes = gp_Ax2(gp_Pnt(x, y, float(bevel.face_mm)), gp_Dir(0.0, 0.0, float(np.sign(along))))
@@ -100,10 +99,7 @@ def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Fa
 
 
 def solid_of(part: Part) -> TopoDS_Shape:
-    """Return one instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
-
-    The part's numbers must be floats, not arrays.
-    """
+    """Return one instance of a part, whose numbers are floats: a solid, or a compound of separate bodies."""
     return solid_from(part.prisms, part.balls, part.bevels)
 
 

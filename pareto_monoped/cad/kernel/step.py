@@ -47,8 +47,7 @@ _LINK = re.compile(
 )
 _REFERENCE = re.compile(rb"(?<!'Context )#(\d+)")
 """An entity's number; the kernel's names of contexts have numbers too, which are none of an entity."""
-_AFTER = 4
-"""Entities of a context after its first: the units of length, plane and solid angle, and the uncertainty."""
+_AFTER = 4  # entities of a context after its first: the units of length, plane and solid angle, and the uncertainty
 _AXES = 4
 """Entities of the axes at the origin, which all representations of a file share: placement, point, two directions."""
 Colour = tuple[float, float, float]
@@ -57,8 +56,7 @@ TIMESTAMP = datetime(2025, 1, 1)
 _METRES = 1e-3  # the documents' unit: millimetres
 _USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
 _NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
-_TAIL = 2000
-"""The last entity of a file, which is a short one, begins within so many characters from its end."""
+_TAIL = 2000  # the last entity of a file, which is a short one, begins within so many characters from its end
 _END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
@@ -134,7 +132,6 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
 
 
 def _own_shape(stand_in: Shape, text: bytes) -> Shape:
-    """Return the shape of a part's own file."""
     (shape,) = shapes_in(text)
     if shape.name != stand_in.name or shape.axes != shape.number + 1 or stand_in.axes > stand_in.number:
         raise ValueError(f"STEP file of {stand_in.name}: is laid out in an unknown way; install the kernel's version")

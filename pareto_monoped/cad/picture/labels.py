@@ -167,7 +167,6 @@ def _balloon(pen: "ImageDraw", balloon: Balloon) -> None:
 
 
 def _scale_bar(pen: "ImageDraw", px_per_mm: float, width: int, bottom: int, *, left: float = 0.0) -> None:
-    """Draw a black and white bar of a round length, as the picture of this width needs it."""
     length = bar_mm(px_per_mm, width)
     start, top = left + 16.0, bottom - 22.0
     end = start + length * px_per_mm

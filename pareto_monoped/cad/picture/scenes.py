@@ -22,8 +22,7 @@ from pareto_monoped.geometry.roles import Visibility
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 
-_FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
-"""From the side of the knee actuator, from in front and above."""
+_FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))  # from the side of the knee actuator, from in front and above
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
 _KNEE_AROUND_MM = 62.0
 """Half of the box around the knee joint that its section shows: the bearings with a part of either link."""

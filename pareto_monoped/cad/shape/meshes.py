@@ -136,7 +136,6 @@ def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:
 
 
 def _loops(border: Triangles) -> list[NDArray[np.int64]]:
-    """Return closed lines from directed edges."""
     following = dict(border.tolist())
     loops = []
     while following:
@@ -278,7 +277,6 @@ def mesh_from(body: m3.Manifold) -> Mesh:
 
 
 def _mesh_of(points_mm: Points, triangles: Triangles) -> Mesh:
-    """Return triangles with the manifold that they bound."""
     return Mesh(
         points_mm=points_mm, triangles=triangles, body=m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
     )
@@ -327,10 +325,7 @@ def _welded(mesh: Mesh) -> Mesh:
 
 
 def _touching(points: Points, triangles: Triangles, owners: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return members that have an edge in common with an earlier member; of several with one edge at least the last.
-
-    ``owners`` has the member of each point.
-    """
+    """Return members that share an edge with an earlier one; of several with one edge at least the last."""
     here = place_numbers(points)
     start, end = here[triangles].ravel(), here[triangles[:, [1, 2, 0]]].ravel()
     # One direction is enough: the edges of a closed member run in both.

@@ -242,7 +242,6 @@ def _turned(points: Points, angle: float) -> Points:
 
 
 def _arc(centre: Points, first: Points, last: Points) -> Arc:
-    """Return the short arc from one point to another."""
     a = float(np.arctan2(first[1] - centre[1], first[0] - centre[0]))
     b = float(np.arctan2(last[1] - centre[1], last[0] - centre[0]))
     sweep = (b - a + np.pi) % (2.0 * np.pi) - np.pi
@@ -262,11 +261,7 @@ def _angle(base_mm: float, radius_mm: float) -> float:
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
-    """Return the closed curves that bound a shape, one per separate region.
-
-    Raises:
-        TypeError: a kind of shape that has no outline here.
-    """
+    """Return the closed curves that bound a shape, one per separate region; ``TypeError`` for an unknown kind."""
     if isinstance(shape, Circle):
         return (Contour(circle=shape),)
     if isinstance(shape, Pattern):

@@ -216,7 +216,6 @@ def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
 
 
 def _chain(product: Listed) -> Iterator[str]:
-    """Yield how the chain is tensioned."""
     notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
     yield "<h2>Chain</h2><ol>"
@@ -234,7 +233,6 @@ def _chain(product: Listed) -> Iterator[str]:
 
 
 def _cables(product: Listed) -> Iterator[str]:
-    """Yield what is cut, and where it runs."""
     made = cables(product.robot)
     yield "<h2>Cables</h2>"
     yield (

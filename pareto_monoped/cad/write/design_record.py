@@ -12,8 +12,7 @@ from pareto_monoped.definition.provenance import digest
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
 
-_DIGITS = 12
-"""Of a design's hash: two of a million designs share one with a probability of 0.2 percent."""
+_DIGITS = 12  # of a design's hash: two of a million designs share one with a probability of 0.2 percent
 MADE_BY = f"pareto-monoped {__version__}"
 """Program and version, as written into every record."""
 

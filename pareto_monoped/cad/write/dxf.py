@@ -21,8 +21,7 @@ LAYER = "CUT"
 NOTES = "NOTES"
 """Layer of texts, which the laser must not engrave."""
 _TEXT_MM = 2.5
-_CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))
-"""How R12 writes what is not ASCII."""
+_CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))  # how R12 writes what is not ASCII
 
 Pair = tuple[int, str]
 """A group code and its value."""
@@ -103,7 +102,6 @@ def _notes(part: Part) -> Iterator[Pair]:
 
 
 def _contour(name: str, contour: Contour) -> Iterator[Pair]:
-    """Yield the entities of a closed curve of the part ``name``."""
     if contour.circle is not None:
         yield from _circle(contour.circle)
     for piece in contour.pieces:

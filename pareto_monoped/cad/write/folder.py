@@ -18,10 +18,8 @@ from pareto_monoped.config import read_json
 from pareto_monoped.errors import InputError, OutputError, complaint, unknown_name
 from pareto_monoped.files import FORCE, unwritable
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-"""Ctrl-C, and what ends the worker processes of a batch."""
-_TRIES = 100
-"""To delete a folder: what a thread was writing when the folder got another name may come during the first."""
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)  # Ctrl-C, and what ends the worker processes of a batch
+_TRIES = 100  # to delete a folder: what a thread was writing when the folder got another name may come during the first
 _moving = threading.Lock()
 _unfinished: set[Path] = set()
 _SAFE_NAME = re.compile(r"[a-z0-9_]+")
@@ -170,11 +168,7 @@ def require_free(out_dir: Path, *, force: bool) -> None:
 
 
 def safe(name: str) -> str:
-    """Return a name that cannot lead out of the folder.
-
-    Raises:
-        OutputError: it could.
-    """
+    """Return a name that cannot lead out of the folder, or raise ``OutputError``."""
     if not _SAFE_NAME.fullmatch(name):
         raise OutputError(f"part name {name!r}: must be letters, digits and underscores to become a file; rename it")
     return name

@@ -146,7 +146,6 @@ def colliders(product: Product) -> tuple[Collider, ...]:
 
 
 def _around_actuator(product: Product, name: str, actuator: Actuator) -> Collider:
-    """Return a cylinder as long and wide as an actuator's housing."""
     unit = next(unit for unit in product.robot.units if unit.name == name)
     middle = unit_frame(unit) @ np.array([0.0, 0.0, -0.5 * actuator.length_mm, 1.0])
     return Collider(

@@ -70,11 +70,7 @@ class Parameter:
 
 
 def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
-    """Return all dimensions of a design, its leg, and every part that is made, in the part's own frame.
-
-    Raises:
-        ValueError: two dimensions have one name.
-    """
+    """Return all dimensions of a design, its leg and every part that is made; ``ValueError`` if two have one name."""
     of_leg = (_length("", f"leg_{name}", getattr(leg, f"{name}_mm"), meaning) for name, meaning in _LEG.items())
     found = (*_of_design(product), *of_leg, *(p for unique in product.unique for p in _of_part(unique)))
     names = [parameter.name for parameter in found]
@@ -99,7 +95,6 @@ def equations(rows: Iterable[Parameter]) -> str:
 
 
 def _of_design(product: Product) -> Iterator[Parameter]:
-    """Yield the lengths of the links, and the gear sets."""
     robot = product.robot
     for link, length_m in (("thigh", robot.design.thigh_length_m), ("shank", robot.design.shank_length_m)):
         yield _length("", f"{link}_length", 1e3 * length_m, f"{link}: between its joints, or knee and foot centre")

@@ -33,7 +33,6 @@ def readme(
 
 
 def _design(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield variables and jumps, as searched and as built."""
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
     yield from ("| variable | searched | as built |", "|---|---|---|")
@@ -106,7 +105,6 @@ def _making(product: Product) -> Iterator[str]:
 
 
 def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: GearLife | None) -> Iterator[str]:
-    """Yield the factors, and whether anybody asked for them."""
     yield from ("## Strength", "")
     if not record["strength"]:
         yield from ("Strength was not asked for: this design may not hold.", "")

@@ -77,7 +77,6 @@ def _add_collision(link: ET.Element, collider: Collider) -> None:
 
 
 def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
-    """Add the sphere that touches the ground in the simulation."""
     element = ET.SubElement(link, "collision", name="foot")
     ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
     ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
