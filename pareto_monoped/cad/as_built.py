@@ -15,8 +15,7 @@ from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.build import Robot, build_robot
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
-LENGTH_STEP_M = 1e-4
-"""Link lengths are made to 0.1 mm."""
+LENGTH_STEP_M = 1e-4  #: Link lengths are made to 0.1 mm.
 _SAME_CIRCLE_MM = 0.05  # pitch circles closer than this take each other's screws
 _REST = Pose(hip_rad=-0.8, knee_rad=1.6)  # shown when the robot cannot stand in its start pose
 

@@ -28,8 +28,7 @@ from pareto_monoped.robot.build import Robot, Unit
 
 Points = NDArray[np.float64]
 
-TIE, TIE_DESIGNATION = "tie", "cable tie 2.5 x 100 mm"
-"""What is at the corner with a tie, and what is bought for it."""
+TIE, TIE_DESIGNATION = "tie", "cable tie 2.5 x 100 mm"  #: What is at the corner with a tie, and what is bought for it.
 _WIRES = ((1.0, 2.5), (1.5, 2.8), (2.5, 3.4), (4.0, 4.2), (6.0, 5.2))
 """Copper in mm2 and outer diameter in mm of fine-stranded wires with silicone insulation, type SiF (makers' data)."""
 _CURRENT_A_PER_MM2 = 32.0

@@ -57,8 +57,7 @@ _NOT_COMPARED = ("jumps", "formats", "files")
 """Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
 _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
 """Keys whose values the job gives; all others are computed, and another machine may round them differently."""
-REL_TOLERANCE = 1e-9
-"""Of numbers that another machine may round in another way."""
+REL_TOLERANCE = 1e-9  #: Of numbers that another machine may round in another way.
 _JUMP_REL_TOLERANCE = 1e-3
 """Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
 _RATIOS = ("hip_ratio", "knee_ratio")

@@ -19,8 +19,7 @@ Members = frozenset[int]
 
 _PIECE = 3  # cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice
 _CUT_ACTUATOR = 10  # cost of a cut through an actuator, over that through a link: more than there are links
-MOST_ADDED = 4
-"""Additions in a step; more would not be told apart in its picture."""
+MOST_ADDED = 4  #: Additions in a step; more would not be told apart in its picture.
 _BY_HAND = 3  # bodies that need no step of their own to be put together, if they need no screws
 
 

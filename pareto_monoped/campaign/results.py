@@ -18,14 +18,10 @@ from pareto_monoped.storage.reader import read_study
 
 Floats = NDArray[np.float64]
 
-LEVELS_M = (0.7, 0.8, 0.9)
-"""Heights at which tables say what they cost: those of the report of a study."""
-LOW, HIGH = 0.1, 0.9
-"""Ends of the bands: what a tenth of the studies and nine tenths of them reach."""
-POINTS = 120
-"""Of a curve: more than a chart can show apart."""
-SEEDS = "seeds"
-"""The axis that says nothing of the robot; its studies are repetitions."""
+LEVELS_M = (0.7, 0.8, 0.9)  #: Heights at which tables say what they cost: those of the report of a study.
+LOW, HIGH = 0.1, 0.9  #: Ends of the bands: what a tenth of the studies and nine tenths of them reach.
+POINTS = 120  #: Of a curve: more than a chart can show apart.
+SEEDS = "seeds"  #: The axis that says nothing of the robot; its studies are repetitions.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

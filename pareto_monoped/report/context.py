@@ -21,8 +21,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Words = Annotated[str, Field(min_length=1)]
 _WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
 _MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
-Box = tuple[float, float, float, float]
-"""Left, right, top and bottom of a rectangle in the chart."""
+Box = tuple[float, float, float, float]  #: Left, right, top and bottom of a rectangle in the chart.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,8 +18,7 @@ from pareto_monoped.storage.reader import StudyData
 
 Floats = NDArray[np.float64]
 
-MOST_TRIANGLES = 60_000
-"""Triangles of all models of a study together; they take about 1.7 MB of the page."""
+MOST_TRIANGLES = 60_000  #: Triangles of all models of a study together; they take about 1.7 MB of the page.
 _LEAST = 24  # triangles that even the smallest body keeps
 _FINEST_MM = 0.1
 _GREY = (170, 176, 184)

@@ -19,10 +19,8 @@ JOINTS = {"hip": "#a3487f", "knee": "#0072b2"}
 """The page's colours of the joints (--hip, --knee)."""
 ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2, "borderaxespad": 0.1}
 """Where a legend covers no data: in rows above its axes."""
-Mark = tuple[float, float, str]
-"""Where a design stands, to the right and upward, in the units shown, and its name."""
-Axes2 = tuple[str, str]
-"""The measures to the right and upward."""
+Mark = tuple[float, float, str]  #: Where a design stands, to the right and upward, in the units shown, and its name.
+Axes2 = tuple[str, str]  #: The measures to the right and upward.
 
 
 def values(column: Column, rows: Sequence[int] | None = None) -> NDArray[np.float64]:

@@ -41,8 +41,7 @@ _HEAD_BITS = 16  # of the numbers of a jump's lift-off step and last step
 _LONG, _LONG_BITS = 20, 28  # a code of so many ones is followed by the number itself, in so many bits
 _MOST_RICE = 12
 _FAR = 4  # a line is not drawn on over so many times the distance of the two points that it goes through
-DIGITS = 5
-"""Significant digits of numbers on the page: more than any of them is good for."""
+DIGITS = 5  #: Significant digits of numbers on the page: more than any of them is good for.
 
 
 def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:

@@ -60,8 +60,7 @@ SCRIPTS = (
     "shortlist", "compare", "print", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
-STYLES = ("style", "choose", "print")
-"""The page's style sheets, in the order in which they apply."""
+STYLES = ("style", "choose", "print")  #: The page's style sheets, in the order in which they apply.
 
 
 def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:

@@ -18,8 +18,7 @@ from pareto_monoped.report.schema import Comparison, Number, Payload, Quantity, 
 
 ENERGIES = ("energy_j", "electrical_energy_j")
 """Measures that are never less than the work against gravity, m g (H - start height): the floor of the front chart."""
-ASKED = (*ENERGIES, "mass_kg")
-"""Measures that the page asks for beside the first two objectives, if a study has them."""
+ASKED = (*ENERGIES, "mass_kg")  #: Measures that the page asks for beside the first two objectives, if a study has them.
 MOST_ROWS = 60
 """Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
 

@@ -36,8 +36,7 @@ _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
 _Solid = tuple[Instance, m3.Manifold]
 Bodies = dict[str, list[_Solid]]
-STEPS = 8
-"""Positions of the gears within one tooth of the sun, after which all repeats."""
+STEPS = 8  #: Positions of the gears within one tooth of the sun, after which all repeats.
 
 
 def check_free_motion(product: Product) -> tuple[Check, Check, Check]:

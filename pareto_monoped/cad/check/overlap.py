@@ -16,8 +16,7 @@ from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
-TOUCH_MM = 1e-6
-"""Closer than this is touching, not overlapping."""
+TOUCH_MM = 1e-6  #: Closer than this is touching, not overlapping.
 _LEAST_MM3 = 1e-6  # rounding in manifold3d
 _LEAST_MM2 = 1e-9
 """Areas below this are rounding: over the height of any part they make less than the least volume of an overlap."""

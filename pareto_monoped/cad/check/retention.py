@@ -28,10 +28,8 @@ from pareto_monoped.geometry.roles import FASTENERS, Group, Role
 from pareto_monoped.geometry.shapes import Circle, Shape
 from pareto_monoped.robot.build import Robot
 
-PLAY_MM = 0.8
-"""How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm."""
-THREAD_SHARE = 0.6
-"""Least depth of thread over the screw's diameter."""
+PLAY_MM = 0.8  #: How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm.
+THREAD_SHARE = 0.6  #: Least depth of thread over the screw's diameter.
 _GROUND = Role.ROD  # the test stand's carriage clamps to the rods
 POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
 """Within the knee's range, where no end stop is met, and with the shank's own axes along those of the assembly."""

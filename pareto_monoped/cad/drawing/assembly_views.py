@@ -37,8 +37,7 @@ FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
 _CAPTION_MM = 3.5  # height of the names of views
-BALLOON_MM = 4.0
-"""Radius of an item's balloon."""
+BALLOON_MM = 4.0  #: Radius of an item's balloon.
 _PITCH_MM = 9.5
 _TEXT_MM = 2.5
 _COLUMN_MM = 14.0

@@ -17,20 +17,16 @@ from pareto_monoped.cad.drawing.paper import ARROW_MM, LETTER_MM, Align, Label, 
 Floats = NDArray[np.float64]
 Side = Literal["below", "above", "left", "right"]
 
-GAP_MM = 1.0
-"""From a feature to the beginning of its extension line."""
-OVERSHOOT_MM = 1.5
-"""Of an extension line beyond the dimension line."""
+GAP_MM = 1.0  #: From a feature to the beginning of its extension line.
+OVERSHOOT_MM = 1.5  #: Of an extension line beyond the dimension line.
 FIRST_MM, PITCH_MM = 9.0, 7.0
 """From the outline to the first dimension line, and from line to line (ISO 129-1: not less than about 10 and 7)."""
-SLOT_MM = 4.2
-"""Least distance of parallel texts of 2.5 mm."""
+SLOT_MM = 4.2  #: Least distance of parallel texts of 2.5 mm.
 _BESIDE_MM = 1.2  # from an upright dimension line to its text, which stands clear of the arrows
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
-FRAME_MM = 5.0
-"""Height of a tolerance frame: twice the lettering's (ISO 1101)."""
+FRAME_MM = 5.0  #: Height of a tolerance frame: twice the lettering's (ISO 1101).
 _NEAR_MM = 4.0  # names that stand off farther have a leader
 _REACHES_MM = np.array([1.0, 2.0, 3.5, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 60, 80, 110, 150])
 _ANGLES = np.radians([45.0, 135, 225, 315, 0, 90, 180, 270, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5])

@@ -14,13 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-CAPITAL = 0.718
-"""Height of capitals over font size (Adobe's font metrics of Helvetica, ``CapHeight``)."""
-DESCENT = 0.207
-"""How far letters reach below their line, over font size (``Descender``)."""
+CAPITAL = 0.718  #: Height of capitals over font size (Adobe's font metrics of Helvetica, ``CapHeight``).
+DESCENT = 0.207  #: How far letters reach below their line, over font size (``Descender``).
 _METRICS = "mpl-data/fonts/pdfcorefonts/Helvetica.afm"  # Matplotlib ships Adobe's file
-TIMES = "\N{MULTIPLICATION SIGN}"
-"""Between numbers, as in ``6 x 8`` (ISO 129-1)."""
+TIMES = "\N{MULTIPLICATION SIGN}"  #: Between numbers, as in ``6 x 8`` (ISO 129-1).
 _OTHERS = {"Ø": "Oslash", "°": "degree", "±": "plusminus", TIMES: "multiply", "µ": "mu", "'": "quotesingle"}
 
 
@@ -59,12 +56,9 @@ Align = Literal["left", "centre", "right"]
 WIDE_MM, NARROW_MM = 0.5, 0.25
 SOLID: tuple[float, ...] = ()
 DASHED = (2.5, 1.0)
-CHAIN = (6.0, 1.0, 0.6, 1.0)
-"""Long-dashed dotted: centre lines, pitch circles."""
-LETTER_MM = 2.5
-"""Height of dimensions and notes (ISO 3098-1, nominal size 2.5)."""
-LINE_PITCH = 1.6
-"""Distance of lines of text over their height (ISO 3098-1 asks for at least 1.4 without accents)."""
+CHAIN = (6.0, 1.0, 0.6, 1.0)  #: Long-dashed dotted: centre lines, pitch circles.
+LETTER_MM = 2.5  #: Height of dimensions and notes (ISO 3098-1, nominal size 2.5).
+LINE_PITCH = 1.6  #: Distance of lines of text over their height (ISO 3098-1 asks for at least 1.4 without accents).
 ARROW_MM = 2.5
 _ARROW_HALF_MM = 0.4
 _CHORD_MM = 0.01  # a circle on paper is a polygon that stays this close to it

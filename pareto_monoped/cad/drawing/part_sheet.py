@@ -19,8 +19,7 @@ _READABLE_MM, _PLAN_MM = 60.0, 120.0
 """Least length of the longest side on paper, if a sheet allows it: of round parts, and of others, which have more holes
 and nodes along it (our own choice)."""
 
-Sheet = tuple[Paper, Size, float]
-"""What stands on it, its size, its scale."""
+Sheet = tuple[Paper, Size, float]  #: What stands on it, its size, its scale.
 
 
 def round_part(part: Part) -> RoundPart:

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 
 from pareto_monoped.cad.drawing.paper import CHAIN, LETTER_MM, LINE_PITCH, WIDE_MM, Paper, width_mm
 
-BINDING_MM, MARGIN_MM = 20.0, 10.0
-"""Margins of the frame: for filing on the left, and on the other sides (ISO 5457)."""
+BINDING_MM, MARGIN_MM = 20.0, 10.0  #: Margins of the frame: for filing on the left, and on the other sides (ISO 5457).
 _CENTRING_MM = 5.0
 _FRAME_MM = 0.7  # width of the frame's line (ISO 5457)
-TITLE_MM = (180.0, 44.0)
-"""Width (ISO 7200: 180 mm at most) and height of the title block."""
+TITLE_MM = (180.0, 44.0)  #: Width (ISO 7200: 180 mm at most) and height of the title block.
 _CAPTION_MM = 1.8
 _SPACE_MM = 6.0  # between things on a sheet
 
@@ -29,13 +27,10 @@ A3 = Size(name="A3", width_mm=420.0, height_mm=297.0)
 A2 = Size(name="A2", width_mm=594.0, height_mm=420.0)
 A1 = Size(name="A1", width_mm=841.0, height_mm=594.0)
 A0 = Size(name="A0", width_mm=1189.0, height_mm=841.0)
-SIZES = (A4, A3, A2, A1, A0)
-"""The upright A4 and the others lying, as ISO 5457 has them."""
-SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
-"""ISO 5455."""
+SIZES = (A4, A3, A2, A1, A0)  #: The upright A4 and the others lying, as ISO 5457 has them.
+SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  #: ISO 5455.
 Box = tuple[float, float, float, float]
-Placing = tuple[list[tuple[float, float]], float]
-"""Lower left corners of tables, and how much room they take."""
+Placing = tuple[list[tuple[float, float]], float]  #: Lower left corners of tables, and how much room they take.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -51,8 +51,7 @@ _AFTER = 4  # entities of a context after its first: the units of length, plane 
 _AXES = 4
 """Entities of the axes at the origin, which all representations of a file share: placement, point, two directions."""
 Colour = tuple[float, float, float]
-TIMESTAMP = datetime(2025, 1, 1)
-"""The time in every STEP file: the real time would make each export differ."""
+TIMESTAMP = datetime(2025, 1, 1)  #: The time in every STEP file: the real time would make each export differ.
 _METRES = 1e-3  # the documents' unit: millimetres
 _USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
 _NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)

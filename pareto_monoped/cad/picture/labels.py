@@ -32,8 +32,7 @@ tritanopia (Machado et al. 2009), and of 1/1.8 of that for normal vision. Found 
 from many random beginnings; in the order in which each is farthest from all before it. Lightness 48 to 94, so that
 shading and black lines show."""
 
-STRIP_PX = 58
-"""Height of the strips above and below a picture that hold the numbers."""
+STRIP_PX = 58  #: Height of the strips above and below a picture that hold the numbers.
 _BALLOON_PX = 15  # radius
 _BAR_SHARE = 0.25  # greatest length of a scale bar over the picture's width
 _ROW_PX = 34  # of the legend, at most

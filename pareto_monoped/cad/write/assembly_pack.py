@@ -24,17 +24,12 @@ from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.geometry.shapes import Shape
 
 # Our own layout, mm.
-WALL_MM = 8.0
-"""Least thickness around the foot."""
-COLLAR_MM = 12.0
-"""How far the halves reach up beside the foot's block, which they hold in its place."""
-PLAY_MM = 0.15
-"""Around the block: what a printed hole is too small by."""
-PIN_DEPTH_MM = 8.0
-"""Depth in each half of the dowel pins 4 x 16 (ISO 2338) that align them."""
+WALL_MM = 8.0  #: Least thickness around the foot.
+COLLAR_MM = 12.0  #: How far the halves reach up beside the foot's block, which they hold in its place.
+PLAY_MM = 0.15  #: Around the block: what a printed hole is too small by.
+PIN_DEPTH_MM = 8.0  #: Depth in each half of the dowel pins 4 x 16 (ISO 2338) that align them.
 _PIN_HOLE = 4.2
-POUR_MM = 6.0
-"""Diameter of the holes for pouring and for the air, beside the block."""
+POUR_MM = 6.0  #: Diameter of the holes for pouring and for the air, beside the block.
 _SEGMENTS = 160  # of the ball: 0.013 mm from round at a radius of 33 mm
 FOLDER = "assembly"
 _FROM = {

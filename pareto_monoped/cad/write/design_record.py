@@ -13,8 +13,7 @@ from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
 
 _DIGITS = 12  # of a design's hash: two of a million designs share one with a probability of 0.2 percent
-MADE_BY = f"pareto-monoped {__version__}"
-"""Program and version, as written into every record."""
+MADE_BY = f"pareto-monoped {__version__}"  #: Program and version, as written into every record.
 
 
 def design_record(

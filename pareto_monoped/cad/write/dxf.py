@@ -18,13 +18,11 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.stand import MGN12H, arm, carriage_places, carriage_screw, rod_screws
 
 LAYER = "CUT"
-NOTES = "NOTES"
-"""Layer of texts, which the laser must not engrave."""
+NOTES = "NOTES"  #: Layer of texts, which the laser must not engrave.
 _TEXT_MM = 2.5
 _CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))  # how R12 writes what is not ASCII
 
-Pair = tuple[int, str]
-"""A group code and its value."""
+Pair = tuple[int, str]  #: A group code and its value.
 
 _HEAD: tuple[Pair, ...] = (
     (0, "SECTION"),

@@ -32,8 +32,7 @@ _RELATIONS = (
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
 Floats = NDArray[np.float64]
 VISUAL_TOLERANCE_MM = 0.1
-METRES = 1e-3
-"""From the meshes' millimetres to the models' unit."""
+METRES = 1e-3  #: From the meshes' millimetres to the models' unit.
 _MARGIN_M = 1e-3
 
 
