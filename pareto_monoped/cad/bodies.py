@@ -191,7 +191,7 @@ class _Slabs:
     def _beside(self, a: int, path: m3.CrossSection, common_mm: float) -> Bools:
         """Return which slabs have more than a height in common with slab ``a`` and a box that meets that of a path."""
         common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
-        return (common > common_mm) & self._covering(np.array([path.bounds()]))[0]
+        return np.asarray((common > common_mm) & self._covering(np.array([path.bounds()]))[0])
 
     def _meet(self, path: m3.CrossSection, looked_at: Bools, met: set[int]) -> None:
         """Add the bodies whose slabs, of those that are looked at, share an area with a path."""

@@ -168,8 +168,7 @@ def export_design(
         progress("writing")
         with beside(out_dir) as folder:
             files.write_meshes(folder, part_files, other_files, wanted)
-            files.write_drawings(folder, product, wanted)
-            files.write_assembly_sheet(folder, product, record, wanted)
+            files.write_drawings(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
             _write_tables(folder, product, record, checks, factors, life, leg_dimensions(maps))
             ordered.write(folder)

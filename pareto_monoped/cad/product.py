@@ -251,11 +251,6 @@ def part_file_name(units: tuple[str, ...], part_name: str) -> str:
     return f"{actuators[0] if len(actuators) == 1 else 'actuator'}_{part_name}"
 
 
-def extent_mm(mesh: Mesh) -> NDArray[np.float64]:
-    """Return the size of a part along its axes, shape (3,)."""
-    return np.asarray(mesh.points_mm.max(axis=0) - mesh.points_mm.min(axis=0))
-
-
 def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
     """Return how far boxes, corners of shape (n, 6), move along an axis so that those behind each other come apart."""
     low, high = boxes_mm[:, axis], boxes_mm[:, axis + 3]

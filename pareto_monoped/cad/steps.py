@@ -59,13 +59,11 @@ def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
     if not rest:
         # Fasteners only: any one of them can be put aside.
         first = min(everything)
-        # Fasteners only: any one of them can be put aside.
-        first = min(everything)
-        kept, added = take_apart(blocking, everything - {first}), Whole(members=frozenset({first}))
-        return Joined(kept=kept, added=added, out=DIRECTIONS[0], fasteners=())
+        aside = Whole(members=frozenset({first}))
+        return Joined(kept=take_apart(blocking, everything - {first}), added=aside, out=DIRECTIONS[0], fasteners=())
     if len(rest) == 1:
-        kept, added = Whole(members=rest), Whole(members=frozenset())
-        return Joined(kept=kept, added=added, out=DIRECTIONS[0], fasteners=tuple(sorted(undone)))
+        nothing = Whole(members=frozenset())
+        return Joined(kept=Whole(members=rest), added=nothing, out=DIRECTIONS[0], fasteners=tuple(sorted(undone)))
     split = _best_split(blocking, rest)
     if split is None:
         lasting = _masks(blocking.lasting[np.ix_(sorted(everything), sorted(everything))])

@@ -243,6 +243,7 @@ def _title(section: Section) -> str:
 
 def _section(section: Section, k: int, count: int) -> str:
     first, second = (label_of(name) for name in pair_of(section.objectives))
+    extreme = "Most" if section.objectives.directions[pair_of(section.objectives)[1]] == "maximise" else "Least"
     seeds = max(len(group.results) for group in section.groups)
     bands = (
         "Lines are medians over the studies of a group, bands go from what the best tenth of them reaches to what nine "
@@ -258,15 +259,11 @@ def _section(section: Section, k: int, count: int) -> str:
 <h2 id="title-{k}">{safe(_title(section))}</h2>
 <p class="small">{bands}</p>
 <div id="switches-{k}" class="switches" role="group" aria-label="Groups shown in the charts"></div>
-<div class="pair"><figure><h3>{safe(_extreme(section))} {safe(second)} over {safe(first)}</h3>
+<div class="pair"><figure><h3>{extreme} {safe(second)} over {safe(first)}</h3>
 <div id="attainment-{k}" class="chart tall"></div></figure>
 <figure><h3>Hypervolume over jumps</h3><div id="growth-{k}" class="chart tall"></div></figure></div>
 {section_tables(section)}
 </section>"""
-
-
-def _extreme(section: Section) -> str:
-    return "Most" if section.objectives.directions[pair_of(section.objectives)[1]] == "maximise" else "Least"
 
 
 def _payload(sections: Sequence[Section]) -> dict[str, Any]:

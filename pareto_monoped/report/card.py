@@ -21,12 +21,13 @@ from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
+from pareto_monoped.report.packing import column
 from pareto_monoped.report.packing import packed as packed_jumps
 from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of, of_trials
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import command, notes, provenance, sentences
-from pareto_monoped.report.trials import LETTERS, audit_records, front_columns, history_columns, thinned, trial_columns
+from pareto_monoped.report.trials import LETTERS, audit_records, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.weighted import weighted_cost
 from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
@@ -84,7 +85,7 @@ def study_card(
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
-    picks = _picks(data, front, row_of)
+    picks, masses_kg = _picks(data, front, row_of), _body_masses_kg(data, front)
     failed = data.trials.loc[state == "failed", "status"].value_counts()
     chosen: dict[str, Sequence[int]] = dict(_gearboxes(trials, data.kit_rows(trials), places.maps))
     if several:
@@ -123,7 +124,7 @@ def study_card(
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
         picks=picks,
-        more=front_columns(_body_masses_kg(data, front)),
+        more={f"{body}_kg": column(masses_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))},
         audits=audit_records(data.audits),
         jumps=packed_jumps(_with_alternatives(data, again, picks, trials), again.frames),
         case_jumps=packed_jumps(again.case_jumps, MOST_FRAMES),

@@ -64,11 +64,6 @@ def values_of(trials: pd.DataFrame, name: str) -> NDArray[np.float64]:
     return trials[name].to_numpy(dtype=np.float64) if name in trials else np.full(len(trials), np.nan)
 
 
-def front_columns(bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
-    """Return what the page has of the front alone: the masses of base, thigh and shank, shape (n, 3)."""
-    return {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
-
-
 def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
     """Return measures, verdict and reason of each audit, by trial number; without measures that an audit has not."""
     names = [name for name in AUDIT if name in audits.columns]

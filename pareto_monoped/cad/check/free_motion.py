@@ -185,13 +185,10 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
             mesh = PlacedMesh.of(instance.name, body, frame @ instance.in_body)
             beside = (low < mesh.high[1] - TOUCH_MM) & (mesh.low[1] < high - TOUCH_MM)
             # The distance of a mesh is at least that of its box, which often shows that it is not the nearest.
-            if np.any(beside) and _from_axis_mm(mesh) - np.max(reach[beside]) < clearance:
+            from_axis_mm = float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
+            if np.any(beside) and from_axis_mm - np.max(reach[beside]) < clearance:
                 clearance = min(clearance, radii_mm(mesh)[0] - np.max(reach[beside]))
     return float(clearance)
-
-
-def _from_axis_mm(mesh: PlacedMesh) -> float:
-    return float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
 
 
 def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:

@@ -17,7 +17,15 @@ def check_parts(product: Product, parts: Sequence[MassProperties]) -> Check:
 
     A bought part weighs what its catalogue says; its envelope must still have the record's volume.
     """
-    return worst_of(PART_MASS, f"{len(product.unique)} parts", _part_findings(product, parts))
+    findings = []
+    for kind, part, facts in zip(product.unique, parts, product.solids.result(), strict=True):
+        cad, record = float(part.mass_kg), float(kind.part.unit_mass_kg())
+        share = abs(cad / record - 1.0)
+        if kind.part.catalogue_mass_kg is not None:
+            share = max(share, abs(facts.volume_mm3 / float(kind.part.volume_mm3()) - 1.0))
+        text = f"{kind.name}: CAD {cad:.5f} kg, record {record:.5f} kg, {share:.2%} off"
+        findings.append(Finding(value=100.0 * share, text=text))
+    return worst_of(PART_MASS, f"{len(product.unique)} parts", findings)
 
 
 def check_bodies(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> Iterator[Check]:
@@ -27,16 +35,6 @@ def check_bodies(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> I
         percent = 100.0 * abs(cad / simulated - 1.0)
         text = f"{body}: CAD {cad:.4f} kg, simulated {simulated:.4f} kg ({percent:.2f}%)"
         yield worst_of(BODY_MASS.of(body), f"{cad:.4f} kg", [Finding(value=percent, text=text)])
-
-
-def _part_findings(product: Product, parts: Sequence[MassProperties]) -> Iterator[Finding]:
-    for kind, part, facts in zip(product.unique, parts, product.solids.result(), strict=True):
-        cad, record = float(part.mass_kg), float(kind.part.unit_mass_kg())
-        share = abs(cad / record - 1.0)
-        if kind.part.catalogue_mass_kg is not None:
-            share = max(share, abs(facts.volume_mm3 / float(kind.part.volume_mm3()) - 1.0))
-        text = f"{kind.name}: CAD {cad:.5f} kg, record {record:.5f} kg, {share:.2%} off"
-        yield Finding(value=100.0 * share, text=text)
 
 
 def check_centre_of_mass(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> Iterator[Check]:

@@ -14,12 +14,11 @@ def check_strength(factors: Sequence[JointFactor]) -> Check:
     """Compare every factor with the one required; no factors if the design does not jump, and none that only inform."""
     factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
-    return worst_of(STRENGTH, looked_at, [Finding(value=one.share, text=_sentence(one)) for one in factors])
-
-
-def _sentence(one: JointFactor) -> str:
-    joint = one.joint
-    return f"{joint.name}: safety factor = {one.factor:.3g}: must be at least {joint.required:g}; {joint.cure}"
+    findings = []
+    for one in factors:
+        bound = f"safety factor = {one.factor:.3g}: must be at least {one.joint.required:g}"
+        findings.append(Finding(value=one.share, text=f"{one.joint.name}: {bound}; {one.joint.cure}"))
+    return worst_of(STRENGTH, looked_at, findings)
 
 
 def check_validity(product: Product) -> Check:

@@ -117,7 +117,10 @@ def gear_rows(
     play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
     grade = accuracy_class if making is None else making.accuracy_class
     series = RATED_SERIES if (accuracy_class if making is None else making.quality) else GENERAL_SERIES
-    loss = _loss_mm(gear, making, series) if making else 0.0
+    loss = 0.0
+    if making:  # at most, where all thicknesses are at the end of their tolerance
+        mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
+        loss = float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
     span = measure(gear, series=series, hole=spline, play_mm=play)
     kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
     limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
@@ -140,12 +143,6 @@ def gear_rows(
         *([("Backlash of the pair, at most", number(round(play + loss, 3)))] if making else ()),
         *(_making_rows(making, hardness) if making is not None else ()),
     ]
-
-
-def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking, series: int) -> float:
-    """Return by how much a pair's backlash grows at most, where all thicknesses are at the end of their tolerance."""
-    mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
-    return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
 
 
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:

@@ -190,7 +190,9 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
         for wide, caption, value in row:
             paper.line([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)], closed=True)
             paper.text(caption, x + 1.2, y + high - _CAPTION_MM - 1.2, height_mm=_CAPTION_MM)
-            height = _fitting(value, wide - 2.4, 3.5 if caption in ("Name", "Drawing", "Scale") else LETTER_MM)
+            height = 3.5 if caption in ("Name", "Drawing", "Scale") else LETTER_MM
+            long, room = width_mm(value, height), wide - 2.4
+            height = height if long <= room else height * room / long
             paper.text(value, x + 1.2, y + 2.2, height_mm=height)
             x += wide
     x1, y1 = x0 + TITLE_MM[0], y0 + TITLE_MM[1]
@@ -199,12 +201,6 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
     if title.finish:
         surface(paper, title.finish, x0 + 40.0, y + 1.6)
     _first_angle(paper, x0 + 167.0, y + 4.2)
-
-
-def _fitting(value: str, width: float, height: float) -> float:
-    """Return the height, or a smaller one at which a value fits its cell."""
-    long = width_mm(value, height)
-    return height if long <= width else height * width / long
 
 
 def surface(paper: Paper, roughness: str, x: float, y: float) -> None:

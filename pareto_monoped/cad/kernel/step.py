@@ -149,14 +149,13 @@ def _moved(text: bytes, shape: Shape, number: int, axes: int) -> bytes:
     first = text[shape.start : text.index(b"\n#%d = " % shape.axes, shape.start) + 1]
     ahead = number - shape.number - _AXES
 
-    def renumbered(found: re.Match[bytes]) -> bytes:
-        return b"#%d" % (int(found[1]) + ahead)
-
     def in_first(found: re.Match[bytes]) -> bytes:
         own = int(found[1])
         return b"#%d" % {shape.number: number, shape.axes: axes}.get(own, own + ahead)
 
-    return _REFERENCE.sub(in_first, first) + _REFERENCE.sub(renumbered, text[body : shape.stop])
+    return _REFERENCE.sub(in_first, first) + _REFERENCE.sub(
+        lambda found: b"#%d" % (int(found[1]) + ahead), text[body : shape.stop]
+    )
 
 
 class _Document:

@@ -63,7 +63,10 @@ def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) ->
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
     """Return an actuator with a quarter cut away, its output to the left, each part in its own colour."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
-    upright = _axis_to_the_left() @ np.linalg.inv(unit_frame(unit))
+    # The axis along -x of the scene, output to the left; the first planet on top.
+    turned = np.zeros((4, 4))
+    turned[0, 2], turned[1, 1], turned[2, 0], turned[3, 3] = -1.0, 1.0, 1.0, 1.0
+    upright = turned @ np.linalg.inv(unit_frame(unit))
     members = [
         (instance, placed(unique.mesh.body, upright @ instance.in_body))
         for instance, unique in product.placed()
@@ -125,13 +128,6 @@ def _section(members: Sequence[tuple[Instance, m3.Manifold]], *, width: int, hei
 def _body(mesh: Mesh, at: Floats, hue: tuple[float, float, float], number: int = 0) -> Body:
     points = mesh.points_mm @ at[:3, :3].T + at[:3, 3]
     return Body(points_mm=points, triangles=mesh.triangles, colour=hue, number=number)
-
-
-def _axis_to_the_left() -> Floats:
-    """Return the actuator's axis along -x of the picture's scene, output to the left; the first planet on top."""
-    matrix = np.zeros((4, 4))
-    matrix[0, 2], matrix[1, 1], matrix[2, 0], matrix[3, 3] = -1.0, 1.0, 1.0, 1.0
-    return matrix
 
 
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:

@@ -214,7 +214,8 @@ def _mesh(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Beve
     mesh = _united(stack, balls, bevels, tolerance_mm)
     # Prisms are apart by rounding if one ends at z0 + (z1 - z0) and the next begins at z1. Multiples of 2^-40 mm add up
     # exactly. They are not used for every part, since other heights order the triangles in another way.
-    if not _has_twins(mesh):
+    numbers = np.sort(place_numbers(mesh.points_mm))
+    if np.all(numbers[1:] != numbers[:-1]):
         return mesh
     return _united([_exact(prism) for prism in stack], balls, bevels, tolerance_mm)
 
@@ -258,12 +259,6 @@ def _exact(prism: Prism) -> Prism:
     """Return the prism with its ends rounded to multiples of 2^-40 mm."""
     z0, z1 = (float(np.ldexp(np.rint(np.ldexp(float(z), 40)), -40)) for z in (prism.z0_mm, prism.z1_mm))
     return replace(prism, z0_mm=z0, z1_mm=z1)
-
-
-def _has_twins(mesh: Mesh) -> bool:
-    """Return whether two points of a mesh are one in a file."""
-    numbers = np.sort(place_numbers(mesh.points_mm))
-    return bool(np.any(numbers[1:] == numbers[:-1]))
 
 
 def mesh_from(body: m3.Manifold) -> Mesh:

@@ -82,11 +82,6 @@ def foot_mould(foot: Part, block: Part) -> tuple[Mesh, Mesh]:
     return mesh_from(front), mesh_from(back)
 
 
-def rubber_ml(foot: Part) -> float:
-    """Return the volume of the foot in millilitres."""
-    return 1e-3 * float(foot.volume_mm3())
-
-
 def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> m3.Manifold:
     x, y, z = (b - a for a, b in zip(low, high, strict=True))
     return m3.Manifold.cube((x, y, z)).translate(low)
@@ -275,7 +270,7 @@ def _printing(product: Listed, foot: Part) -> Iterator[str]:
         "<li>Sand and wax both halves of the mould, put 4 dowel pins 4 x 16 (ISO 2338) between them, set the foot "
         "block into the collar with its tongue downwards, and clamp the halves.</li>"
     )
-    mixed_ml = 1.1 * rubber_ml(foot)
+    mixed_ml = 1.1 * (1e-3 * float(foot.volume_mm3()))
     yield f"<li>Degrease and prime the tongue. Mix {mixed_ml:.0f} ml of polyurethane, {escape(foot.note)}.</li>"
     yield "<li>Pour through one hole until it stands in the other. Let it cure as its maker says.</li></ol>"
 

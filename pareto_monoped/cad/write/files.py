@@ -51,8 +51,10 @@ def write_meshes(
         write(folder, path, content)
 
 
-def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> None:
-    """Write the laser drawings of the flat parts, and the arms of the test stand."""
+def write_drawings(folder: Path, product: Product, record: Mapping[str, Any], formats: Collection[str]) -> None:
+    """Write the drawing of the assembly, the laser drawings of the flat parts, and the arms of the test stand."""
+    if "pdf" in formats:
+        write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
     if "dxf" not in formats:
         return
     for unique in product.unique:
@@ -60,12 +62,6 @@ def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> 
             write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
     for path, content in stand_files(product.robot.leg).items():
         write(folder, path, content)
-
-
-def write_assembly_sheet(folder: Path, product: Product, record: Mapping[str, Any], formats: Collection[str]) -> None:
-    """Write the drawing of the assembly."""
-    if "pdf" in formats:
-        write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
 
 
 def write_models(

@@ -6,8 +6,10 @@ import json
 from collections import defaultdict
 from collections.abc import Sequence
 
+import numpy as np
+
 from pareto_monoped.cad.check.result import Check
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, extent_mm, part_file_name
+from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, part_file_name
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.strength.factors import JointFactor
 from pareto_monoped.strength.joint import ActuatorJoint
@@ -40,7 +42,7 @@ def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
                 f"{mass_g:.2f}",
                 f"{mass_g * unique.count:.2f}",
                 "bought" if part.process == "bought" else "made",
-                " x ".join(f"{size:.1f}" for size in extent_mm(unique.mesh)),
+                " x ".join(f"{size:.1f}" for size in np.ptp(unique.mesh.points_mm, axis=0)),
                 " ".join(unique.units),
                 f"{part.fastening.torque_n_m:.1f}" if part.fastening else "",
                 part.fastening.lock if part.fastening else "",

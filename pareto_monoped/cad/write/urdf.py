@@ -35,7 +35,9 @@ def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Se
             if collider.body == name:
                 _add_collision(link, collider)
         if name == "shank":
-            _add_foot(link, arrays)
+            foot = ET.SubElement(link, "collision", name="foot")  # the sphere that touches the ground
+            ET.SubElement(foot, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
+            ET.SubElement(ET.SubElement(foot, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
     places_m = {"hip": 0.0, "knee": -float(arrays.thigh_length_m[0])}
     for joint, name in enumerate(JOINTS):
         _add_joint(root, arrays, joints, joint, z_m=places_m[name])
@@ -74,12 +76,6 @@ def _add_collision(link: ET.Element, collider: Collider) -> None:
         ET.SubElement(geometry, "cylinder", radius=numbers(radius), length=numbers(2.0 * half_length))
     else:
         ET.SubElement(geometry, "box", size=numbers(*(2.0 * half for half in collider.size)))
-
-
-def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
-    element = ET.SubElement(link, "collision", name="foot")
-    ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
-    ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
 
 
 def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
