@@ -47,11 +47,7 @@ def built_of(
 
 
 def as_built(design: Design, maps: Maps) -> Design:
-    """Return the design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
-
-    Raises:
-        DesignError: no gearbox of the joint's motor has the ratio.
-    """
+    """Return the design with lengths of whole 0.1 mm and its gearboxes' ratios; ``DesignError`` without a gearbox."""
     both = joint_maps(maps)
     thigh_m, shank_m = (
         round(round(length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4)

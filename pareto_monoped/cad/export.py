@@ -118,11 +118,10 @@ def export_design(
 ) -> ExportSummary:
     """Build, check and write everything about one design.
 
-    The design is built with lengths of whole 0.1 mm and the real ratios, and simulated again, in the start pose of its
-    jump or at the angles ``hip_rad`` and ``knee_rad``. With ``force`` the files of an earlier export are replaced;
-    other files in the folder stay. With ``strength`` a design is refused if a joint has less than its required safety
-    factor; the factors are listed either way. ``source`` says where the design comes from and stands in
-    ``design.json``. ``progress`` is called with the name of each step as it begins.
+    It is built with lengths of whole 0.1 mm and real ratios, and simulated again, in the start pose of its jump or at
+    the given angles. With ``force`` the files of an earlier export are replaced; other files in the folder stay. With
+    ``strength`` a design with a joint below its required safety factor is refused; the factors are listed either way.
+    ``source`` stands in ``design.json``. ``progress`` is called with the name of each step as it begins.
 
     Raises:
         InputError: an unknown format.

@@ -211,11 +211,7 @@ def require_gif(path: Path) -> None:
 
 
 def require_video(path: Path) -> str:
-    """Return the encoder of a video file, before anything is drawn.
-
-    Raises:
-        InputError: the suffix is of no format that we write, or there is no encoder.
-    """
+    """Return the encoder of a video file, before anything is drawn; ``InputError`` if it has no format or encoder."""
     if path.suffix.lower() not in VIDEOS:
         raise InputError(complaint("--video", str(path), f"a file ending in {' or '.join(VIDEOS)}", "correct the name"))
     return encoder()

@@ -36,11 +36,7 @@ class Job:
     knee_motor: Motor | None = None  #: of the knee's actuator; None where both have the same
 
     def maps(self) -> JointMaps:
-        """Return the gearboxes of both joints.
-
-        Raises:
-            MotorError: a motor has no gearbox at any ratio.
-        """
+        """Return the gearboxes of both joints; ``MotorError`` if a motor has none."""
         hip = map_of(self.motor, self.rules)
         return JointMaps(hip=hip, knee=hip if self.knee_motor is None else map_of(self.knee_motor, self.rules))
 

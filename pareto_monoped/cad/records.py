@@ -175,8 +175,7 @@ def record_job(
 def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -> Difference | None:
     """Return the first field of a record that does not follow from its design, motor and calibration.
 
-    Another version may choose other gearboxes and weigh other parts. What it built is then only compared where no
-    version differs.
+    Another version may choose other gearboxes and weigh other parts: then only what no version changes is compared.
     """
     # A list of files follows from the formats, and a folder need not have all of them any more.
     found = {key: value for key, value in record.items() if key not in ("formats", "files")}

@@ -208,10 +208,7 @@ def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
 def _shared(
     blocking: Blocking, out: str, leaving: Members, staying: Members, undone: Members
 ) -> tuple[Members, Members, Members]:
-    """Return both sides with the undone fasteners that belong to one of them, and those that join or part both.
-
-    A retaining ring parts what it holds from what is then in its way.
-    """
+    """Return both sides with the undone fasteners that belong to one alone, and those that join or part both."""
     sides, crossing = (set(leaving), set(staying)), set()
     for k in sorted(undone):
         joins = blocking.goes_through[k] - undone

@@ -146,9 +146,8 @@ def stored_state(place: Place) -> Stored:
 
 
 def is_ended(place: Place, stored: Stored) -> bool:
-    """Return whether running a study again would do nothing, because it has ended as its file says today.
-
-    A study whose motor or calibration is a file of the user's is run again, which looks whether the file has changed.
+    """Return whether running a study again would do nothing: it has ended as its file says, and no file of the user's
+    may have changed since, such as a motor or a calibration.
     """
     if stored.summary is None or stored.state not in ("finished", "failed"):
         return False

@@ -186,10 +186,9 @@ def _grouped(results: Sequence[Result], axes: Sequence[str]) -> tuple[Group, ...
 
 
 def spread_of(values: Sequence[float] | Floats) -> Spread:
-    """Return median and band of some values: order statistics, no values between them.
+    """Return median and band as order statistics, of which no value lies between two; NaN is the greatest.
 
-    Of an even number the median is the lower one of the middle two. Of fewer than ten values the band goes from the
-    least to the greatest. NaN counts as greater than every number.
+    Of an even number the median is the lower of the middle two, of fewer than ten values the band has all.
     """
     middle, low, high = quantiles(np.asarray(values, dtype=np.float64)[:, None])[:, 0]
     return Spread(middle=float(middle), low=float(low), high=float(high))

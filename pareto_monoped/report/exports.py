@@ -80,10 +80,9 @@ def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
 
 
 def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
-    """Return one model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
+    """Return a model of bodies (corners in mm, shape (n, 3, 3), colour), each coarse enough for its share of ``most``.
 
-    ``bodies`` has for each body its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255. ``most``
-    counts all triangles; there are more if so many bodies have only their least number.
+    Large bodies get larger shares; there are more triangles if so many bodies have only their least number.
     """
     sizes = [float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) for corners, _ in bodies]
     most_of = [max(int(most * size / sum(sizes)), _LEAST) for size in sizes]

@@ -32,11 +32,7 @@ _ROW_PX, _MARGIN_PX = 26, 150
 
 
 def write_figures(payload: Payload, folder: Path, *, force: bool = False) -> list[Path]:
-    """Write every figure that the payload has data for, and return the files; ``force`` as for ``files.replacing``.
-
-    Raises:
-        OutputError: the folder cannot be made or written to.
-    """
+    """Write every figure that the payload has data for, and return the files; raise ``OutputError`` if that fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

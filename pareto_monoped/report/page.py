@@ -191,13 +191,7 @@ def payload_of(
     most_jumps: int | None = None,
     note: Callable[[str], None] = lambda _: None,
 ) -> Payload:
-    """Read the studies and simulate what the page shows beyond them.
-
-    ``most_jumps`` limits how many designs of each front jump on the page; ``exports`` is as for ``write_report``.
-
-    Raises:
-        DatabaseError, StudyError: as ``write_report``.
-    """
+    """Read the studies, simulate at most ``most_jumps`` of each front for the page; raise as ``write_report``."""
     if not dbs:
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
     # Everything is read before anything is simulated, so that a wrong name is reported at once.

@@ -98,10 +98,7 @@ class Check:
 
 
 def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check:
-    """Return a check of measured values: fails for each one that is beyond the limit.
-
-    Without findings the measured value is the limit's own for a lower limit, else 0.
-    """
+    """Return a check that fails for each value beyond the limit; without any it measures 0, or a lower limit's own."""
     found = sorted(findings, key=lambda finding: finding.value, reverse=not limit.at_least)
     nothing = limit.value if limit.at_least else 0.0
     return Check(

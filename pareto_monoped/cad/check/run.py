@@ -36,14 +36,10 @@ def run_checks(
     other_files: Mapping[str, bytes],
     factors: Sequence[JointFactor] | None = None,
 ) -> tuple[Check, ...]:
-    """Return all checks of a product against the robot that is simulated.
+    """Return all checks of a product against the robot that is simulated, with masses from the parts.
 
-    Args:
-        product: solids, meshes, instances.
-        arrays: the same robot as the simulation carries it, one row, masses from the parts.
-        part_files: the STL file of every unique part, whether it is to be written or not, by the part's name.
-        other_files: all other files with triangles, by path.
-        factors: of all joints, if they must be as required.
+    ``part_files`` has the STL file of every unique part by the part's name, written or not, ``other_files`` all other
+    files with triangles by path. ``factors`` are given if they must be as required.
     """
     # First what does not need the solids, which the kernel's process is building meanwhile.
     without_solids = (

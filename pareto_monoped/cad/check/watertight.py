@@ -22,11 +22,7 @@ _CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
 
 def meshes_of(name: str, content: bytes) -> Mapping[str, Corners]:
-    """Return the triangles' corners of every mesh in a file, in its unit, shape (n, 3, 3), by the mesh's name.
-
-    Raises:
-        ValueError: the name does not end in ``.stl``, ``.3mf`` or ``.glb``.
-    """
+    """Return the triangles' corners of every mesh in a file, in its unit, shape (n, 3, 3), by the mesh's name."""
     if name.endswith(".stl"):
         return {"": read_stl(content)}
     if name.endswith(".3mf"):

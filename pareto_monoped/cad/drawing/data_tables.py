@@ -83,11 +83,8 @@ def measure(
 ) -> Span:
     """Return what to measure; the drawn teeth have the most material, so backlash is at least as drawn.
 
-    ``series`` is that of the tooth thickness tolerance (DIN 3967). With ``hole`` the outline of an external gear is
-    that of a hole which a plug of these measures fits; its spaces are at least ``play_mm`` wider than drawn.
-
-    Raises:
-        ValueError: a gear larger than the table of tolerances.
+    ``series`` is that of the tooth thickness tolerance (DIN 3967), which ends at some diameter (``ValueError``). With
+    ``hole`` the outline is that of a hole for a plug of these measures, with ``play_mm`` wider spaces at least.
     """
     diameter = 2.0 * float(gear.pitch_radius_mm)
     if diameter > LARGEST_PITCH_DIAMETER_MM:

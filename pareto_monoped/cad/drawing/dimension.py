@@ -144,10 +144,7 @@ def callout_height(lines: Sequence[str], place: str | None) -> float:
 
 
 def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
-    """Draw a tolerance frame (ISO 1101) with its lower left corner at (x, y), and return its width.
-
-    ``cells`` are the symbol's name (``position``, ``coaxial``, ``square``, ``round``), the value and the datum.
-    """
+    """Draw a frame (ISO 1101) of symbol, value and datum, its lower left corner at (x, y), and return its width."""
     left = x
     for k, cell in enumerate(cells):
         wide = FRAME_MM if k == 0 else max(width_mm(cell, LETTER_MM) + 2.4, FRAME_MM)

@@ -103,14 +103,9 @@ def placed(
     tables: Sequence[Paper],
     notes: Sequence[str],
 ) -> Sheet:
-    """Return the smallest sheet on which the views are readable, at the largest scale that it has room for.
+    """Return the smallest sheet with readable views, at the largest scale that fits, or raise ``ValueError``.
 
-    ``bare_mm`` is the size of the views without dimensions at full size; the scale is at least ``readable`` if a sheet
-    allows it.
-
-
-    Raises:
-        ValueError: no sheet is large enough.
+    ``bare_mm`` is the size of the views without dimensions at full size; the scale is ``readable`` if possible.
     """
     drawn: dict[float, Sequence[Paper]] = {}
     best: Sheet | None = None

@@ -62,10 +62,7 @@ class Taper:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Teeth:
-    """Where a gear's teeth stand in the profile, and whether they bound a hole.
-
-    A ring's hole has the outline of an internal gear; a hole with that of an external gear takes a splined shaft.
-    """
+    """Where a gear's teeth stand, and whether they bound a hole: that of a ring, or for a splined shaft."""
 
     gear: ExternalGear | InternalGear
     low: float

@@ -37,11 +37,7 @@ _FIT_MM = 1e-6  # distance of splines from their points
 
 
 def beveled(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
-    """Return a solid with cones on the edges of its cylinders.
-
-    Raises:
-        ValueError: a bevel stands on no edge of the solid, or does not fit there.
-    """
+    """Return a solid with cones on the edges of its cylinders; ``ValueError`` if one fits no edge."""
     cuts = [bevel for bevel in bevels if not _adds(bevel) and float(bevel.edge_mm) != float(bevel.at.radius_mm)]
     shape = _chamfered(solid, cuts) if cuts else solid
     for bevel in bevels:

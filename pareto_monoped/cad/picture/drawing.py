@@ -167,12 +167,10 @@ def _lit(normal: Floats) -> Floats:
 
 @compiled
 def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
-    """Find which triangle is nearest at each pixel, and how near; of equally near ones the first.
+    """Find which triangle is nearest at each pixel, of shape (height, width); of equally near ones the first.
 
-    Args:
-        triangles: corners in pixels to the right, pixels down, and towards the viewer, shape (n, 3, 3).
-        winner: the triangle's index, shape (height, width); pixels that none covers are left as they are.
-        depth: how near, shape (height, width); -infinity where there is nothing yet.
+    ``triangles`` has corners in pixels right and down and their nearness, shape (n, 3, 3). ``winner`` keeps its values
+    where no triangle is, ``depth`` begins as -infinity.
     """
     height, width = winner.shape
     for index in range(len(triangles)):
@@ -207,13 +205,8 @@ def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
 def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, line: Floats, jump: float) -> Floats:
     """Return the colours from 0 to 1 of a picture of half the size, with lines where another body or depth begins.
 
-    Args:
-        winner: index of the triangle at each pixel, shape (2 height, 2 width); the last colour's where none is.
-        depth: how near it is, the same shape.
-        owner: body of each triangle, and a last number for the background.
-        colours: red, green and blue of each triangle, and last of the paper.
-        line: colour of the lines.
-        jump: difference of depth that makes a line.
+    ``winner`` and ``depth`` are those of ``nearest``; the last colour is the paper's. ``owner`` has the body of each
+    triangle, and a last number for the background. A line is drawn where the depth jumps by more than ``jump``.
     """
     height, width = winner.shape
     picture = np.zeros((height // 2, width // 2, 3))

@@ -139,11 +139,7 @@ class Teeth:
 
 
 def outline(teeth: Teeth) -> Contour:
-    """Return the closed outline of a gear, anticlockwise.
-
-    Raises:
-        ValueError: the fillet does not fit between the flanks.
-    """
+    """Return the closed outline of a gear, anticlockwise; ``ValueError`` if its fillet does not fit."""
     half = _half_space(teeth) if teeth.inner else _half_tooth(teeth)
     pieces: list[Piece] = []
     turn = 2.0 * np.pi / teeth.count

@@ -93,11 +93,7 @@ def _extent(outline: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def assembly_pack(product: Listed) -> dict[str, bytes]:
-    """Return content by path in the export's folder.
-
-    Raises:
-        CheckError: parts have no straight way into their place, or no key reaches a screw.
-    """
+    """Return content by path; ``CheckError`` if a part has no straight way in, or a screw no room for its key."""
     placed = instances(product.robot, POSE)
     blocking = blocking_of(placed)
     assembly = take_apart(blocking)

@@ -24,33 +24,17 @@ _CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))  # how R12 writes wha
 
 Pair = tuple[int, str]  #: A group code and its value.
 
-_HEAD: tuple[Pair, ...] = (
-    (0, "SECTION"),
-    (2, "HEADER"),
-    (9, "$ACADVER"),
-    (1, "AC1009"),  # release 12
-    (9, "$INSUNITS"),
-    (70, "4"),  # millimetres
-    (0, "ENDSEC"),
+
+def _layer(name: str, colour: int) -> tuple[Pair, ...]:
+    return (0, "LAYER"), (2, name), (70, "0"), (62, str(colour)), (6, "CONTINUOUS")  # 70: neither frozen nor locked
+
+
+_HEAD: tuple[Pair, ...] = (  # release 12, millimetres
+    *((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$INSUNITS"), (70, "4"), (0, "ENDSEC")),
 )
-_LAYERS: tuple[Pair, ...] = (
-    (0, "SECTION"),
-    (2, "TABLES"),
-    (0, "TABLE"),
-    (2, "LAYER"),
-    (70, "2"),  # number of layers
-    (0, "LAYER"),
-    (2, LAYER),
-    (70, "0"),  # neither frozen nor locked
-    (62, "7"),  # black or white, whichever shows
-    (6, "CONTINUOUS"),
-    (0, "LAYER"),
-    (2, NOTES),
-    (70, "0"),
-    (62, "1"),  # red
-    (6, "CONTINUOUS"),
-    (0, "ENDTAB"),
-    (0, "ENDSEC"),
+_LAYERS: tuple[Pair, ...] = (  # two layers: black or white, whichever shows, and red
+    *((0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, "2")),
+    *(*_layer(LAYER, 7), *_layer(NOTES, 1), (0, "ENDTAB"), (0, "ENDSEC")),
 )
 _ENTITIES: tuple[Pair, ...] = ((0, "SECTION"), (2, "ENTITIES"))
 _END: tuple[Pair, ...] = ((0, "ENDSEC"), (0, "EOF"))
@@ -66,11 +50,7 @@ def is_flat(part: Part) -> bool:
 
 
 def dxf(part: Part) -> str:
-    """Return the text of a DXF file (R12, which every laser's software reads) of a flat part.
-
-    Raises:
-        ValueError: the part is not flat, or has curves that R12 cannot hold.
-    """
+    """Return a DXF file (R12, which every laser's software reads) of a flat part; ``ValueError`` for other parts."""
     if not is_flat(part):
         raise ValueError(f"{part.name}: not a flat part")
     (prism,) = part.prisms

@@ -73,10 +73,7 @@ def write_models(
     calibration: Calibration,
     formats: Collection[str],
 ) -> None:
-    """Write MJCF and URDF, which show the same meshes; no MJCF of a robot that cannot stand, as it has no jump.
-
-    Beside the MJCF stand all numbers that its jump needs, and a program that makes the jump with MuJoCo alone.
-    """
+    """Write URDF, MJCF and what its jump needs; no MJCF of a robot that cannot stand, as it has no jump."""
     if not {"mjcf", "urdf"} & set(formats):
         return
     solid = colliders(product)

@@ -129,11 +129,7 @@ def _delete(folder: Path) -> None:
 
 
 def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the formats asked for, in the order of ``FORMATS``; all of them for None.
-
-    Raises:
-        InputError: an unknown name.
-    """
+    """Return the formats asked for, in the order of ``FORMATS``, all for None; ``InputError`` for an unknown name."""
     if names is None:
         return FORMATS
     if isinstance(names, str) or not isinstance(names, Sequence):

@@ -32,11 +32,10 @@ _EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
 
 
 def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """Return the simulation's MJCF with visual meshes (group 2) and colliders (group 3) added.
+    """Return the simulation's MJCF with visual meshes ``meshes/NAME.stl`` (group 2) and colliders (group 3) added.
 
     The colliders meet each other but not the floor (contype and conaffinity 2). The document therefore still makes the
-    very jump that was simulated, in which only the foot touches the ground. Each mesh of ``shown`` is in a file
-    ``meshes/NAME.stl`` beside the document, in metres.
+    very jump that was simulated, in which only the foot touches the ground.
     """
     root = ET.fromstring(document, parser=ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     compiler = root.find("compiler")
@@ -58,32 +57,14 @@ def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Col
 
 
 def _add_visual(body: ET.Element, visual: Visual) -> None:
-    ET.SubElement(
-        body,
-        "geom",
-        name=f"{visual.name}_visual",
-        type="mesh",
-        mesh=visual.name,
-        contype="0",
-        conaffinity="0",
-        group="2",
-        rgba=numbers(*visual.colour, 1.0),
-    )
+    shown = {"name": f"{visual.name}_visual", "type": "mesh", "mesh": visual.name, "contype": "0", "conaffinity": "0"}
+    ET.SubElement(body, "geom", shown, group="2", rgba=numbers(*visual.colour, 1.0))
 
 
 def _add_collider(body: ET.Element, collider: Collider) -> None:
-    geom = ET.SubElement(
-        body,
-        "geom",
-        name=f"{collider.name}_collider",
-        type=collider.shape,
-        size=numbers(*collider.size),
-        pos=numbers(*collider.position),
-        contype="2",
-        conaffinity="2",
-        group="3",
-        rgba="0.2 0.5 0.9 0.2",
-    )
+    shape = {"name": f"{collider.name}_collider", "type": collider.shape, "size": numbers(*collider.size)}
+    shape |= {"pos": numbers(*collider.position), "contype": "2", "conaffinity": "2"}
+    geom = ET.SubElement(body, "geom", shape, group="3", rgba="0.2 0.5 0.9 0.2")
     if collider.shape == "cylinder":
         geom.set("zaxis", "0 1 0")
 

@@ -109,13 +109,8 @@ def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int
     ET.SubElement(element, "parent", link=BODIES[joint])
     ET.SubElement(element, "child", link=BODIES[joint + 1])
     ET.SubElement(element, "axis", xyz="0 1 0")
-    ET.SubElement(
-        element,
-        "limit",
-        lower=numbers(stop.lower_rad),
-        upper=numbers(stop.upper_rad),
-        effort=numbers(arrays.peak_torque_n_m[0, joint]),
-        velocity=numbers(arrays.no_load_speed_rad_per_s[0, joint]),
-    )
+    effort, speed = arrays.peak_torque_n_m[0, joint], arrays.no_load_speed_rad_per_s[0, joint]
+    reach = {"lower": numbers(stop.lower_rad), "upper": numbers(stop.upper_rad)}
+    ET.SubElement(element, "limit", reach, effort=numbers(effort), velocity=numbers(speed))
     damping = joint_damping(arrays, joints)[0, joint]
     ET.SubElement(element, "dynamics", damping=numbers(damping), friction=numbers(joints.friction_n_m))
